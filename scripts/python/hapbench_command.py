@@ -27,6 +27,7 @@ SHARED = 'shared options; "hapbench --help" explains them'
 SUCCESS, FAILED, BAD_INPUT, DIFFERENT, INTERRUPTED = 0, 1, 2, 3, 130
 MOST_FAULTS = 20  # reported at once
 SILENCE = 2.0  # before a notice [s]
+SCHEMA = Path(__file__).resolve().parents[2] / "scenarios" / "library" / "scenario.schema.json"
 
 _unfinished = set()  # scratch files of write(), which an end by Ctrl-C removes
 _written = []  # files that write() completed

@@ -4,12 +4,14 @@ each class of runs, and for what is neither.
 Every colour has a contrast of at least 4.5 to the ground it is drawn on (WCAG 2.1, AA), so that names can be written in
 it: `colour` on white, `dark` on the dark page. For readers with deuteranopia, protanopia or tritanopia the colours of
 ALGORITHMS differ by at least 6 (CIEDE2000), those of SERIES by at least 12; a test simulates their vision. Dashes and
-markers are a second code. An algorithm without an entry gets a look by its name.
+markers are a second code. An algorithm without an entry gets a look by its name, or another one where it would be
+taken for another algorithm of the same picture (tell_apart).
 """
 import colorsys
 import zlib
-from dataclasses import dataclass
-from functools import lru_cache
+from dataclasses import dataclass, replace
+
+import numpy as np
 
 
 @dataclass(frozen=True)
@@ -91,35 +93,143 @@ def by_class(names):
 # For algorithms without an entry.
 FURTHER_DASHES = ((2, 2), (6, 1, 1, 1), (4, 2), (1, 2))
 FURTHER_MARKERS = ("8", "H", "3", "4", "+", "x", ".")
-# The largest and the least relative luminance that keep a contrast of 4.5 to the light and to the dark ground.
-LIGHTEST_ON_WHITE, DARKEST_ON_BLACK = 0.14, 0.30
+# The largest and the least relative luminance that keep a contrast of 4.5 to the light and to the dark ground; and one
+# that is further from the ground.
+LUMINANCES = ((0.14, 0.30), (0.05, 0.60))
+HUES = 24
+# Distance in OKLab from which two colours are told apart between lines of a figure: about 6 by CIEDE2000.
+APART = 0.08
+CHOSEN = {}  # name -> look, of the picture that is being drawn
+
+# Linear RGB as the eye sees it: Machado, Oliveira and Fernandes (IEEE TVCG 15, 2009), severity 1.
+VISIONS = {
+    "usual": np.eye(3),
+    "protanopia": np.array(
+        [
+            [0.152286, 1.052583, -0.204868],
+            [0.114503, 0.786281, 0.099216],
+            [-0.003882, -0.048116, 1.051998],
+        ]
+    ),
+    "deuteranopia": np.array(
+        [
+            [0.367322, 0.860646, -0.227968],
+            [0.280085, 0.672501, 0.047413],
+            [-0.011820, 0.042940, 0.968881],
+        ]
+    ),
+    "tritanopia": np.array(
+        [
+            [1.255528, -0.076749, -0.178779],
+            [-0.078411, 0.930809, 0.147602],
+            [0.004733, 0.691367, 0.303900],
+        ]
+    ),
+}
+# Linear RGB to the responses of the cones, and their cube roots to OKLab (Ottosson, 2020).
+TO_CONES = np.array(
+    [
+        [0.4122214708, 0.5363325363, 0.0514459929],
+        [0.2119034982, 0.6806995451, 0.1073969566],
+        [0.0883024619, 0.2817188376, 0.6299787005],
+    ]
+)
+TO_OKLAB = np.array(
+    [
+        [0.2104542553, 0.7936177850, -0.0040720468],
+        [1.9779984951, -2.4285922050, 0.4505937099],
+        [0.0259040371, 0.7827717662, -0.8086757660],
+    ]
+)
 
 
-@lru_cache(maxsize=None)
+def law_name(algorithm):
+    """The name of a law in pictures and pages of own runs: the words of the program's tables."""
+    return algorithm.replace("_", " ")
+
+
 def look(algorithm):
-    """The look of any algorithm. Without an entry above, its name alone decides, so that it is the same everywhere."""
-    if algorithm in ALGORITHMS:
-        return ALGORITHMS[algorithm]
+    """The look of any algorithm. Without an entry above, its name decides, unless tell_apart chose another one."""
+    return ALGORITHMS.get(algorithm) or CHOSEN.get(algorithm) or by_name(algorithm)
+
+
+def by_name(algorithm):
     number = zlib.crc32(algorithm.encode())
     number, dash = divmod(number, len(FURTHER_DASHES))
     hue, marker = divmod(number, len(FURTHER_MARKERS))
     return Look(
-        algorithm.replace("_", " "),
+        law_name(algorithm),
         *in_hue(hue % 360 / 360),
         FURTHER_DASHES[dash],
         FURTHER_MARKERS[marker],
     )
 
 
-def in_hue(hue):
-    """The most vivid colours of a hue, 0 to 1, that can be read on the light and on the dark ground."""
+def tell_apart(algorithms):
+    """Chooses the looks of the algorithms of one picture that have no entry: the look by the name, or where it is too
+    close to another one in the picture for some kind of colour vision, the most distant colour of all hues.
+    """
+    CHOSEN.clear()
+    names = sorted(set(algorithms))
+    looks = [Look("", PUBLISHED, PUBLISHED_DARK, (), "")]
+    looks += [ALGORITHMS[name] for name in names if name in ALGORITHMS]
+    hues = [in_hue(i / HUES, of) for of in LUMINANCES for i in range(HUES)]
+    late = []  # names whose own colour is too close to another one
+    for name in (name for name in names if name not in ALGORITHMS):
+        own = by_name(name)
+        if distance((own.colour, own.dark), looks) < APART:
+            late.append(name)
+            continue
+        CHOSEN[name] = replace(own, marker=free_marker(own, looks))
+        looks.append(CHOSEN[name])
+    for name in late:
+        own, (light, dark) = by_name(name), max(hues, key=lambda pair: distance(pair, looks))
+        CHOSEN[name] = replace(own, colour=light, dark=dark, marker=free_marker(own, looks))
+        looks.append(CHOSEN[name])
+
+
+def free_marker(own, looks):
+    used = [one.marker for one in looks]
+    return next((m for m in (own.marker, *FURTHER_MARKERS) if m not in used), own.marker)
+
+
+def distance(pair, looks):
+    """The smallest distance in OKLab of a colour on light ground and one on dark ground to those of looks, over all
+    kinds of colour vision."""
+    return min(
+        (
+            np.linalg.norm(
+                oklab(pair[ground]) - oklab((one.colour, one.dark)[ground]), axis=1
+            ).min()
+            for one in looks
+            for ground in (0, 1)
+        ),
+        default=np.inf,
+    )
+
+
+def oklab(colour):
+    """A row for each of VISIONS."""
+    rgb = np.array([int(colour[i : i + 2], 16) / 255 for i in (1, 3, 5)])
+    seen = np.array([matrix @ linear(rgb) for matrix in VISIONS.values()])
+    return np.cbrt(np.clip(seen, 0, 1) @ TO_CONES.T) @ TO_OKLAB.T
+
+
+def in_hue(hue, luminances=LUMINANCES[0]):
+    """The most vivid colours of a hue, 0 to 1, no lighter than the first relative luminance and no darker than the
+    second: for the light and for the dark ground."""
     shades = [colorsys.hls_to_rgb(hue, percent / 100, 0.65) for percent in range(101)]
-    light = max((s for s in shades if luminance(s) <= LIGHTEST_ON_WHITE), key=luminance)
-    dark = min((s for s in shades if luminance(s) >= DARKEST_ON_BLACK), key=luminance)
+    light = max((s for s in shades if luminance(s) <= luminances[0]), key=luminance)
+    dark = min((s for s in shades if luminance(s) >= luminances[1]), key=luminance)
     return ["#" + "".join(f"{round(255 * part):02X}" for part in shade) for shade in (light, dark)]
+
+
+def linear(rgb):
+    """Linear RGB of sRGB; parts from 0 to 1."""
+    rgb = np.asarray(rgb)
+    return np.where(rgb <= 0.04045, rgb / 12.92, ((rgb + 0.055) / 1.055) ** 2.4)
 
 
 def luminance(rgb):
     """Relative luminance of WCAG 2.1; parts from 0 to 1."""
-    linear = [part / 12.92 if part <= 0.04045 else ((part + 0.055) / 1.055) ** 2.4 for part in rgb]
-    return 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]
+    return float(linear(rgb) @ (0.2126, 0.7152, 0.0722))

@@ -24,7 +24,8 @@ from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter  # noqa: 
 from matplotlib.transforms import Bbox  # noqa: E402
 
 WIDTH = 7.0  # of a page's text [inch]
-DPI = 150  # of a PNG
+DPI = 300  # of a PNG, and of points in a PDF that are drawn as pixels; journals ask for at least so many
+SCREEN_DPI = 150  # of a picture in a notebook, and of such points in an SVG
 MM = 1 / 25.4  # [inch]
 
 
@@ -35,6 +36,11 @@ class Sheet:
     width: float  # [inch]
     columns: int  # largest number of panels side by side
     height: float | None = None  # of every picture [inch]; None: as high as its panels need
+    tallest: float | None = None  # panel of a picture [inch]
+
+    def panel(self, height):
+        """The height of a row of panels [inch]: so much, but no more than `tallest`."""
+        return min(height, self.tallest or height)
 
     def grid(self, count):
         """Rows and columns for so many panels, with few empty cells."""
@@ -52,7 +58,7 @@ class Sheet:
 
 # A column and a page of a journal, and a slide of 160 mm x 90 mm, the size of a 16:9 slide in LaTeX (beamer).
 SHEETS = {
-    "single": Sheet(89 * MM, 1),
+    "single": Sheet(89 * MM, 1, tallest=45 * MM),
     "double": Sheet(183 * MM, 3),
     "slide": Sheet(160 * MM, 3, 90 * MM),
 }
@@ -110,7 +116,6 @@ SETTINGS = {
         "legend": {"fontsize": 7.5, "frameon": False},
         "grid": {"color": "#E6E6E6", "linewidth": 0.6},
         "lines": {"linewidth": 1.3, "markersize": 3.5},
-        "pdf": {"fonttype": 42},
         "path": {"simplify_threshold": 0.5},
         "agg": {"path.chunksize": 10000},
         "figure": {"constrained_layout.use": True},
@@ -205,17 +210,22 @@ def show_dollars(figure):
             text.set_parse_math(False)
 
 
-def picture(figure, kind, salt="hapbench"):
+# Texts of an SVG stay texts. A PDF embeds TrueType fonts (Type 42), since journals refuse those of Type 3.
+FILES = {"svg.fonttype": "none", "pdf.fonttype": 42, "ps.fonttype": 42}
+
+
+def picture(figure, kind, salt="hapbench", dpi=DPI):
     """The bytes of the figure as "svg", "pdf" or "png". Same figure, same bytes: no dates, and
-    identifiers in an SVG that follow from `salt`."""
+    identifiers in an SVG that follow from `salt`. `dpi`: pixels per inch of a PNG and in a PDF."""
     show_dollars(figure)
     fix_layout(figure)
     drawn = io.BytesIO()
     undated = {"svg": {"Date": None}, "pdf": {"CreationDate": None}, "png": {"Software": None}}[
         kind
     ]
-    with matplotlib.rc_context({"svg.hashsalt": salt, "svg.fonttype": "none"}):
-        figure.savefig(drawn, format=kind, dpi=DPI, metadata=undated)
+    with matplotlib.rc_context({"svg.hashsalt": salt, **FILES}):
+        dpi = SCREEN_DPI if kind == "svg" else dpi
+        figure.savefig(drawn, format=kind, dpi=dpi, metadata=undated)
     return compact(drawn.getvalue().decode()).encode() if kind == "svg" else drawn.getvalue()
 
 

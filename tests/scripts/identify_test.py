@@ -7,6 +7,7 @@ import numpy as np
 from fixture import PROGRAM, hapbench, ran, scratch_folder
 from identify_logs import judged
 
+from hapbench_identify.__main__ import value_text
 from hapbench_identify.model import KINDS, design, positions
 
 run = partial(ran, PROGRAM)
@@ -184,6 +185,25 @@ class Identify(Logs):
             "the handle hardly moves",
             self.refused(self.log(1e-5 * np.round(5.0 * self.places / np.ptp(self.places)))),
         )
+
+    def test_it_says_what_a_log_does_not_show(self):
+        file = self.log(np.round(self.places / Q) * Q)
+        words = ("import", "device", file, "--out", self.root / "said.json")
+        said = run(*words).stdout
+        missing = "velocity_filter, force_max_N, force_step_N, force_slew_N_per_s, position_filter, transmission"
+        self.assertIn(f"not in the log: {missing}; add them to ", said)
+        self.assertEqual(
+            json.loads(run(*words, "--json").stdout)["not_in_log"], missing.split(", ")
+        )
+        for ends, force, shown in (
+            ([-3e-7, -9e-9], 2.0, "zero within 3e-07"),
+            ([-0.1, 0.3], 2.0, "not identifiable"),
+            ([0.1, 0.3], 2.0, "not identifiable"),
+            ([None, None], 2.0, "not identifiable"),
+        ):
+            one = {"value": None, "interval": ends}
+            self.assertEqual(value_text("offset_N", one, force), shown)
+            self.assertEqual(value_text("coulomb_N", one, force), "not identifiable")
 
     def test_units_that_are_unlikely_are_asked_about(self):
         file = self.log(1e3 * np.round(self.places / 1e-5) * 1e-5, 1e3 * self.time)
@@ -395,8 +415,8 @@ class Design(unittest.TestCase):
         )
         warned = designed("chirp,travel=0.08,mass=0.1,force=2").stderr
         self.assertIn(
-            "the travel of 0.08 m limits the force to 0.544 N instead of 2 N, so that dry friction can be "
-            "identified up to 0.327 N",
+            "the signal has at most 0.544 N, not 2 N: it begins at a low frequency, where a larger force moves the "
+            "handle further than the travel of 0.08 m. That is enough for dry friction of up to 0.327 N",
             warned,
         )
         asked = warned.split("force=")[1].split()[0]
@@ -406,4 +426,4 @@ class Design(unittest.TestCase):
             ],
             0.99 * 2.0,
         )
-        self.assertNotIn("limits", designed("multisine,travel=0.08,force=2").stderr)
+        self.assertNotIn("not 2 N", designed("multisine,travel=0.08,force=2").stderr)

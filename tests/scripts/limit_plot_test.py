@@ -9,7 +9,12 @@ from fixture import hapbench
 from pictures_test import Given, made, make_root, plotted
 
 from hapbench.columns import read_records
-from hapbench_pictures.device_plot import BEYOND_LABEL, PUBLISHED_LABEL
+from hapbench_pictures.device_plot import (
+    ALTERNATING_LABEL,
+    BEYOND_LABEL,
+    PUBLISHED_LABEL,
+    device_of,
+)
 from hapbench_pictures.study_plot import draw_study
 from hapbench_style import RED, SHEETS, plt
 
@@ -74,7 +79,7 @@ class Limits(Given):
             self.assertNotIn(text, (rubbed / "plot.svg").read_text())
         for words, said in (
             ((over, limit), "one such folder alone"),
-            ((limit, "--y", "force"), "allowed for it: --width, --out"),
+            ((limit, "--y", "force"), "allowed for it: --width, --dpi, --out"),
         ):
             self.assertIn(said, plotted(*words, expected=2))
         (limit / "limit_runs.csv").write_text("algorithm,class\nmean,stable\n")
@@ -92,8 +97,8 @@ class Limits(Given):
         )
         self.assert_plot_shows(
             folder,
-            "force max, no order",
-            "inside max, no order",
+            "largest force, no order",
+            "max depth inside, no order",
             "final position m.x, order 1.",
             "formal order 1",
             "time step [s]",
@@ -145,8 +150,8 @@ class Limits(Given):
         self.assert_plot_shows(
             folder,
             "stiffness [N/m]",
-            "largest depth inside [mm]",
-            "force above 30 Hz [N rms]",
+            "max depth inside [mm]",
+            "vibration above 30 Hz [N rms]",
             "choice of each law",
             "not feasible",
             "mean",
@@ -258,8 +263,40 @@ class Limits(Given):
         figure = draw_study(folder, SHEETS["double"])
         self.assertIn(BEYOND_LABEL, legend_labels(figure))
         self.assertNotIn("simulated limit", legend_labels(figure))
-        found = {tuple(at) for curve in curves_of(figure.axes[0], "^") for at in curve}
-        self.assertEqual(found, {(float(row[OVER]), float(row["stable_high"])) for row in rows})
+        # Variants share the marks of their device. Those of two devices lie in lines of their own.
+        (ax,) = figure.axes
+        marks = [line for line in ax.lines if line.get_marker() == "^"]
+        devices = list(dict.fromkeys(device_of(row) for row in rows))
+        self.assertEqual(len(marks), len(devices))
+        for line, name in zip(marks, devices):
+            mine = [row for row in rows if device_of(row) == name]
+            expected = {(float(row[OVER]), float(row["stable_high"])) for row in mine}
+            self.assertEqual(set(map(tuple, line.get_xydata())), expected)
+        heights = {line.get_transform().transform((1.0, 1e6))[1] for line in marks}
+        self.assertEqual(len(heights), len(devices))
+        self.assertTrue(all(line.get_mfc() == "white" for line in marks))
+        plt.close(figure)
+
+    def test_alternating_runs_make_single_hollow_points(self):
+        folder = self.over_field()
+
+        def alternates(row):
+            row["non_monotonic_runs"] = "3"
+
+        rows = rewrite(folder / "limit.csv", alternates)
+        figure = draw_study(folder, SHEETS["double"])
+        self.assertIn(ALTERNATING_LABEL, legend_labels(figure))
+        self.assertNotIn("simulated limit", legend_labels(figure))
+        hollow = [line for line in figure.axes[0].lines if line.get_marker() == "o"]
+        hollow = [line for line in hollow if np.isfinite(line.get_ydata()).any()]
+        self.assertTrue(
+            all((line.get_ls(), line.get_mfc()) == ("None", "white") for line in hollow)
+        )
+        found = {tuple(at) for line in hollow for at in line.get_xydata() if np.isfinite(at[1])}
+        expected = {
+            (float(row[OVER]), float(row["limit"])) for row in rows if row["first_unstable"]
+        }
+        self.assertEqual(found, expected)
         plt.close(figure)
 
     def test_a_field_of_texts_is_an_axis(self):

@@ -24,6 +24,7 @@ from hapbench_pictures.panels import draw_over_time, looks
 from hapbench_pictures.given import given_runs, labels
 from hapbench_pictures.over_axes import Axis, over_axes
 from hapbench_pictures.quantities import SHORT, Samples, settled_range
+from hapbench_report.markup import TITLES
 from hapbench_report.recording import (
     force_steps,
     forces,
@@ -339,7 +340,7 @@ class Looks(unittest.TestCase):
         for among, smallest in ((algorithms, 6.0), (series, 12.0)):
             for ground in ("colour", "dark"):
                 colours = [getattr(look, ground) for look in among]
-                for vision, matrix in VISIONS.items():
+                for vision, matrix in hapbench_looks.VISIONS.items():
                     lab = rgb2lab(simulated(colours, matrix))
                     apart = deltaE_ciede2000(lab[:, None], lab[None]) + 99 * np.eye(len(lab))
                     self.assertGreaterEqual(apart.min(), smallest, (ground, vision))
@@ -348,41 +349,55 @@ class Looks(unittest.TestCase):
             found = [getattr(look, part) for look in among]
             self.assertEqual(len(set(found)), len(found), part)
 
+    def test_own_laws_are_told_apart_from_the_others_of_a_picture(self):
+        """By the same measure, for two own laws beside six others; by their names alone many are not. APART, in
+        OKLab, is at least 5 by CIEDE2000."""
+        others = ("mean", "shaped_stiffness", "summation", "proxy", "least_squares", "tandpasta")
+        too_close = 0
+        for first in range(12):
+            own = (f"law_{first}", f"own{7 * first}")
+            hapbench_looks.tell_apart((*own, *others))
+            by_name = [hapbench_looks.by_name(name) for name in own]
+            drawn = [hapbench_looks.look(name) for name in (*own, *others)]
+            self.assertEqual(len({one.marker for one in drawn}), len(drawn))
+            too_close += closest([*by_name, *drawn[2:]]) < 6.0
+            self.assertGreaterEqual(closest(drawn), 5.0, own)
+        self.assertGreater(too_close, 3)
+        hapbench_looks.tell_apart(())
+
+    def test_the_titles_of_metrics_have_the_words_of_the_tables(self):
+        """The headings are in scenarios/program/run_table.hpp."""
+        source = (SOURCE / "scenarios/program/run_table.hpp").read_text(encoding="utf-8")
+        source = source[source.index("kRunHeadings[]") : source.index("};", source.index("kRunH"))]
+        headings = re.findall(r'\{"([^"]*)", "(\w+)"', source)
+        self.assertEqual({metric for _, metric in headings}, set(TITLES))
+        for heading, metric in headings:
+            title, unit, _ = TITLES[metric]
+            words, _, of = heading.replace("\\n", " ").partition(" [")
+            self.assertLessEqual(set(words.split()), set(title.split()), metric)
+            self.assertEqual(of.rstrip("]"), unit, metric)
+
     def test_the_simulation_sees_what_is_known(self):
         """A colour-blind eye sees grey as it is, and a red and an olive of one lightness much alike."""
-        for matrix in VISIONS.values():
+        for matrix in hapbench_looks.VISIONS.values():
             # The published matrices have six digits.
             np.testing.assert_allclose(simulated(["#808080"], matrix), 128 / 255, atol=1e-5)
-        (pair,) = (rgb2lab(simulated(["#B43C3C", "#6E6E00"], VISIONS["deuteranopia"])),)
+        (pair,) = (
+            rgb2lab(simulated(["#B43C3C", "#6E6E00"], hapbench_looks.VISIONS["deuteranopia"])),
+        )
         plain = rgb2lab(simulated(["#B43C3C", "#6E6E00"], np.eye(3)))
         self.assertLess(deltaE_ciede2000(*pair), 0.5 * deltaE_ciede2000(*plain))
 
 
-# Linear RGB as the eye sees it.
-VISIONS = {
-    "usual": np.eye(3),
-    "protanopia": np.array(
-        [
-            [0.152286, 1.052583, -0.204868],
-            [0.114503, 0.786281, 0.099216],
-            [-0.003882, -0.048116, 1.051998],
-        ]
-    ),
-    "deuteranopia": np.array(
-        [
-            [0.367322, 0.860646, -0.227968],
-            [0.280085, 0.672501, 0.047413],
-            [-0.011820, 0.042940, 0.968881],
-        ]
-    ),
-    "tritanopia": np.array(
-        [
-            [1.255528, -0.076749, -0.178779],
-            [-0.078411, 0.930809, 0.147602],
-            [0.004733, 0.691367, 0.303900],
-        ]
-    ),
-}
+def closest(looks):
+    """The smallest CIEDE2000 difference of the colours, over all grounds and visions."""
+    smallest = np.inf
+    for ground in ("colour", "dark"):
+        for matrix in hapbench_looks.VISIONS.values():
+            lab = rgb2lab(simulated([getattr(one, ground) for one in looks], matrix))
+            apart = deltaE_ciede2000(lab[:, None], lab[None]) + 99 * np.eye(len(lab))
+            smallest = min(smallest, apart.min())
+    return smallest
 
 
 def simulated(colours, matrix):

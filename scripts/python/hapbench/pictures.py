@@ -95,11 +95,11 @@ def _import_pyplot() -> None:
 
 def _for_notebooks(draw: Callable[[], Any]) -> Any:
     """A figure that a notebook shows once, where it is the value of a cell."""
-    from hapbench_style import picture, plt
+    from hapbench_style import SCREEN_DPI, picture, plt
 
     figure = draw()
     plt.close(figure)
-    figure._repr_png_ = lambda: picture(figure, "png")
+    figure._repr_png_ = lambda: picture(figure, "png", dpi=SCREEN_DPI)
     return figure
 
 

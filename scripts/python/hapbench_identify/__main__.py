@@ -6,6 +6,7 @@ import sys
 from pathlib import Path
 
 from hapbench_command import (
+    SCHEMA,
     CommandLine,
     answer,
     exit_status,
@@ -49,7 +50,7 @@ NOTES = [
     " exit status 2.",
 ]
 EXAMPLES = [
-    "hapbench import device --design chirp,force=2,travel=0.08 --out chirp.csv",
+    "hapbench import device --design multisine,force=2,travel=0.08 --out signal.csv",
     "hapbench import device log.csv --columns time=t,force=3 --scale time=1e-6",
     "hapbench limit tap_wall --device log_device.json",
 ]
@@ -64,6 +65,7 @@ UNITS = {
     "offset_N": "N",
 }
 UNTRUSTED = "The true values can lie outside of the intervals: do not read them as 95 % intervals"
+NEGLIGIBLE = 1e-3  # offset force, as a share of the largest force
 MOST_DRAWN = 6000  # samples, so that a picture of a long log is not megabytes
 IN_DEVICE = (
     "handle_mass_kg",
@@ -146,9 +148,19 @@ def run(options):
     )
 
 
+def not_in_log():
+    """The fields of an impedance device that no fit of a log sets: those of the schema without the fitted ones."""
+    schema = json.loads(SCHEMA.read_text(encoding="utf-8"))
+    devices = [of["properties"] for of in schema["else"]["properties"]["device"]["oneOf"]]
+    (fields,) = [of for of in devices if of.get("type") == {"const": "impedance"}]
+    return [name for name in fields if name not in (*IN_DEVICE, "type", "preset", "delay_samples")]
+
+
 def log_text(data):
-    """Which columns were read, and the clock."""
+    """Which columns were read, and the clock; and what the device lacks."""
     return (
+        f"not in the log: {', '.join(data['not_in_log'])}; add them to {data['device']} if your device has them "
+        "(hapbench describe device)\n"
         f"{columns_text(data['columns'], data['columns_not_read'], data['scales'])}\n"
         f"clock: {data['samples']} samples in {data['duration_s']:.4g} s, {1.0 / data['step_s']:.4g} Hz"
     )
@@ -206,13 +218,14 @@ def identify(options, out):
     device = {"type": "impedance"} | {
         name: float(f"{told[name]['value']:.6g}") for name in IN_DEVICE if told[name]["value"]
     }
+    missing = not_in_log()
     write(Path(out), json.dumps(device, indent=2) + "\n")
     picture = Path(out).with_suffix(".svg")
     draw(picture, log, found)
     table = [
         [
             f"{name} [{UNITS[name]}]",
-            "not identifiable" if one["value"] is None else f"{one['value']:.4g}",
+            value_text(name, one, np.abs(log.force).max()),
             *map(shown_end, one["interval"]),
         ]
         for name, one in told.items()
@@ -228,9 +241,22 @@ def identify(options, out):
         "columns_not_read": log.columns_not_read,
         "scales": log.scales,
         "device": out,
+        "not_in_log": missing,
         "picture": str(picture),
         "warnings": warnings,
     }
+
+
+def value_text(name, one, largest_force):
+    """A parameter for the table. An offset that is not known to differ from 0, but to be a negligible force, is zero
+    within this error."""
+    if one["value"] is not None:
+        return f"{one['value']:.4g}"
+    if name == "offset_N" and None not in one["interval"]:
+        size = max(map(abs, one["interval"]))
+        if size <= NEGLIGIBLE * largest_force:
+            return f"zero within {size:.1g}"
+    return "not identifiable"
 
 
 def unless_wide(value, interval):
@@ -411,16 +437,16 @@ def limited_by_travel(kind, numbers, peak):
     if peak > 0.99 * force:
         return []
     said = (
-        f"the travel of {numbers['travel']:g} m limits the force to {peak:.3g} N instead of {force:g} N, so "
-        "that dry friction can be identified up to "
+        f"the signal has at most {peak:.3g} N, not {force:g} N: it begins at a low frequency, where a larger force "
+        f"moves the handle further than the travel of {numbers['travel']:g} m. That is enough for dry friction of up to "
         f"{FRICTION_TOLD * peak:.3g} N. "
     )
     asked = force_to_ask(kind, numbers)
     return [
         said
         + (
-            f"force={asked:.3g} begins at a higher frequency and reaches {force:g} N, which is "
-            f"enough for {FRICTION_TOLD * force:.3g} N"
+            f"For more, ask for force={asked:.3g} so that the signal begins at a higher frequency and reaches "
+            f"{force:g} N, enough for {FRICTION_TOLD * force:.3g} N"
             if asked
             else "A device with more dry friction needs more travel, or mass= above "
             f"{numbers['mass']:g} if its mass is known to be larger"

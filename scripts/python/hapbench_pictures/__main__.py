@@ -12,12 +12,17 @@ PLOT_NOTES = [
     "--y fx_N,fy_N,fz_N draws components.",
     "Runs: the folder of a comparison stands for all its runs. Each force law has its colour. A "
     "circle marks the start of a path, a square its end, a triangle the first touch. A peak of more "
-    "than three times the range of settled contact is cut off and labelled with its value.",
+    "than three times the range of settled contact is cut off and labelled with its value. So is a run that would "
+    "flatten all others: one with a peak 100 times as large, or a failed run with a peak 5 times as large.",
     "A comparison with a ranking (several seeds, scenes, or --by): each metric by law, the best on "
     "top with its rank; --y draws the runs over time instead. --metric draws the metrics of any runs "
-    "by law. Grey: the error of the mean. Failed runs are counted in red and have no value.",
+    "by law. Grey: the error of the mean. A number that is not larger than its error is drawn as a hollow mark at its "
+    "bound. Failed runs are counted in red and have no value.",
     "Limits: marks are simulated limits, lines or hollow squares linear limits; with --device a "
-    "colour for each device, dotted lines for published limits.",
+    "colour for each device, dotted lines for published limits. A simulated limit is hollow and not joined to others "
+    "if stable and unstable runs alternate (column non_monotonic_runs).",
+    "Logs of a loop: a folder of run --replay, or a log itself; the force over time, with the late calls. A "
+    "replay folder has only the new outputs: name the recorded log, too, for the difference.",
     "A sampled sweep: the metric over each field, with the influence of the field: Spearman's rank "
     "correlation and first-order Sobol index.",
     "Files: plot.svg in the folder of the runs; for several runs, in the nearest folder that "
@@ -28,6 +33,7 @@ PLOT_EXAMPLES = [
     "hapbench plot results/out/compare_drag_molar --y force,depth --out drag.png",
     "hapbench plot results/out/compare_tap_wall --metric force_max_N --width single",
     "hapbench plot results/out/sweep_tap_wall --metric force_max_N",
+    "hapbench plot results/out/drag_molar_replay loop.csv",
 ]
 REPORT_NOTES = [
     "Page: one HTML file that needs no other file, no server and no network. It shows curves, "
@@ -57,7 +63,12 @@ def plot_line():
         PLOT_EXAMPLES,
         MANUAL,
     )
-    line.text("runs", "<dir>", "folders of run, compare, sweep, limit, converge or tune", nargs="+")
+    line.text(
+        "runs",
+        "<dir>",
+        "folders of run, compare, sweep, limit, converge or tune; or one or two logs of a loop (see below)",
+        nargs="+",
+    )
     line.text(
         "--out",
         "<file>",
@@ -89,8 +100,11 @@ def plot_line():
         action="append",
         default=[],
     )
+    line.text(
+        "--dpi", "<number>", "pixels per inch of a .png, or of the points in a .pdf (default: 300)"
+    )
     line.text("--from", "<s>", "start of the time span to draw", dest="start")
-    line.text("--to", "<s>", "end of the time span to draw", dest="end")
+    line.text("--to", "<s>", "end of the time span to draw (--out names the file)", dest="end")
     return line
 
 

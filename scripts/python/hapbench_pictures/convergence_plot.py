@@ -66,7 +66,7 @@ def draw_converge(files, sheet=SHEET):
             )
         )
     rows, columns = sheet.grid(2)
-    figure, axes = sheet.panels(rows, columns, 0.4 + 2.7 * rows, sharey=True)
+    figure, axes = sheet.panels(rows, columns, 0.4 + sheet.panel(2.7) * rows, sharey=True)
     left, right = axes.flat
     error = Axis("relative error", np.array([]), log=True)
     over_axes(

@@ -2,9 +2,10 @@
 one colour, the linear and the simulated limit have marks of their own."""
 import numpy as np
 from matplotlib.lines import Line2D
+from matplotlib.transforms import ScaledTranslation
 
 from hapbench.columns import numbers
-from hapbench_looks import SERIES, look
+from hapbench_looks import SERIES, law_name
 from hapbench_style import BLACK, GREY, PUBLISHED_LINE, legend_above, legend_height
 
 from .given import axis
@@ -13,11 +14,15 @@ from .over_axes import Axis, over_axes
 # The variants of a preset, such as "touch[soft]", have its colour and thinner lines.
 LINEAR = {"marker": "s", "mfc": "white", "mew": 1.1, "ms": 4.2}
 SIMULATED = {"marker": "o", "ms": 4.2}
-# A simulated limit where the whole range to its end is stable: the limit is larger.
-BEYOND = {"ms": 5.0}
+# A simulated limit with unstable runs on its stable side or stable runs beyond it. It is joined to nothing.
+ALTERNATING = {"marker": "o", "mfc": "white", "mew": 1.1, "ms": 4.2, "ls": "none"}
+# Where the whole range to its end is stable: the limit is larger.
+BEYOND = {"ms": 4.2, "mfc": "white", "mew": 0.9}
 BEYOND_MARKERS = {"x": ">", "y": "^"}  # by the axis of the limit
-MARKS = (("linear limit", LINEAR), ("simulated limit", SIMULATED))
-BEYOND_LABEL = "simulated: stable to the end of the range"
+BEYOND_ROW = 5.5  # between the marks of two devices at one end of the range [points]
+NON_MONOTONIC = "non_monotonic_runs"
+BEYOND_LABEL = "stable to the end of the range: a row for each device"
+ALTERNATING_LABEL = "simulated: stable and unstable runs alternate"
 PUBLISHED_LABEL = "published, for a wall"
 THIN = 0.7  # line width of variants [points]
 VARIANT_LABEL = "thin: ends of unpublished parameters"
@@ -48,6 +53,18 @@ def simulated(rows):
     return values, ends & np.isfinite(values)
 
 
+def alternate(rows):
+    """True for each row whose stable and unstable runs alternate, so that no limit separates them."""
+    return np.array([row.get(NON_MONOTONIC) not in (None, "", "0") for row in rows], bool)
+
+
+def simulated_kinds(rows):
+    """The simulated limits of three kinds, NaN elsewhere: separated, alternating, and ends of the range."""
+    values, ends = simulated(rows)
+    alternating = alternate(rows) & ~ends
+    return [np.where(of, values, np.nan) for of in (~ends & ~alternating, alternating, ends)]
+
+
 def published(rows):
     """Device -> its published limit."""
     return {
@@ -59,13 +76,18 @@ def published(rows):
 
 def legend_of_marks(rows, along):
     """Handles and labels of the marks that are drawn. `along`: the axis of the limit, "x" or "y"."""
-    ends, beyond = simulated(rows)[1], {**BEYOND, "marker": BEYOND_MARKERS[along]}
-    drawn = [
-        *(MARKS[:1] if np.isfinite(linear(rows)).any() else ()),
-        *(MARKS[1:] if np.isfinite(simulated(rows)[0][~ends]).any() else ()),
-        *(((BEYOND_LABEL, beyond),) if ends.any() else ()),
+    separated, alternating, ends = simulated_kinds(rows)
+    marks = (
+        ("linear limit", linear(rows), LINEAR),
+        ("simulated limit", separated, SIMULATED),
+        (ALTERNATING_LABEL, alternating, ALTERNATING),
+        (BEYOND_LABEL, ends, {**BEYOND, "marker": BEYOND_MARKERS[along]}),
+    )
+    entries = [
+        (Line2D([], [], color=BLACK, **{"ls": "none", **own}), label)
+        for label, values, own in marks
+        if np.isfinite(values).any()
     ]
-    entries = [(Line2D([], [], color=BLACK, ls="none", **own), label) for label, own in drawn]
     if published(rows):
         line = Line2D([], [], color=BLACK, lw=1.2, ls=PUBLISHED_LINE["ls"])
         entries.append((line, PUBLISHED_LABEL))
@@ -78,7 +100,7 @@ def panels_of(rows):
     """Title -> its rows, for each scene and law."""
     found = {}
     for row in rows:
-        title = f"{row['scenario'].replace('_', ' ')}, {look(row['algorithm']).label}"
+        title = f"{row['scenario'].replace('_', ' ')}, {law_name(row['algorithm'])}"
         found.setdefault(title, []).append(row)
     return found
 
@@ -94,7 +116,9 @@ def draw_devices_over(found, sheet):
     marks = legend_of_marks(found.rows, "y")
     entries = [(Line2D([], [], color=one.colour, lw=2), name) for name, one in own.items()] + marks
     rows, columns = sheet.grid(len(panels))
-    height = 0.3 + 2.6 * rows + legend_height([label for _, label in entries], sheet.width)
+    height = (
+        0.3 + sheet.panel(2.6) * rows + legend_height([label for _, label in entries], sheet.width)
+    )
     figure, axes = sheet.panels(rows, columns, height, sharex=True, sharey=True)
     for ax, (title, of_panel) in zip(axes.flat, panels.items()):
         series = []
@@ -108,6 +132,7 @@ def draw_devices_over(found, sheet):
             Axis.of(title_of(found).replace("stable ", "stable\n"), np.concatenate(y)),
             series,
         )
+        mark_ends(ax, found, of_panel, own)
         for name, value in published(of_panel).items():
             ax.axhline(value, color=own[name].colour, lw=1.2, ls=PUBLISHED_LINE["ls"])
         ax.set_title(title)
@@ -121,14 +146,31 @@ def draw_devices_over(found, sheet):
 
 def curves_of(found, rows, colour, is_variant):
     """Both limits of one device as series of over_axes()."""
-    x, (values, ends) = found.along(rows), simulated(rows)
+    x, (separated, alternating, _) = found.along(rows), simulated_kinds(rows)
     shown = {"color": colour, "mec": colour, "lw": THIN if is_variant else 1.3}
-    beyond = {**shown, **BEYOND, "marker": BEYOND_MARKERS["y"], "ls": "none"}
     return [
         (None, x, linear(rows), {**shown, **LINEAR, "ls": "-"}),
-        (None, x, np.where(ends, np.nan, values), {**shown, **SIMULATED, "ls": (0, (3, 1.5))}),
-        (None, x[ends], values[ends], beyond),
+        (None, x, separated, {**shown, **SIMULATED, "ls": (0, (3, 1.5))}),
+        (None, x, alternating, {**shown, **ALTERNATING}),
     ]
+
+
+def mark_ends(ax, found, rows, own):
+    """Marks at the end of the range for the devices that are stable up to it, those of one device in a line of their
+    own; variants of a device share its marks."""
+    of_device = {}
+    for row, x, y in zip(rows, found.along(rows), simulated_kinds(rows)[2]):
+        if np.isfinite(y):
+            of_device.setdefault(device_of(row), {})[x, y] = None
+    if not of_device:
+        return
+    inches = ax.get_figure().dpi_scale_trans
+    for line, (name, ends) in enumerate(of_device.items()):
+        shown = {**BEYOND, "marker": BEYOND_MARKERS["y"], "ls": "none", "color": own[name].colour}
+        lower = ScaledTranslation(0.0, -line * BEYOND_ROW / 72, inches)
+        ax.plot(*zip(*ends), **shown, transform=ax.transData + lower)
+        ax.update_datalim(list(ends))
+    ax.autoscale_view()
 
 
 def draw_devices(found, sheet):
@@ -141,7 +183,7 @@ def draw_devices(found, sheet):
     figure, axes = sheet.panels(rows, columns, height, sharex=True, sharey=True)
     for ax, (title, of_panel) in zip(axes.flat, panels.items()):
         places = np.array([devices.index(row["device"]) for row in of_panel], float)
-        values, ends = simulated(of_panel)
+        separated, alternating, ends = simulated_kinds(of_panel)
         beyond = {**BEYOND, "marker": BEYOND_MARKERS["x"]}
         series = []
         for name, one in own.items():
@@ -149,8 +191,9 @@ def draw_devices(found, sheet):
             shown = {"color": one.colour, "mec": one.colour, "ls": "none"}
             series += [
                 (None, linear(of_panel)[mine], places[mine], {**shown, **LINEAR}),
-                (None, values[mine & ~ends], places[mine & ~ends], {**shown, **SIMULATED}),
-                (None, values[mine & ends], places[mine & ends], {**shown, **beyond}),
+                (None, separated[mine], places[mine], {**shown, **SIMULATED}),
+                (None, alternating[mine], places[mine], {**shown, **ALTERNATING}),
+                (None, ends[mine], places[mine], {**shown, **beyond}),
             ]
         limits = Axis(title_of(found), np.array([]), log=True)
         over_axes(ax, limits, Axis.of("", devices), series)

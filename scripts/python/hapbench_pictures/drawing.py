@@ -4,10 +4,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from hapbench_looks import look
+from hapbench_looks import law_name, look
 from hapbench_report.markup import text
 from hapbench_style import SETTINGS, picture, plt
 
+from .given import axis
 from .over_axes import Axis, look_of, over_axes, pareto
 from .panels import DARK, LIGHT, RunLook, settings
 
@@ -63,7 +64,7 @@ def pareto_section(runs):
         ax.plot(*front.T, color=ax.xaxis.label.get_color(), lw=0.8, ls=":", zorder=1)
         series = [
             (
-                one.label.replace("_", " "),
+                law_name(one.label),
                 mean[:1],
                 mean[1:],
                 look_of(one.label, color=one.colour, ls="none"),
@@ -73,15 +74,17 @@ def pareto_section(runs):
         every = np.array(list(means.values()))
         over_axes(
             ax,
-            Axis.of("largest depth inside [mm]", every[:, 0]),
-            Axis.of("force above 30 Hz [N rms]", every[:, 1]),
+            Axis.of(axis(DEEPER), every[:, 0]),
+            Axis.of(axis(SHAKIER), every[:, 1]),
             series,
         )
         ax.legend(loc="upper left", bbox_to_anchor=(1, 1.05), fontsize=7, handletextpad=0.1)
         ax.margins(0.08)
 
     light = [RunLook(name, look(name).colour, look(name).dark, ()) for name in means]
-    words = "; ".join(f"{name} {mean[0]:.3g} mm, {mean[1]:.3g} N" for name, mean in means.items())
+    words = "; ".join(
+        f"{law_name(name)} {mean[0]:.3g} mm, {mean[1]:.3g} N" for name, mean in means.items()
+    )
     return (
         "<p>Mean over all runs of an algorithm. Dotted line: algorithms that no "
         "other algorithm beats in both depth and vibration.</p><div class=curves>"

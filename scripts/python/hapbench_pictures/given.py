@@ -9,6 +9,7 @@ from pathlib import Path
 from hapbench.columns import read_records
 from hapbench.errors import InputError
 from hapbench_command import nearest
+from hapbench_looks import law_name, tell_apart
 from hapbench_report.markup import column
 from hapbench_report.runs import load_run, load_runs
 
@@ -57,10 +58,11 @@ def given_runs(words):
         if not runs:
             raise InputError(
                 f"{folder}: holds neither {SUMMARY} nor folders with one nor {SWEEP}; allowed: a folder that "
-                '"hapbench run", "compare" or "sweep" wrote'
+                '"hapbench run", "compare" or "sweep" wrote (the folder of a replay: only for "hapbench plot")'
             )
         for run in runs:
             found.setdefault(os.path.realpath(run.folder), run)
+    tell_apart(run.algorithm for run in found.values())
     return list(found.values())
 
 
@@ -109,7 +111,7 @@ def seed_of(run):
 
 
 def plain(run):
-    return run.algorithm.replace("_", " ")
+    return law_name(run.algorithm)
 
 
 def by_seed(run):

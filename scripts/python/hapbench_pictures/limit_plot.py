@@ -6,10 +6,10 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from hapbench.columns import is_number, numbers
-from hapbench_looks import by_class, look, look_of_class
-from hapbench_style import BLACK, PAGE, PETROL, PLUM, SHEET, legend_above
+from hapbench_looks import by_class, law_name, look_of_class, tell_apart
+from hapbench_style import BLACK, PAGE, PETROL, PLUM, SHEET, legend_above, legend_height
 
-from .device_plot import draw_devices, draw_devices_over
+from .device_plot import ALTERNATING_LABEL, alternate, draw_devices, draw_devices_over
 from .given import axis
 from .over_axes import Axis, look_of, over_axes
 
@@ -31,6 +31,7 @@ KNOWN_LOOKS = tuple(
     for colour in (PLUM, "#1F4E9E", "#2E6B34")
 )
 THEORY, FOUND = {"color": PETROL, "lw": 2.6}, {"color": BLACK, "lw": 1.1, "ls": (0, (2, 2))}
+HOLLOW = {"ls": "none", "mfc": "white"}
 QUOTED = {"color": BLACK, "ls": "none", "marker": "o", "ms": 4}
 
 
@@ -53,6 +54,7 @@ class Limits:
                     ]
                 )
         self.algorithms = list(dict.fromkeys(row["algorithm"] for row in self.rows))
+        tell_apart(self.algorithms)
 
     def along(self, rows):
         """The values of the last field of --over in these rows; of a field of texts their places in the table."""
@@ -84,7 +86,7 @@ class Limits:
         found = [
             ("linear limit", numbers(rows, "theoretical_limit"), THEORY),
             *self.known(rows),
-            ("simulated limit", numbers(rows, "limit"), FOUND),
+            ("simulated limit", separated(rows), FOUND),
             ("limit to quote", numbers(rows, "quoted_limit"), QUOTED),
         ]
         return [
@@ -136,6 +138,16 @@ class Limits:
             ax.set_ylim(edge.min() / 20, edge.max() * 20)
 
 
+def separated(rows):
+    """The simulated limits with stable runs on one side and unstable runs on the other; NaN elsewhere."""
+    return np.where(alternate(rows), np.nan, numbers(rows, "limit"))
+
+
+def alternating(rows):
+    """The simulated limits on both sides of which stable and unstable runs alternate; NaN elsewhere."""
+    return np.where(alternate(rows), numbers(rows, "limit"), np.nan)
+
+
 def draw_limits(files, sheet=SHEET, folder=""):
     """The picture of what `limit` wrote."""
     found = Limits(files, folder)
@@ -179,7 +191,7 @@ def draw_strip(found, sheet):
     over_axes(
         ax,
         Axis.of(axis(found.field), numbers(found.runs, found.field)),
-        Axis.of("", [look(name).label for name in names]),
+        Axis.of("", list(map(law_name, names))),
         bars,
         runs,
     )
@@ -195,15 +207,20 @@ def draw_over(found, sheet=PAGE):
     groups, has_theory = found.groups(), np.isfinite(numbers(found.rows, "theoretical_limit")).any()
     rows, columns = sheet.grid(1 + has_theory + len(groups))
     entries = class_legend(found)
-    figure, axes = sheet.panels(rows, columns, 2.5 * rows + 0.3 + 0.17 * -(-len(entries) // 3))
+    labels = [label for _, label in entries]
+    height = sheet.panel(2.5) * rows + 0.3 + legend_height(labels, sheet.width)
+    figure, axes = sheet.panels(rows, columns, height)
     limit, *others = axes.flat
     ratio, x = others.pop(0) if has_theory else None, found.axis()
     curves = {
         name: [row for row in found.rows if row["algorithm"] == name] for name in found.algorithms
     }
     of = lambda name, column: (found.along(curves[name]), column, look_of(name))
-    limits = [
-        (look(name).label, *of(name, numbers(rows, "limit"))) for name, rows in curves.items()
+    limits = [(law_name(name), *of(name, separated(rows))) for name, rows in curves.items()]
+    limits += [
+        (None, found.along(rows), alternating(rows), {**look_of(name), **HOLLOW})
+        for name, rows in curves.items()
+        if np.isfinite(alternating(rows)).any()
     ]
     over_axes(limit, x, Axis.of(axis(found.field), numbers(found.rows, "limit")), limits)
     limit.set_title("limits (marks: simulated)" if has_theory else "simulated limit")
@@ -214,17 +231,17 @@ def draw_over(found, sheet=PAGE):
             np.isfinite(theory), theory, np.nan
         )  # without an edge of theory there is no ratio
         ratios = [
-            (None, *of(name, numbers(rows, "limit") / finite(numbers(rows, "theoretical_limit"))))
+            (None, *of(name, separated(rows) / finite(numbers(rows, "theoretical_limit"))))
             for name, rows in curves.items()
         ]
-        over_axes(ratio, x, Axis("simulated / linear limit", np.array([])), ratios)
+        over_axes(ratio, x, Axis("simulated /\nlinear limit", np.array([])), ratios)
         low, high = min(ratio.dataLim.y0, 0.998), max(ratio.dataLim.y1, 1.002)
         room = 0.05 * (high - low)
         ratio.set(title="ratio to the linear limit", ylim=(low - room, high + room))
         ratio.ticklabel_format(axis="y", useOffset=False)
     for ax, group in zip(others, groups):
         found.draw_classes(ax, group[0])
-        names = ", ".join(look(name).label.removesuffix(" (ours)") for name in group)
+        names = ", ".join(law_name(name) for name in group)
         if group is groups[-1] and len(group) > 3:
             names = f"{'all others' if len(groups) > 1 else 'all'} ({len(group)})"
         ax.set_title("\n".join(wrap(f"class of the runs: {names}", 34)), fontsize=7.5)
@@ -236,8 +253,11 @@ def draw_over(found, sheet=PAGE):
 
 def class_legend(found):
     """Handles and labels of algorithms, lines and classes."""
-    entries = [(Line2D([], [], **look_of(name)), look(name).label) for name in found.algorithms]
+    entries = [(Line2D([], [], **look_of(name)), law_name(name)) for name in found.algorithms]
     entries += [(Line2D([], [], **own), label) for label, _, own in found.lines(found.rows)]
+    if np.isfinite(alternating(found.rows)).any():
+        hollow = Line2D([], [], color=BLACK, marker="o", ms=4.5, **HOLLOW)
+        entries.append((hollow, ALTERNATING_LABEL))
     for name in by_class(row["class"] for row in found.runs):
         title, colour, hatch = look_of_class(name)
         entries.append((Patch(facecolor=colour, hatch=hatch, edgecolor=PETROL, lw=0), title))

@@ -12,6 +12,7 @@ from hapbench_report.markup import (
     cell,
     column,
     command,
+    deserved_digits,
     folded,
     heading_cell,
     in_colour,
@@ -29,7 +30,7 @@ from .bands import draw_bands
 from .drawing import SCENE_SIZE, SIZE, drawing, on_both_grounds, pareto_section
 from .panels import AXIS_COLUMNS, PATH_COLUMNS, SAID, RunLook, draw_section, surface_text
 from .quantities import SHORT, TRAJECTORY, USUAL, Samples, tables_of
-from .ranking_plot import failures_text, ranking_figure, short
+from .ranking_plot import failures_text, ranking_figure
 from .run_plot import profile_of
 from .sections import FIRST, diagnosed, first_table, metric_names, plugin_option, scenario_section
 from .standings import RESOLUTION, has_repetitions, value_of
@@ -99,10 +100,11 @@ def summary(scenes, runs):
 
 
 NOTE = (
-    "<p class=note>Mean ± standard deviation over the seeds in which no law failed that succeeds at all. In bold "
-    "the rank, where the metric has a better direction and the numbers can be told apart: 1 + the number of laws "
-    "that are better by more than 0.1 % and by more than both errors. Digits follow the error of the number; ≤ "
-    "stands for a number that is not larger than its error.</p>"
+    "<p class=note>Mean ± standard deviation over the seeds in which no law failed that succeeds at all; seeds agree "
+    "if the deviation is at most 0.1 % of the mean. In bold the rank, where the metric has a better direction and the "
+    "numbers can be told apart: 1 + the number of laws that are better by more than 0.1 % and by more than both errors. "
+    "A law with failed runs ranks behind the others by their number. Digits follow the error of the number; ≤ stands "
+    "for a number that is not larger than its error, which has no rank unless runs failed.</p>"
 )
 
 
@@ -134,7 +136,7 @@ def law_table(scene, shown):
     }
     rows = [
         [
-            cell(in_colour(look(law.algorithm), text(short(law))), law.label, "name"),
+            cell(in_colour(look(law.algorithm), text(law.label)), law.label, "name"),
             failures_cell(law),
             *(
                 mean_cell(standings[name][law.label], ranks[name][law.label], heads[name][2])
@@ -161,9 +163,13 @@ def mean_cell(of, rank, factor=1.0):
         return cell("–", classes="number")
     error = of.shown_error
     shown = known_number(factor * of.mean, error and factor * error)
-    if of.spread is not None and not of.is_unknown:
-        shown += f" ± {number(factor * of.spread, 2)}"
-    return cell(shown if rank is None else f"{shown} <b>{rank}</b>", factor * of.mean, "number")
+    if of.seeds_agree and not of.is_unknown:
+        shown += " <span class=note>seeds agree</span>"
+    elif of.spread is not None and not of.is_unknown:
+        digits = deserved_digits(of.spread, of.tolerance, 2)
+        shown += f" ± {number(factor * of.spread, digits)}"
+    shown = shown if rank is None else f"{shown} <b>{rank}</b>"
+    return cell(shown, factor * of.mean, "number")
 
 
 def ranking(scenes, shown):
@@ -219,6 +225,9 @@ def between(scene, metric):
             why = f"the errors of both numbers, {number(error, 2)}" if error else "0.1 %"
             yield f"{label} and {least} cannot be told apart: they differ by less than {why}"
             continue
+        if within <= RESOLUTION * mean:
+            yield f"{label} is {number(mean, 3)} above {least} over {len(more)} seeds, which agree: significant"
+            continue
         yield (
             f"{label} is {number(mean, 3)} ± {number(within, 2)} above {least} over {len(more)} seeds: "
             + ("significant" if mean > within else "not significant (may be chance)")
@@ -266,7 +275,7 @@ def curves(scene, is_titled):
         if runs:
             own = look(law.algorithm)
             laws.append(law)
-            light.append(RunLook(short(law), own.colour, own.dark, own.dash))
+            light.append(RunLook(law.label, own.colour, own.dark, own.dash))
             samples.append(
                 [Samples(run, quantities, (*PATH_COLUMNS, *AXIS_COLUMNS)) for run in runs]
             )
@@ -336,7 +345,7 @@ def metrics_table(scene):
             cells = (mean_cell(of, None) for of in found.values())
             rows.append([cell(text(section)), cell(f"<code>{text(name)}</code>"), *cells])
     headings = [heading_cell("Section"), heading_cell("Metric")]
-    return table([*headings, *(heading_cell(text(short(law)), True) for law in scene.laws)], rows)
+    return table([*headings, *(heading_cell(text(law.label), True) for law in scene.laws)], rows)
 
 
 def scenarios(scenes):

@@ -8,8 +8,9 @@ from matplotlib.patches import Polygon
 from scipy.spatial import cKDTree
 
 from hapbench_looks import SERIES, Look, look
-from hapbench_style import curve, equal_curves, reduced, striped
+from hapbench_style import LINE, curve, equal_curves, note, reduced, striped
 
+from .given import shown
 from .quantities import settled_range
 
 # Text, ground, grid, solid and its surface: of paper, and of the dark page.
@@ -19,6 +20,10 @@ THIN = 0.6  # line width of the single runs of a group [points]
 SPANS = 600  # of a curve: a page hardly shows more
 # Runs whose peaks are further apart than this share no linear axis.
 LARGEST_RATIO = 30
+# Runs with peaks beyond a gap of this ratio, and failed runs beyond this ratio, leave the axis to the others.
+THROWN_RATIO, FAILED_RATIO = 100, 5
+MOST_THROWN = 3  # runs whose largest value is written in a panel
+PANEL = 1.1  # usual height of a panel without its numbers [inch]
 GRID = 400  # cells of a section, to a side
 PATH_COLUMNS, AXIS_COLUMNS = ("px_m", "py_m", "pz_m"), ("axis_x", "axis_y", "axis_z")
 SNAPSHOTS = (0.35, 0.5, 0.7, 0.95)  # opacity of the tool at so many places of its way
@@ -79,8 +84,10 @@ def draw_over_time(ax, quantity, samples, looks):
     """Equal curves show in stripes."""
     drawn = [(s, one, s.of(quantity)) for s, one in zip(samples, looks)]
     drawn = [(s, one, of) for s, one, of in drawn if of is not None]
-    if not share_an_axis(ax, [of[2] for _, _, of in drawn]):
-        cut_off_peaks(ax, quantity, drawn)
+    within, thrown = without_thrown(drawn)
+    if not share_an_axis(ax, [of[2] for _, _, of in within]):
+        cut_off_peaks(ax, quantity, within, bool(thrown))
+    mark_thrown(ax, quantity, thrown)
     for (s, one, (time, low, high)), equal in zip(drawn, equal_curves([of for _, _, of in drawn])):
         line = {"color": one.colour, "ls": striped(one.line, *equal)}
         if one.dash and equal[1] == 1:  # a peak may fall into a gap of the dashes
@@ -103,12 +110,61 @@ def draw_over_time(ax, quantity, samples, looks):
     ax.margins(x=0.01)
 
 
+def without_thrown(drawn):
+    """The curves that share an axis, and those of runs that are thrown about and would flatten all others on it."""
+    peaks = [peak_of(of[2]) for _, _, of in drawn]
+    most = largest_shown(peaks, [s.failed for s, _, _ in drawn])
+    of = list(zip(peaks, drawn))
+    return [one for peak, one in of if peak <= most], [one for peak, one in of if peak > most]
+
+
+def largest_shown(peaks, failed):
+    """The largest peak that an axis shows: below a gap of THROWN_RATIO, if at least half of the runs are below it, and
+    of failed runs at most FAILED_RATIO times those of the others. Infinite if all runs share the axis.
+    """
+    found = sorted(peak for peak in peaks if peak > 0)
+    most = next(
+        (
+            low
+            for count, (low, high) in enumerate(zip(found, found[1:]), 1)
+            if high > THROWN_RATIO * low and 2 * count >= len(found)
+        ),
+        np.inf,
+    )
+    succeeding = [peak for peak, fails in zip(peaks, failed) if not fails and 0 < peak <= most]
+    if succeeding and any(failed):
+        most = min(most, FAILED_RATIO * max(succeeding))
+    return most
+
+
+def peak_of(heights):
+    """The largest absolute value; infinite after an overflow."""
+    return float(np.nanmax(np.abs(heights), initial=0.0))
+
+
+def mark_thrown(ax, quantity, thrown):
+    """Where each of these runs leaves the axis, with its largest value."""
+    bottom, top = ax.get_ylim()
+    for line, (_, one, (time, low, high)) in enumerate(thrown):
+        beyond = np.flatnonzero((high > top) | (low < bottom))
+        if not beyond.size:
+            continue
+        at, above = time[beyond[0]], bool(high[beyond[0]] > top)
+        mark = {"marker": "^" if above else "v", "ms": 4, "ls": "none", "clip_on": False}
+        ax.plot(at, float(above), **mark, color=one.colour, transform=ax.get_xaxis_transform())
+        if line >= MOST_THROWN:
+            continue
+        peak = max(high.max(), low.min(), key=abs) if len(high) else 0.0
+        text = f"{one.label}: to {shown(float(f'{peak:.2g}'))} {quantity.unit}".strip()
+        if line == MOST_THROWN - 1 and len(thrown) > MOST_THROWN:
+            text += f", and {len(thrown) - MOST_THROWN} more"
+        note(ax, 0.98, 0.96 - line * LINE / PANEL, text, one.colour, ha="right")
+
+
 def share_an_axis(ax, heights):
     """Makes the axis linear up to about the calmest run's peak and logarithmic beyond, where a run is thrown about.
     Returns true if it does."""
-    peaks = [
-        peak for peak in (float(np.nanmax(np.abs(h), initial=0.0)) for h in heights) if peak > 0
-    ]
+    peaks = [peak for peak in map(peak_of, heights) if peak > 0]
     if peaks and max(peaks) > LARGEST_RATIO * min(peaks):
         # From a power of ten on, where a tick is: its label has room beside that of 0.
         ax.set_yscale("symlog", linthresh=10.0 ** np.ceil(np.log10(min(peaks))))
@@ -116,13 +172,19 @@ def share_an_axis(ax, heights):
     return False
 
 
-def cut_off_peaks(ax, quantity, drawn):
+def cut_off_peaks(ax, quantity, drawn, is_fixed=False):
     """The range of settled contact, where it is far below a peak; the largest one is written where
-    it leaves the picture."""
-    shown = settled_range([(s.settled[quantity.file], low, high) for s, _, (_, low, high) in drawn])
-    if shown is None:
+    it leaves the picture. `is_fixed`: otherwise the range of these curves, for other curves that leave it.
+    """
+    span = settled_range([(s.settled[quantity.file], low, high) for s, _, (_, low, high) in drawn])
+    if span is None:
+        if is_fixed:
+            least = min(float(np.nanmin(low)) for _, _, (_, low, _) in drawn)
+            most = max(float(np.nanmax(high)) for _, _, (_, _, high) in drawn)
+            room = 0.08 * (most - least) or 1.0
+            ax.set_ylim(least - room, most + room)
         return
-    ax.set_ylim(*shown)
+    ax.set_ylim(*span)
     at, value, colour = max(
         (
             (time[row], edge[row], one.colour)

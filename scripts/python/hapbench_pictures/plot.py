@@ -1,45 +1,68 @@
 """`hapbench plot`: a file with the scene in a section and quantities over time below it; or the
 picture of a sweep, of limits, of a tuning or of a convergence."""
 import math
+from pathlib import Path
 
 from hapbench.columns import is_number
 from hapbench.errors import InputError
 from hapbench_command import write
-from hapbench_style import SHEETS, picture
+from hapbench_style import DPI, SHEETS, picture
 
 from .given import common_folder, given_alone, given_runs, given_sweep
 from .quantities import chosen
 from .ranking_plot import draw_ranking, is_ranking
+from .replay_plot import draw_logs, given_logs
 from .run_plot import draw_runs
 from .study_plot import PICTURES, draw_study
 from .sweep_plot import Sweep, draw_sweep, sensitivity_table
 
 KINDS = (".svg", ".png", ".pdf")
+LEAST_DPI, MOST_DPI = 50, 1200
 
 
 def plot(options):
     file = options.out or common_folder(options.runs) / "plot.svg"
     if file.suffix not in KINDS:
         raise InputError(f"--out {file}: got \"{file.suffix}\"; allowed: {', '.join(KINDS)}")
-    write(file, picture(figure_of(options), file.suffix[1:]))
+    write(file, picture(figure_of(options), file.suffix[1:], dpi=dpi_of(options, file)))
     if not options.quiet:
         print(f"picture in {file}")
 
 
+def dpi_of(options, file):
+    """Pixels per inch of --dpi."""
+    if options.dpi is None:
+        return DPI
+    if file.suffix == ".svg":
+        raise InputError("--dpi: an .svg has no pixels; allowed for --out FILE.png, or .pdf")
+    if not is_number(options.dpi) or not LEAST_DPI <= float(options.dpi) <= MOST_DPI:
+        raise InputError(f'--dpi: got "{options.dpi}"; allowed: {LEAST_DPI} to {MOST_DPI}')
+    return float(options.dpi)
+
+
 def figure_of(options):
     """The figure that these options of `hapbench plot` ask for."""
+    window = window_of(options)  # first, since --to FILE is a likely slip
+    logs = given_logs(options.runs)
+    if logs:
+        refuse(
+            options,
+            ("--y", "--metric", "--where", "--from", "--to"),
+            "is not for logs of a loop; allowed for them: --width, --dpi, --out",
+        )
+        return draw_logs(logs, SHEETS[options.width or "double"])
     sweep, study = given_sweep(options.runs), given_alone(options.runs, PICTURES, "holds limits")
     sheet = SHEETS[options.width or "double"]
     if study:
         refuse(
             options,
             ("--y", "--metric", "--where", "--from", "--to"),
-            f"{study} holds limits; allowed for it: --width, --out",
+            f"{study} holds limits; allowed for it: --width, --dpi, --out",
         )
         return draw_study(study, sheet)
     if sweep:
         return of_sweep(sweep, options, sheet)
-    return of_runs(options, sheet)
+    return of_runs(options, sheet, window)
 
 
 def refuse(options, names, why):
@@ -60,7 +83,10 @@ def window_of(options):
     """The times to draw [s]."""
     for name, text in (("--from", options.start), ("--to", options.end)):
         if text is not None and not is_number(text):
-            raise InputError(f'{name}: got "{text}"; allowed: a time in seconds')
+            hint = ""
+            if Path(text).suffix in KINDS:
+                hint = f"; --out {text} names the file of the picture"
+            raise InputError(f'{name}: got "{text}"; allowed: a time in seconds{hint}')
     window = float(options.start or -math.inf), float(options.end or math.inf)
     if not window[0] < window[1]:
         raise InputError(
@@ -69,7 +95,7 @@ def window_of(options):
     return window
 
 
-def of_runs(options, sheet):
+def of_runs(options, sheet, window):
     """Runs over time; or the metrics of a comparison by law, with --metric or if the folder has a ranking."""
     over_time = bool(options.y or options.start or options.end)
     if options.where:
@@ -82,7 +108,7 @@ def of_runs(options, sheet):
     if options.metric or is_ranking(options.runs) and not over_time:
         return draw_ranking(runs, options.metric, options.runs, sheet)
     quantities, with_path = chosen(options.y, runs)
-    return draw_runs(runs, quantities, with_path, window_of(options), sheet)
+    return draw_runs(runs, quantities, with_path, window, sheet)
 
 
 def of_sweep(folder, options, sheet):

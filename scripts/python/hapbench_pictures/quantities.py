@@ -4,21 +4,21 @@ squeeze it."""
 import json
 import re
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 
 from hapbench.columns import header, read_columns
 from hapbench.errors import InputError
-from hapbench_command import nearest
+from hapbench_command import SCHEMA, nearest
 from hapbench_report.markup import column
 from hapbench_report.recording import settled_rows
+
+from .standings import failed
 
 TRAJECTORY = "trajectory.csv"
 REFERENCE = "force_reference.csv"
 # Tables of a row per recorded step, in which a column is looked for.
 TABLES = (TRAJECTORY, "energy.csv", "ideal_trajectory.csv", "stiffness_tensor.csv", REFERENCE)
-SCHEMA = Path(__file__).resolve().parents[3] / "scenarios" / "library" / "scenario.schema.json"
 # A peak of more than so many times the settled values is cut off.
 CUT_OFF = 3
 # If settled contact tells little of a run, as of one that hammers to the end, no range leaves out more of its rows.
@@ -149,7 +149,7 @@ class Samples:
         wanted = {TRAJECTORY: {"time_s", "colliding", *further}}
         for q in (q for q in quantities if has(run, q)):
             wanted.setdefault(q.file, {"time_s"}).update(q.columns)
-        present = tables_of(run)
+        present, self.failed = tables_of(run), failed(run)
         if TRAJECTORY not in present:
             raise InputError(
                 f"{run.folder}: has no {TRAJECTORY}; run it with --set {switch_of(TRAJECTORY)}=true"

@@ -9,7 +9,7 @@ from matplotlib.patches import Patch
 from hapbench.errors import InputError
 from hapbench_command import nearest
 from hapbench_looks import look, look_of_class
-from hapbench_report.markup import column
+from hapbench_report.markup import column, rounded_up
 from hapbench_style import (
     BLACK,
     RED,
@@ -32,8 +32,12 @@ SINGLE = {
     "mew": 0,
     "alpha": 0.6,
 }  # below the mean, which would hide them
-ROW, FAILED_ROW = 0.2, 0.27  # height of a law, and where one has a second line [inch]
+# Height of a law, where one has a second line, and the least with one line [inch].
+ROW, FAILED_ROW, LEAST_ROW = 0.2, 0.3, 0.14
+AROUND = 0.75  # height of a panel without its rows [inch]
 TOLERANCE = "#D9D9D9"
+BOUND = {"marker": "<", "ms": 5, "mfc": "none", "mew": 1.1, "ls": "none", "zorder": 3}
+EDGE = 0.93  # of a panel, for a bound that lies beyond it
 FAILED = {"color": RED, "marker": "x", "ls": "none", "ms": 5, "mew": 1.4}
 
 
@@ -83,14 +87,15 @@ def ranking_figure(scenes, metrics, sheet):
     columns = len(metrics) if len(metrics) <= sheet.columns else sheet.grid(len(panels))[1]
     rows = -(-len(panels) // columns)
     laws = max(len(scene.laws) for scene in scenes)
-    row = FAILED_ROW if any(law.failures for scene in scenes for law in scene.laws) else ROW
+    fails = any(law.failures for scene in scenes for law in scene.laws)
+    wanted = AROUND + (FAILED_ROW if fails else ROW) * laws
+    panel = max(sheet.panel(wanted), min(wanted, AROUND + LEAST_ROW * laws))
     entries = legend_of(scenes, metrics)
-    height = rows * (0.75 + row * laws) + legend_height(
-        [label for _, label in entries], sheet.width
-    )
+    height = rows * panel + legend_height([label for _, label in entries], sheet.width)
     figure, axes = sheet.panels(rows, columns, height)
+    is_compact = bool(sheet.height) or panel < wanted
     for ax, (scene, metric) in zip(axes.flat, panels):
-        draw_panel(ax, scene, metric, is_compact=bool(sheet.height))
+        draw_panel(ax, scene, metric, is_compact)
         # In a row of one scene, the first panel names it for all.
         if len(scenes) > 1 and (columns != len(metrics) or metric == metrics[0]):
             ax.set_title(scene.name.replace("_", " "))
@@ -103,23 +108,14 @@ def ranking_figure(scenes, metrics, sheet):
 def draw_panel(ax, scene, metric, is_compact=False):
     """One metric of one scene: a row for each law, the best on top. `is_compact`: each row has one line of text."""
     standings, laws = scene.standings(metric), scene.sorted_laws(metric)
-    values = [v for of in standings.values() for v in of.values.values()]
+    known = [of for of in standings.values() if not of.is_unknown]
+    values = [v for of in known or standings.values() for v in of.values.values()]
     title, unit, factor = column(metric, values)
-    lowest = min(values, default=0.0)
-    ink = ax.xaxis.label.get_color()
+    is_dark = ax.xaxis.label.get_color() == "#e7e9ea"
     for row, law in enumerate(laws):
-        of, own = standings[law.label], look(law.algorithm)
-        colour = own.colour if ink != "#e7e9ea" else own.dark
-        each = factor * np.array(list(of.values.values()))
-        if of.mean is not None:
-            mean = factor * of.mean
-            low, high = (mean + sign * factor * of.error for sign in (-1, 1))
-            low = max(low, 0.0) if lowest >= 0 else low
-            ax.barh(row, high - low, 0.7, low, color=TOLERANCE, zorder=0.5)
-            if of.spread is not None:
-                ax.errorbar(mean, row, xerr=factor * of.spread, color=colour, lw=1.2, capsize=3)
-            ax.plot(mean, row, **MEAN, color=colour, mec=ax.get_facecolor())
-            ax.plot(each, np.full(len(each), row + 0.3), **SINGLE, color=colour)
+        own, of = look(law.algorithm), standings[law.label]
+        if of.mean is not None and not of.is_unknown:
+            draw_law(ax, row, of, factor, own.dark if is_dark else own.colour, min(values) >= 0)
         if law.failures:
             ax.plot(1, row, **FAILED, transform=ax.get_yaxis_transform(), clip_on=False, zorder=5)
     ax.use_sticky_edges = False  # of the grey bars, which would leave no margin
@@ -127,10 +123,56 @@ def draw_panel(ax, scene, metric, is_compact=False):
     if values and spread_logarithmically(factor * np.array(values)):
         ax.set_xscale("log")
         number_ticks(ax.xaxis)
+    bounds = {
+        row: (factor * standings[law.label].bound, look(law.algorithm))
+        for row, law in enumerate(laws)
+        if standings[law.label].is_unknown
+    }
+    draw_bounds(ax, bounds, bool(known), is_dark)
     label_rows(ax, scene, metric, is_compact)
-    ax.set_xlabel(f"{title} [{unit or 1}]")
+    # Beside others, the label may be wider than the panel; on its left it has room below the names.
+    beside = ax.get_subplotspec().get_gridspec().ncols > 1
+    ax.set_xlabel(f"{title} [{unit or 1}]", loc="right" if beside else "center")
     ax.grid(axis="y", visible=False)
     ax.tick_params(axis="y", length=0)
+
+
+def draw_law(ax, row, of, factor, colour, is_positive):
+    """Mean, error, standard deviation and runs of a law."""
+    each, mean = factor * np.array(list(of.values.values())), factor * of.mean
+    low, high = (mean + sign * factor * of.error for sign in (-1, 1))
+    low = max(low, 0.0) if is_positive else low
+    ax.barh(row, high - low, 0.7, low, color=TOLERANCE, zorder=0.5)
+    if of.spread is not None:
+        ax.errorbar(mean, row, xerr=factor * of.spread, color=colour, lw=1.2, capsize=3)
+    ax.plot(mean, row, **MEAN, color=colour, mec=ax.get_facecolor())
+    ax.plot(each, np.full(len(each), row + 0.3), **SINGLE, color=colour)
+
+
+def draw_bounds(ax, bounds, has_numbers, is_dark):
+    """A hollow mark at each bound, with its value; at the panel's edge where it lies beyond the numbers of other laws,
+    which alone determine the axis. `bounds`: row -> bound and look."""
+    if not bounds:
+        return
+    if not has_numbers:
+        ax.set_xlim(0.0, 1.1 * max(bound for bound, _ in bounds.values()))
+    ax.set_xlim(ax.get_xlim())
+    for row, (bound, own) in bounds.items():
+        colour = own.dark if is_dark else own.colour
+        at = ax.transAxes.inverted().transform(ax.transData.transform((bound, row)))[0]
+        at = min(at, EDGE) if bound > 0 else 0.0
+        ax.plot(at, row, **BOUND, color=colour, transform=ax.get_yaxis_transform())
+        ax.annotate(
+            f"\u2264 {rounded_up(bound):.1g}",
+            (at, row),
+            xycoords=ax.get_yaxis_transform(),
+            xytext=(-7, 0) if at > 0.3 else (4, 0),
+            textcoords="offset points",
+            ha="right" if at > 0.3 else "left",
+            va="center",
+            fontsize=7,
+            color=colour,
+        )
 
 
 def label_rows(ax, scene, metric, is_compact):
@@ -138,7 +180,7 @@ def label_rows(ax, scene, metric, is_compact):
     laws, ranks, labels = scene.sorted_laws(metric), scene.ranks(metric), []
     for law in laws:
         rank = ranks[law.label]
-        label = f"{'' if rank is None else f'{rank}  '}{short(law)}"
+        label = f"{'' if rank is None else f'{rank}  '}{law.label}"
         if law.failures and is_compact:
             label += f" \u2717{len(law.failures)}/{len(law.runs)}"
         elif law.failures:
@@ -146,7 +188,7 @@ def label_rows(ax, scene, metric, is_compact):
         labels.append(label.replace("$", r"\$"))
     ax.set_yticks(range(len(laws)), labels)
     for tick, law in zip(ax.get_yticklabels(), laws):
-        tick.set(fontsize=7, linespacing=0.95, **({"color": RED} if law.failures else {}))
+        tick.set(fontsize=7, linespacing=1.15, **({"color": RED} if law.failures else {}))
     ax.set_ylim(len(laws) - 0.4, -0.6)
 
 
@@ -156,12 +198,6 @@ def failures_text(law):
     names = ", ".join(look_of_class(name)[0] for name in how)
     count = f"{len(law.failures)} of {len(law.runs)} " if len(law.runs) > 1 else ""
     return f"{count}{names}"
-
-
-def short(law):
-    """The name of a law as in legends, with the fields that are its own."""
-    own = look(law.algorithm).label.partition(" (")[0]
-    return ", ".join([own, *law.label.split(", ")[1:]])
 
 
 def legend_of(scenes, metrics):
@@ -174,6 +210,8 @@ def legend_of(scenes, metrics):
     ]
     laws = [law for scene in scenes for law in scene.laws]
     entries = [(Line2D([], [], color=BLACK, **MEAN), "mean")]
+    if any(one.is_unknown for one in of):
+        entries.append((Line2D([], [], color=BLACK, **BOUND), "bound: not larger than its error"))
     if any(one.spread is not None for one in of):
         entries.append(
             (Line2D([], [], color=BLACK, lw=1.2, marker="|", ms=6), "standard deviation over seeds")

@@ -74,15 +74,16 @@ def rows_of(scenes, quantities, beside, sheet):
         rows, columns = sheet.grid(scenes + quantities)
         counts = [min(columns, scenes + quantities - row * columns) for row in range(rows)]
         return [(1.0, columns, (1,) * count) for count in counts]
+    large, small = sheet.panel(LARGE), sheet.panel(SMALL)
     if beside:
-        return [(LARGE, 2, (1, 1.5))] + [(SMALL, 1, (1,))] * (quantities - 1)
+        return [(large, 2, (1, 1.5))] + [(small, 1, (1,))] * (quantities - 1)
     _, columns = sheet.grid(scenes) if scenes else (0, 1)
     sections = [min(columns, scenes - first) for first in range(0, scenes, columns)]
-    first = [(LARGE, 1, (1,))] if quantities else []
+    first = [(large, 1, (1,))] if quantities else []
     return (
-        [(LARGE, columns, (1,) * count) for count in sections]
+        [(large, columns, (1,) * count) for count in sections]
         + first
-        + [(SMALL, 1, (1,))] * (quantities - 1)
+        + [(small, 1, (1,))] * (quantities - 1)
     )
 
 

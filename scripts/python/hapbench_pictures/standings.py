@@ -63,6 +63,16 @@ class Standing:
         return max(self.error, of_seeds, 0.1 * RESOLUTION * abs(self.mean))
 
     @property
+    def bound(self):
+        """The largest size that the number may have."""
+        return abs(self.mean) + self.error
+
+    @property
+    def seeds_agree(self):
+        """True if the runs differ by less than the ranking tells apart."""
+        return self.spread is not None and self.spread <= RESOLUTION * abs(self.mean or 0.0)
+
+    @property
     def is_unknown(self):
         """True if the error is not smaller than the value, so that only a bound is known."""
         return self.mean is not None and self.error > 0 and self.error >= abs(self.mean)

@@ -155,7 +155,7 @@ def draw_cloud(sweep, over, sheet):
     """The metric over each field."""
     value = Axis.of(axis(sweep.metric), sweep.values)
     high, wide = sheet.grid(len(over))
-    figure, axes = sheet.panels(high, wide, 0.5 + 2.4 * high)
+    figure, axes = sheet.panels(high, wide, 0.5 + sheet.panel(2.4) * high)
     figure.suptitle(sweep.name, x=0.01, ha="left", fontsize=9, weight="bold")
     found = sweep.sensitivities() if sweep.sampled else [None] * len(over)
     for i, (ax, x) in enumerate(zip(axes.flat, over)):

@@ -6,7 +6,7 @@ from matplotlib.lines import Line2D
 
 from hapbench.columns import numbers
 from hapbench.errors import InputError
-from hapbench_looks import look
+from hapbench_looks import law_name, tell_apart
 from hapbench_style import BLACK, GREY, RED, SHEET, legend_above, number_ticks
 
 from .given import axis
@@ -19,8 +19,8 @@ CHOICE = {"ls": "none", "marker": "o", "ms": 10, "color": BLACK, "mfc": "none", 
 BOUND = {"color": RED, "lw": 1.0, "ls": (0, (4, 2)), "zorder": 0.5}
 QUANTITIES = {
     STIFFNESS: (axis(STIFFNESS), 1.0),
-    DEPTH: ("largest depth inside [mm]", 1e3),
-    VIBRATION: ("force above 30 Hz [N rms]", 1.0),
+    DEPTH: (axis(DEPTH), 1e3),
+    VIBRATION: (axis(VIBRATION), 1.0),
 }
 
 
@@ -52,13 +52,14 @@ def draw_tune(files, sheet=SHEET):
     """
     trials, laws = files.records(TRIALS), files.records(LAWS)
     drawn = [Trials(law, trials) for law in laws]
+    tell_apart(of.name for of in drawn)
     shown, bounds = np.vstack([of.values for of in drawn]), bounds_of(laws)
     if not shown.size:
         raise InputError(
             "nothing to draw: no trial is settled; column why of tune.csv explains why"
         )
     rows, columns = sheet.grid(3)
-    figure, axes = sheet.panels(rows, columns, 0.5 + 2.6 * rows)
+    figure, axes = sheet.panels(rows, columns, 0.5 + sheet.panel(2.6) * rows)
     for ax, x, y in zip(axes.flat, (0, 0, 1), (1, 2, 2)):
         draw_panel(ax, x, y, drawn, shown, bounds)
     legend_above(figure, *zip(*legend_of(drawn, bounds)), columns=None)
@@ -122,7 +123,7 @@ def range_of(values):
 def legend_of(drawn, bounds):
     """Handles and labels of what is drawn, and of nothing else."""
     entries = [
-        (Line2D([], [], **look_of(of.name, ls="none", ms=4)), look(of.name).label)
+        (Line2D([], [], **look_of(of.name, ls="none", ms=4)), law_name(of.name))
         for of in drawn
         if len(of.values)
     ]

@@ -7,13 +7,21 @@ from matplotlib.lines import Line2D
 
 from hapbench.columns import numbers
 from hapbench.errors import InputError
-from hapbench_looks import SERIES
-from hapbench_style import GREY, SHEET, legend_above, note, number_ticks
+from hapbench_looks import SERIES, law_name, tell_apart
+from hapbench_style import GREY, PLATE, SHEET, legend_above, note, number_ticks
 from hapbench_style import look as style_look
 
 from .over_axes import Axis, over_axes
 
 ERRORS, TIMES = "convergence.csv", "convergence_timing.csv"
+FRONT = {
+    "color": GREY,
+    "lw": 0.9,
+    "ls": "-",
+    "zorder": 1,
+}  # settings that no other one beats in error and time
+MOST_STEPS = 5  # labels of a panel
+ROOM = np.array([0.2, 0.13])  # of a label, in widths and heights of a panel
 KNEE = {"marker": "o", "ms": 10, "mfc": "none", "mec": GREY, "ls": "none"}
 ASKED = {"color": GREY, "lw": 0.8, "ls": ":"}
 SPEED = {"color": GREY, "lw": 0.8, "ls": "--"}
@@ -31,6 +39,7 @@ def draw_model_errors(files, sheet=SHEET):
     median, late = (1e6 * numbers(times, name) for name in ("step_median_s", "step_p99_9_s"))
     deadline = 1e6 * float(times[0]["deadline_s"])
     shared = is_true(errors, "shares_reference")
+    tell_apart(row["problem"] for row in errors)
     quantities = (
         (
             "mean error of the direction [°]",
@@ -38,7 +47,8 @@ def draw_model_errors(files, sheet=SHEET):
         ),
         ("rms error of the force [N]", numbers(errors, "force_error_rms_N")),
     )
-    figure, axes = sheet.panels(1, 2, 3.4)
+    rows, columns = sheet.grid(2)
+    figure, axes = sheet.panels(rows, columns, 1.0 + sheet.panel(2.4) * rows)
     for ax, (label, values) in zip(axes.flat, quantities):
         for i, row in enumerate(errors):
             look = style_look(row["problem"])
@@ -51,7 +61,7 @@ def draw_model_errors(files, sheet=SHEET):
                 ms=5,
                 color=look.colour,
                 mfc="white" if shared[i] else look.colour,
-                label=look.label + (" (shares the reference)" if shared[i] else ""),
+                label=law_name(row["problem"]) + (" (shares the reference)" if shared[i] else ""),
             )
         ax.axvline(deadline, zorder=1, **SPEED)
         logarithmic = (values[np.isfinite(values)] > 0).all()
@@ -83,7 +93,9 @@ def draw_work_precision(files, sheet=SHEET):
     is_knee = is_true(times, "knee")
     asked = 1e6 * float(errors[0]["asked_error_m"])
     rows, columns = sheet.grid(len(problems))
-    figure, axes = sheet.panels(rows, columns, 0.5 + 2.4 * rows, sharex=True, sharey=True)
+    figure, axes = sheet.panels(
+        rows, columns, 0.5 + sheet.panel(2.4) * rows, sharex=True, sharey=True
+    )
     for ax, problem in zip(axes.flat, problems):
         of_problem = np.array([row["problem"] == problem for row in errors])
         series = [
@@ -99,15 +111,19 @@ def draw_work_precision(files, sheet=SHEET):
             )
         ]
         across = Axis("processor time per simulated second [ms]", cost, log=True)
-        over_axes(ax, across, Axis("rms error of the tip's position [µm]", error, log=True), series)
+        over_axes(
+            ax, across, Axis("rms error of the\ntip's position [µm]", error, log=True), series
+        )
         ax.axhline(asked, zorder=1, **ASKED)
         if cost.max() > 0.1 * REAL_TIME:
             ax.axvline(REAL_TIME, zorder=1, **SPEED)
         for at in np.flatnonzero(of_problem & is_knee):
             ax.plot(cost[at], error[at], **KNEE)
+        draw_front(ax, errors, cost, error, of_problem & is_true(times, "on_front"), is_knee)
         if not np.isfinite(error[of_problem]).any():
             note(ax, 0.5, 0.5, "no error: not predictable", ha="center")
         ax.set_title(problem.replace("_", " "))
+        ax.margins(x=0.1, y=0.13)  # room for the labels of the front
         ax.label_outer()
     for ax in list(axes.flat)[len(problems) :]:
         ax.set_visible(False)
@@ -116,6 +132,8 @@ def draw_work_precision(files, sheet=SHEET):
         for name in integrators
     ]
     names = [name.replace("_", " ") for name in integrators]
+    marks.append(Line2D([], [], **FRONT))
+    names.append("front, with time steps [ms]")
     if is_knee.any():
         marks.append(Line2D([], [], **KNEE))
         names.append("knee")
@@ -129,6 +147,36 @@ def draw_work_precision(files, sheet=SHEET):
         names.append("real time")
     legend_above(figure, marks, names, columns=None)
     return figure
+
+
+def draw_front(ax, errors, cost, error, chosen, is_knee):
+    """A line through the settings of the front, and the time steps of a few: the knee, both ends, and those between
+    that have room. Labels stand below the front, where no setting is."""
+    rows = np.flatnonzero(chosen & np.isfinite(error) & (error > 0))
+    rows = rows[np.argsort(cost[rows])]
+    ax.plot(cost[rows], error[rows], **FRONT)
+    shown = np.isfinite(error) & (error > 0)
+    place = np.array(
+        [np.log(of) / (np.ptp(np.log(of[shown])) or 1.0) for of in (cost, error)]
+    )  # in widths and heights of the panel
+    first = [row for row in rows if is_knee[row]] + list(rows[[0, -1]] if rows.size else ())
+    labelled = []
+    for row in dict.fromkeys([*first, *rows]):
+        apart = [np.abs(place[:, row] - place[:, other]) / ROOM for other in labelled]
+        if len(labelled) < MOST_STEPS and all(away.max() >= 1 for away in apart):
+            labelled.append(row)
+            ax.annotate(
+                f"{1e3 * float(errors[row]['step_s']):.3g}",
+                (cost[row], error[row]),
+                xytext=(-3.5, -3),
+                textcoords="offset points",
+                ha="right",
+                va="top",
+                fontsize=6.5,
+                color=GREY,
+                bbox=PLATE,
+                zorder=1.5,
+            )
 
 
 def is_true(rows, column):

@@ -14,6 +14,17 @@ ABSENT = "–"
 ASSETS = Path(__file__).parent / "assets"
 PER = "seconds_per_"  # time of a step or of a call
 SMALL_M = 0.01  # lengths below are shown in millimetres
+# Title, unit and factor of the metrics of the program's tables, with the words of its headings (kRunHeadings).
+TITLES = {
+    "force_max_N": ("largest force", "N", 1),
+    "contact_share": ("in contact", "%", 100),
+    "landing_force_max_N": ("landing force", "N", 1),
+    "force_mean_in_contact_N": ("mean force in contact", "N", 1),
+    "force_step_p99_N": ("force step (99 %)", "N", 1),
+    "force_rms_above_30Hz_N": ("vibration above 30 Hz", "N rms", 1),
+    "force_reversals_per_s": ("reversals", "1/s", 1),
+    "inside_max_m": ("max depth inside", "mm", 1e3),
+}
 
 
 def text(value):
@@ -150,10 +161,11 @@ def column(name, values=()):
     """Title, unit (empty for numbers without one) and factor of a column with these numbers, by its name."""
     if name.startswith(PER):
         return f"time of a {name.removeprefix(PER)}", "µs", 1e6
+    if name in TITLES:
+        return TITLES[name]
     ending = ending_of(name)
-    title, unit = (name.removesuffix("_" + ending) if ending else name).replace("_", " "), unit_of(
-        name
-    )
+    title = (name.removesuffix("_" + ending) if ending else name).replace("_", " ")
+    title, unit = re.sub(r"(?<=\d)(?=Hz\b)", " ", title), unit_of(name)
     sizes = [abs(value) for value in values if value]
     return (
         (title, "mm", 1e3)

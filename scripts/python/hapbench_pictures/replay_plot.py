@@ -1,0 +1,124 @@
+"""Logs of a haptic loop as a picture: the rendered force over time of a log or of `run --replay`, the difference of two
+of them, and the calls that came late."""
+import json
+from pathlib import Path
+
+import numpy as np
+
+from hapbench.errors import InputError
+from hapbench_looks import SERIES
+from hapbench_style import GREY, SETTINGS, curve, legend_above, legend_height, plt
+
+from .panels import SPANS
+
+REPLAY, COMPARISON = "replay.csv", "replay_comparison.csv"
+HEADER = "# hapbench loop log:"
+# A call later than this ratio of the period missed its deadline.
+LATE = 1.5
+MODES = {  # columns, title and factor of what the loop applies
+    "impedance": (("fx_N", "fy_N", "fz_N"), "force [N]", 1.0),
+    "admittance": (("set_x_m", "set_y_m", "set_z_m"), "set position [mm]", 1e3),
+}
+
+
+def given_logs(words):
+    """The logs among the words: files of a haptic loop, and folders of `run --replay`. None if a word is neither."""
+    files = [log_of(Path(word)) for word in words]
+    if not any(files):
+        return None
+    if not all(files) or len(files) > 2:
+        raise InputError(
+            f"{', '.join(words)}: allowed: one log of a loop or folder of a replay, or two of them for their difference"
+        )
+    return files
+
+
+def log_of(path):
+    file = path / REPLAY if path.is_dir() else path
+    if (path / COMPARISON).is_file():
+        raise InputError(
+            f"{path / COMPARISON}: is a table of numbers of each law, without a force over time; allowed: a folder of "
+            '"hapbench run --replay", one for each law'
+        )
+    if not file.is_file():
+        return None
+    with file.open(encoding="utf-8", errors="replace") as lines:
+        return file if lines.readline().startswith(HEADER) else None
+
+
+class Log:
+    """Time from the first call [s], what the loop applies at each call, and which calls came late."""
+
+    def __init__(self, file):
+        with file.open(encoding="utf-8") as lines:
+            about = json.loads(lines.readline().removeprefix(HEADER))
+            names = lines.readline().strip().split(",")
+            self.columns, self.title, factor = MODES[about["mode"]]
+            wanted = [names.index(name) for name in ("call", "time_ns", *self.columns)]
+            rows = np.loadtxt(lines, delimiter=",", usecols=wanted, ndmin=2)
+        if not len(rows):
+            raise InputError(f"{file}: holds no call")
+        self.name = f"{about['scenario']}, {'replay' if file.name == REPLAY else file.stem}"
+        self.call, self.time = rows[:, 0].astype(int), 1e-9 * (rows[:, 1] - rows[0, 1])
+        self.applied, self.period = factor * rows[:, 2:], about["period_s"]
+        self.late = np.append(
+            False, (np.diff(self.time) > LATE * self.period) | (np.diff(self.call) > 1)
+        )
+
+
+def draw_logs(files, sheet):
+    """What the loop applies over time; of two logs also the difference at each call that both have."""
+    logs = [read_log(file) for file in files]
+    if len({log.title for log in logs}) > 1:
+        raise InputError(f"{files[0]}, {files[1]}: one log has forces, the other one positions")
+    return figure_of(logs, sheet)
+
+
+def read_log(file):
+    try:
+        return Log(file)
+    except (KeyError, ValueError) as error:
+        raise InputError(f"{file}: is not a log that hapbench wrote: {error}") from error
+
+
+def figure_of(logs, sheet):
+    title, is_force = logs[0].title, logs[0].columns == MODES["impedance"][0]
+    names = [log.name for log in logs]
+    count = len(logs)
+    with plt.rc_context(SETTINGS):
+        height = 0.4 + sheet.panel(2.0) * count + legend_height([*names, ""], sheet.width)
+        figure, axes = sheet.panels(count, 1, height, sharex=True)
+        above = axes[0, 0]
+        for log, own in zip(logs, SERIES):
+            shown = log.applied if is_force else log.applied - log.applied[0]
+            norm = np.linalg.norm(shown, axis=1)
+            above.plot(
+                *curve(log.time, norm, norm, SPANS), color=own.colour, ls=own.line, label=log.name
+            )
+        above.set_ylabel(f"|{title.replace(' [', '| [')}")
+        late = np.unique(np.concatenate([log.time[log.late] for log in logs]))
+        for ax in axes.flat:
+            if late.size:
+                label = f"late or missing calls: {late.size}" if ax is above else None
+                mark = {"marker": "v", "ms": 4, "ls": "none", "color": GREY, "clip_on": False}
+                along = ax.get_xaxis_transform()
+                ax.plot(late, np.ones(late.size), label=label, transform=along, **mark)
+        if count == 2:
+            draw_difference(axes[1, 0], logs)
+        axes[-1, 0].set_xlabel("time [s]")
+        legend_above(figure, *above.get_legend_handles_labels(), columns=None)
+    return figure
+
+
+def draw_difference(ax, logs):
+    """The norm of the difference at the calls of both logs."""
+    calls, first, second = np.intersect1d(logs[0].call, logs[1].call, return_indices=True)
+    if not calls.size:
+        raise InputError("the logs have no call in common")
+    apart = np.linalg.norm(logs[0].applied[first] - logs[1].applied[second], axis=1)
+    time = logs[0].time[first]
+    ax.plot(*curve(time, apart, apart, SPANS), color=SERIES[0].colour)
+    ax.set_ylabel(f"|difference| {logs[0].title[logs[0].title.index('['):]}")
+    if not apart.any():
+        ax.set_title(f"the {calls.size} calls that both logs have are equal", fontsize=7.5)
+        ax.set_ylim(-0.05, 1.0)

@@ -1,0 +1,94 @@
+"""`hapbench plot` of logs of a haptic loop, its options, and runs that would flatten all others."""
+import re
+import shutil
+
+import numpy as np
+
+from figure_checks import legend_labels
+from fixture import SOURCE
+from pictures_test import Given, make_root, plotted
+
+from hapbench_pictures.panels import largest_shown
+from hapbench_pictures.replay_plot import Log, draw_logs
+from hapbench_style import SHEETS, plt
+
+setUpModule = make_root
+LOG = SOURCE / "tests/data/loop.csv"
+
+
+class Replays(Given):
+    def other(self):
+        """A folder of a replay with another force in its last call and without the third call from the end."""
+        folder = self.root / "replay"
+        folder.mkdir(exist_ok=True)
+        about, names, *rows = LOG.read_text(encoding="utf-8").splitlines()
+        cells = rows[-1].split(",")
+        cells[names.split(",").index("fz_N")] = "0.5"
+        rows[-1] = ",".join(cells)
+        del rows[-3]
+        (folder / "replay.csv").write_text("\n".join([about, names, *rows]) + "\n")
+        return folder
+
+    def test_a_log_and_its_replay(self):
+        folder = self.other()
+        first, second = Log(LOG), Log(folder / "replay.csv")
+        self.assertEqual(len(first.call), len(second.call) + 1)
+        figure = draw_logs([folder / "replay.csv", LOG], SHEETS["single"])
+        above, below = figure.axes
+        self.assertEqual(len([line for line in above.lines if line.get_marker() == "None"]), 2)
+        late = int(first.late.sum()) + 1
+        self.assertIn(f"late or missing calls: {late}", legend_labels(figure))
+        (difference,) = [line for line in below.lines if line.get_marker() == "None"]
+        change = np.linalg.norm(first.applied[-1] - second.applied[-1])
+        self.assertGreater(change, 0)
+        self.assertAlmostEqual(max(difference.get_ydata()), change, delta=1e-15)
+        plt.close(figure)
+        plotted(folder, LOG, "--out", self.root / "both.svg")
+        self.assert_shows(self.root / "both.svg", "|force| [N]", "|difference| [N]")
+
+    def test_what_is_refused(self):
+        folder = self.other()
+        table = self.root / "laws"
+        table.mkdir(exist_ok=True)
+        (table / "replay_comparison.csv").write_text("algorithm,calls\nmean,5\n")
+        copy = self.root / "copy.csv"
+        shutil.copy(LOG, copy)
+        for words, said in (
+            ((table,), 'allowed: a folder of "hapbench run --replay"'),
+            ((folder, copy, LOG), "or two of them for their difference"),
+            ((folder, "--y", "force"), "allowed for them: --width, --dpi, --out"),
+            ((folder, "--to", "file.png"), "--out file.png names the file of the picture"),
+            ((folder, "--out", self.root / "a.svg", "--dpi", "300"), "has no pixels"),
+            ((folder, "--out", self.root / "a.png", "--dpi", "5"), "allowed: 50 to 1200"),
+        ):
+            self.assertIn(said, plotted(*words, expected=2))
+
+    def test_resolution_and_fonts(self):
+        folder, sizes = self.other(), []
+        for words in ((), ("--dpi", "150")):
+            file = self.root / "a.png"
+            plotted(folder, "--width", "single", "--out", file, *words)
+            sizes.append(int.from_bytes(file.read_bytes()[16:20], "big"))
+        # 89 mm at 300 and at 150 pixels per inch, cut to whole pixels.
+        self.assertEqual(sizes, [1051, 525])
+        plotted(folder, "--out", self.root / "a.pdf")
+        found = set(
+            re.findall(rb"/Subtype /(Type3|CIDFontType2)", (self.root / "a.pdf").read_bytes())
+        )
+        self.assertEqual(found, {b"CIDFontType2"})
+
+
+class Thrown(Given):
+    def test_the_axis_belongs_to_the_other_runs(self):
+        """Peaks, which runs failed, and the largest peak that the axis shows."""
+        fine = [False] * 4
+        for peaks, failed, largest in (
+            ([3, 5, 45, 14000], fine, 45),
+            ([3, 5, 45, 60], fine, np.inf),
+            ([1, 2, 7], [False, False, True], 10),
+            ([1, 2, 11], [False, False, True], 10),
+            ([1, 1000, 1000], fine[:3], np.inf),
+            ([0, 0, 5], fine[:3], np.inf),
+            ([1, 2], [True, True], np.inf),
+        ):
+            self.assertEqual(largest_shown(peaks, failed), largest, peaks)
