@@ -30,6 +30,7 @@ DRY_SHARE = 0.02  # and be at least this share of the mean force
 AT_LIMIT = 0.999  # of the largest force
 TILTS = 8  # steps of the search for the normal
 MOST_ROWS = 500  # of the search
+SEARCHED = ("logged", "backward", "central", "low-pass 4")  # velocities of the search
 
 
 @dataclass
@@ -177,6 +178,8 @@ def normal_of(log, rows, direction, motion):
     if best is None:
         return None
     first, normal, model = known[best], direction, None
+    if first.mean_square <= EXACTLY * first.total:
+        return None
     space = [Motion(log, rows, axis) for axis in np.eye(3)]
     for _ in range(TILTS):
         gradient, model = gradient_of(log, rows, normal, space, model)
@@ -207,7 +210,8 @@ def gradient_of(log, rows, normal, space, model):
     if len(force) < FEWEST_NEW or not moving:
         return None, None
     best = (math.inf, None, None)
-    for one in space[0].models() if model is None else [model]:
+    tried = [one for one in space[0].models() if one.kind in SEARCHED] if model is None else [model]
+    for one in tried:
         columns = np.hstack([space[i].columns(one)[0][some] for i in moving])
         sizes = np.maximum(np.linalg.norm(columns, axis=0), 1e-300)
         slopes = np.linalg.lstsq(columns / sizes, force, rcond=1e-6)[0]
