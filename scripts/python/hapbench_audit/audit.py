@@ -10,11 +10,7 @@ from .diagnosis import findings_of
 from .energy import Port, contact_energy, energy_of, stored_at
 from .force import force_of, peaks_of, spectrum_of
 from .log import FASTEST
-from .stiffness import FEWEST, stiffness_of
-
-WELL_KNOWN = (
-    0.25  # half-width of the interval of a stiffness, as its share, for the comparison with a limit
-)
+from .stiffness import FEWEST, evidence_of, springs_of
 
 
 def audit_log(log, device=None):
@@ -23,7 +19,7 @@ def audit_log(log, device=None):
     clock, port = clock_of(log), Port(log, contacts)
     force, spectrum = force_of(log, contacts), spectrum_of(log, contacts)
     every = each_contact(log, contacts)
-    main = main_contact(log, contacts, every)
+    main = with_springs(log, contacts, every)
     for one, (first, after) in zip(every, contacts.runs.tolist()):
         stored = stored_at(log, contacts, first, known_spring(one["spring"]) or main)
         one |= contact_energy(port, first, after, stored)
@@ -36,7 +32,7 @@ def audit_log(log, device=None):
         "buzz": peaks_of(spectrum, force["force_mean_in_contact_N"]),
         "stiffness": main,
         "stiffness_range": stiffness_range(every),
-        "device": device_limit(device, log.interval, main) if device else None,
+        "device": device_limit(device, loop_interval(log), main) if device else None,
         "measured": measured_lag(log, contacts),
         "contacts": every,
     }
@@ -44,6 +40,11 @@ def audit_log(log, device=None):
     audit["missing"] = missing(log, audit, device)
     audit["warnings"] = log.notes + clock_warnings(clock) + doubts(log, audit)
     return audit, contacts, spectrum
+
+
+def loop_interval(log):
+    """Seconds from one new position or force to the next: the period of a loop slower than the log."""
+    return log.interval * max([1.0] + [one.rows for one in (log.held, log.held_force) if one])
 
 
 def energy_by_contact(log, contacts, every):
@@ -74,17 +75,33 @@ def each_contact(log, contacts):
                 "is_complete": bool(first > 0 and after < len(log.time)),
                 "force_max_N": float(np.linalg.norm(log.force[rows], axis=1).max()),
             }
-            | {"spring": spring_of(log, contacts, rows) if len(rows) >= FEWEST else None}
         )
     return found
 
 
-def spring_of(log, contacts, rows):
-    """stiffness_of() the settled rows where these are half of the rows or more: an impact is more than a spring."""
-    settled = rows[contacts.settled[rows]]
-    used = settled if len(settled) >= max(FEWEST, len(rows) // 2) else rows
-    span = {"start_s": float(log.time[used[0]]), "end_s": float(log.time[used[-1]])}
-    return stiffness_of(log, used) | span
+def with_springs(log, contacts, every):
+    """Adds `spring` to the numbers of each contact and returns the spring of the log, or None. Of contacts that are too
+    short, all rows of the longest stretch of contacts determine it."""
+    evidences = [
+        evidence_of_run(log, contacts, np.arange(first, after)) if after - first >= FEWEST else None
+        for first, after in contacts.runs.tolist()
+    ]
+    springs, main = springs_of(log, evidences)
+    for one, spring in zip(every, springs):
+        one["spring"] = spring
+    if main is not None or not contacts.stretches:
+        return main
+    first, after = max(
+        contacts.stretches,
+        key=lambda span: contacts.runs[span[1] - 1][1] - contacts.runs[span[0]][0],
+    )
+    rows = np.arange(contacts.runs[first][0], contacts.runs[after - 1][1])
+    rows = rows[contacts.in_contact[rows]]
+    return springs_of(log, [evidence_of_run(log, contacts, rows)])[1]
+
+
+def evidence_of_run(log, contacts, rows):
+    return evidence_of(log, rows, rows[contacts.settled[rows]])
 
 
 def known_spring(spring):
@@ -96,39 +113,9 @@ def has_stiffness(spring):
     return bool(spring) and "stiffness_N_per_m" in spring
 
 
-def main_contact(log, contacts, every):
-    """The spring of the contact with the median stiffness by duration; of contacts too short for one, that of all rows
-    of the longest stretch of contacts."""
-    known = sorted(
-        (one["spring"]["stiffness_N_per_m"], one["rows"], i)
-        for i, one in enumerate(every)
-        if has_stiffness(one["spring"])
-    )
-    if known:
-        half, total = 0.5 * sum(rows for _, rows, _ in known), 0
-        for _, rows, i in known:
-            total += rows
-            if total >= half:
-                return every[i]["spring"]
-    if not contacts.stretches:
-        return None
-    first, after = max(
-        contacts.stretches,
-        key=lambda span: contacts.runs[span[1] - 1][1] - contacts.runs[span[0]][0],
-    )
-    rows = np.arange(contacts.runs[first][0], contacts.runs[after - 1][1])
-    return known_spring(spring_of(log, contacts, rows[contacts.in_contact[rows]]))
-
-
 def stiffness_range(every):
     """Smallest and largest stiffness of contacts that determine it."""
-    values = [
-        one["spring"]["stiffness_N_per_m"]
-        for one in every
-        if has_stiffness(one["spring"])
-        and np.ptp(one["spring"]["stiffness_interval"])
-        < 2.0 * WELL_KNOWN * abs(one["spring"]["stiffness_N_per_m"])
-    ]
+    values = [one["spring"]["stiffness_N_per_m"] for one in every if has_stiffness(one["spring"])]
     return [min(values), max(values)] if values else None
 
 
@@ -157,16 +144,38 @@ def doubts(log, audit):
             f"the position moves at {fast:.3g} m/s: are the units s and m? (--scale position=0.001 is for millimetres, "
             f"--scale time={unit:g} for another clock)"
         )
-    known = [one["spring"] for one in audit["contacts"] if has_stiffness(one["spring"])]
-    known = known or ([audit["stiffness"]] if audit["stiffness"] else [])
-    negative = [one for one in known if one["stiffness_interval"][1] < 0.0]
-    if known and 2 * len(negative) > len(known):
+    springs = [one["spring"] for one in audit["contacts"] if one["spring"]]
+    known = [one for one in springs if has_stiffness(one)]
+    growing = [
+        one["apparent_stiffness_N_per_m"] for one in springs if "apparent_stiffness_N_per_m" in one
+    ]
+    if len(growing) > len(known):
         found.append(
-            f"the force grows along its own direction ({negative[0]['stiffness_N_per_m']:.4g} N/m), unlike that of a "
+            f"the force grows along its own direction ({growing[0]:.4g} N/m), unlike that of a "
             "surface on a tool: is it the force of the tool on the object? (--set force_by_tool=true); otherwise "
             "energy and stiffness have the wrong sign"
         )
-    return found
+    return found + disagreement(known)
+
+
+def disagreement(springs):
+    """A warning if no stiffness lies in the intervals of most contacts."""
+    if len(springs) < 2:
+        return []
+    ends = np.array([one["stiffness_interval"] for one in springs])
+    values = [one["stiffness_N_per_m"] for one in springs]
+    # The share of the stiffness that is of no interest, such as the effect of the sampling of a velocity.
+    share = 0.02
+    common = max(
+        np.sum((ends[:, 0] <= (1.0 + share) * x) & (x * (1.0 - share) <= ends[:, 1]))
+        for x in ends[:, 0]
+    )
+    if common > 0.75 * len(springs):
+        return []
+    return [
+        f"the contacts disagree by more than their intervals: {min(values):.4g} to {max(values):.4g} N/m. The stiffness "
+        "is not linear, or the tool touches several surfaces; audit.json has each contact"
+    ]
 
 
 def missing(log, audit, device):
@@ -181,13 +190,14 @@ def missing(log, audit, device):
             if one["spring"] and "why" in one["spring"]
         ]
         why = whys[0] if whys else f"no contact has {FEWEST} rows"
-        found.append(
-            f"stiffness: {why}; press and release slowly, so that position and force change"
-        )
+        found.append(f"stiffness: {why}; tap, and press to several depths at several speeds")
     elif audit["stiffness"] and audit["stiffness"].get("why_no_damping"):
         found.append(
-            f"damping: {audit['stiffness']['why_no_damping']}; a column of velocities, or more digits"
+            f"damping: {audit['stiffness']['why_no_damping']}; taps and quick presses, more digits, or a column of "
+            "velocities"
         )
+    elif audit["stiffness"] and audit["stiffness"]["delay_s"] is None:
+        found.append("delay: the log does not separate it from damping; taps and quick presses")
     if device is None:
         found.append("whether the device can render this stiffness: --device FILE.json or a preset")
     elif audit["device"] is None:

@@ -1,6 +1,5 @@
 """The clock of a log: rate, jitter, missing rows, and values that are held over several rows."""
 import numpy as np
-from hapbench_import.holds import hold_of
 
 from .log import LONG_INTERVALS
 
@@ -12,7 +11,6 @@ def clock_of(log):
     steps, interval = np.diff(log.time), log.interval
     missing = np.maximum(np.rint(steps / interval).astype(int) - 1, 0)
     usual = steps[missing == 0]
-    forces = hold_of(log.force)
     return {
         "rows": len(log.time),
         "duration_s": float(log.time[-1] - log.time[0]),
@@ -25,7 +23,7 @@ def clock_of(log):
         "rows_missing_in_a_row": int(missing.max()),
         "gaps": int((steps > LONG_INTERVALS * interval).sum()),
         "rows_per_position": 1.0 if log.held is None else log.held.rows,
-        "rows_per_force": 1.0 if forces is None else forces.rows,
+        "rows_per_force": 1.0 if log.held_force is None else log.held_force.rows,
         "position_resolution_m": float(log.quantum_m.max()),
         "force_resolution_N": float(log.quantum_N.max()),
     }

@@ -1,16 +1,73 @@
 """The rendered stiffness against the linear limit of a device, which the program computes."""
 import json
 
+import numpy as np
 from hapbench_command import asked_of_program
+
+MOST_DELAYS = 5  # that are compared
 
 
 def device_limit(device, interval, contact):
-    """Limit and frequency of the loop of the device [SI units] at the log's rate and delay with the contact's
-    stiffness and damping; None if the contact has no stiffness."""
-    stiffness = contact and contact.get("stiffness_N_per_m")
-    if not stiffness or stiffness <= 0.0:
+    """Limit and frequency of the loop of the device [SI units] at the period `interval` [s] with the contact's
+    stiffness, damping and delay, and the range of the limit over the dampings and delays that the log allows; None if
+    the contact has no stiffness. Where the log does not determine damping or delay, the limit itself is None.
+    """
+    if not contact:
         return None
-    damping = max(contact.get("damping_N_s_per_m") or 0.0, 0.0)
+    stiffness, loops = contact["stiffness_N_per_m"], contact["loops"]
+    delays = sorted({delay for delay, _ in loops})
+    some = np.linspace(0, len(delays) - 1, min(len(delays), MOST_DELAYS)).round().astype(int)
+    chosen = [delays[i] for i in some.tolist()]
+    answers = [
+        loop_of(device, interval, stiffness, damping, delay)
+        for delay, damping in loops
+        if delay in chosen
+    ]
+    limits = [
+        float("inf") if one["linear_limit_N_per_m"] is None else one["linear_limit_N_per_m"]
+        for one in answers
+    ]
+    ends = [min(limits), max(limits)]
+    low, high = contact["stiffness_interval"]
+    found = {
+        "stiffness_N_per_m": stiffness,
+        "rate_Hz": 1.0 / interval,
+        "linear_limit_interval": [None if np.isinf(one) else one for one in ends],
+        "ratio_interval": [
+            low / ends[1] if ends[1] else None,
+            high / ends[0] if ends[0] else None,
+        ],
+        "damping_N_s_per_m": contact["damping_N_s_per_m"],
+        "log_delay_s": contact["delay_s"],
+    }
+    delay, damping = contact["delay_s"], contact["damping_N_s_per_m"]
+    is_known = delay is not None and damping is not None
+    if not is_known:
+        unknown = (
+            "linear_limit_N_per_m",
+            "worst_hand_limit_N_per_m",
+            "at_stiffness",
+            "at_limit",
+        )
+        loop = answers[0] | dict.fromkeys((*unknown, "delay_samples"))
+        return found | loop | {"ratio": None, "expected_frequency_Hz": None, "is_known": False}
+    loop = loop_of(device, interval, stiffness, max(damping, 0.0), delay)
+    limit, oscillation = loop["linear_limit_N_per_m"], loop["at_stiffness"] or {}
+    grows = oscillation.get("growth_per_s", 0.0) > 0.0
+    return (
+        found
+        | loop
+        | {
+            "damping_N_s_per_m": max(damping, 0.0),
+            "ratio": stiffness / limit if limit else None,
+            "expected_frequency_Hz": oscillation.get("frequency_Hz") if grows else None,
+            "is_known": True,
+        }
+    )
+
+
+def loop_of(device, interval, stiffness, damping, delay):
+    """The loop of the device at a wall."""
     answer = asked_of_program(
         "knows devices and their linear limits",
         "audit",
@@ -19,15 +76,6 @@ def device_limit(device, interval, contact):
         interval,
         stiffness,
         damping,
-        contact["delay_s"],
+        delay,
     )
-    loop = json.loads(answer)
-    limit, oscillation = loop["linear_limit_N_per_m"], loop["at_stiffness"] or {}
-    grows = oscillation.get("growth_per_s", 0.0) > 0.0
-    return loop | {
-        "stiffness_N_per_m": stiffness,
-        "damping_N_s_per_m": damping,
-        "log_delay_s": contact["delay_s"],
-        "ratio": stiffness / limit if limit else None,
-        "expected_frequency_Hz": oscillation.get("frequency_Hz") if grows else None,
-    }
+    return json.loads(answer)

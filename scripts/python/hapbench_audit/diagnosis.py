@@ -123,11 +123,9 @@ def against_buzz(audit, ratio):
         )
     if ratio is not None and ratio > rules()["edge"]["threshold"]:
         return 'what the rule "edge" says'
-    if stiffness and stiffness["delay_s"] > 0.0:
-        return (
-            f"a shorter delay: the force lags the position by {1e3 * stiffness['delay_s']:.3g} ms, which acts like a "
-            f"damping of {-stiffness['stiffness_N_per_m'] * stiffness['delay_s']:.3g} N s/m"
-        )
+    if stiffness and stiffness["delay_interval_s"][0] > 0.0:
+        lost = stiffness["stiffness_N_per_m"] * stiffness["delay_interval_s"][0]
+        return f"a shorter delay: {lag_text(stiffness)}, which acts like a damping of {-lost:.3g} N s/m"
     encoder = encoder_share(audit, audit["metrics"]["force_mean_in_contact_N"])
     if (encoder or 0.0) > rules()["encoder"]["threshold"]:
         return 'what the rule "encoder" says'
@@ -202,6 +200,13 @@ def against_chatter(vibration):
     return "friction without a jump at zero speed, and contact normals that do not flip"
 
 
+def lag_text(stiffness):
+    first, last = (1e3 * one for one in stiffness["delay_interval_s"])
+    if first == last:
+        return f"the force lags the position by {first:.3g} ms"
+    return f"the force lags the position by {first:.3g} to {last:.3g} ms"
+
+
 def half_hold(stiffness, interval):
     """Damping that pays for the energy which holding the force of a spring over an interval creates [N s/m]."""
     return 0.5 * stiffness["stiffness_N_per_m"] * interval
@@ -209,12 +214,11 @@ def half_hold(stiffness, interval):
 
 def against_energy(audit):
     energy, stiffness, interval = audit["energy"], audit["stiffness"], audit["clock"]["interval_s"]
-    if stiffness and stiffness["delay_s"] > 0.0:
-        return (
-            f"a shorter delay: the force lags the position by {1e3 * stiffness['delay_s']:.3g} ms; "
-            "damping of more than "
-            f"{stiffness['stiffness_N_per_m'] * (stiffness['delay_s'] + 0.5 * interval):.3g} N s/m would pay for it"
+    if stiffness and stiffness["delay_interval_s"][0] > 0.0:
+        enough = stiffness["stiffness_N_per_m"] * (
+            stiffness["delay_interval_s"][1] + 0.5 * interval
         )
+        return f"a shorter delay: {lag_text(stiffness)}; damping of more than {enough:.3g} N s/m would pay for it"
     is_of_hold = energy["net_created_path_J"] < 0.1 * energy["net_created_J"]
     if is_of_hold:
         return (

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 
 import numpy as np
 from hapbench_command import fail, finite_number, quoted, require_name
-from hapbench_import.columns import Names
+from hapbench_import.columns import ABSENT, Names
 from hapbench_import.holds import hold_of
 from hapbench_import.options import QUANTITIES, options_of
 from hapbench_import.recording import EXACT, Recording, open_recording
@@ -16,7 +16,6 @@ FEWEST = 20  # samples
 LONG_INTERVALS = 10.0  # median intervals; a longer gap ends a contact
 LATEST_START = 1e6  # first time that is kept [s]
 FASTEST = 5.0  # of a hand [m/s]
-ZERO = "absent"  # begins the names of the columns that a log of one axis lacks
 # Names of the first column of each quantity in usual logs: lower case, without units, signs and blanks.
 USUAL = {
     "time": "time times t ts timestamp stamp secs simtime headerstamp clock",
@@ -55,15 +54,19 @@ class Log:
     )
     quantum_N: np.ndarray | None = None  # of each force component [N]
     held: object = None  # Hold of the positions, or None
+    held_force: object = None  # Hold of the forces, or None
     touch: float | None = None  # force from which a row is in contact [N]; None: as the log shows
 
     @property
     def interval(self):
-        """Seconds from row to row: the mean of an even clock, else the median."""
+        """Seconds from row to row: the mean, without steps over missing rows."""
         steps = np.diff(self.time)
         mean = (self.time[-1] - self.time[0]) / len(steps)
         off = self.time - self.time[0] - np.arange(len(self.time)) * mean
-        return float(mean if np.abs(off).max() <= 1e-3 * mean else np.median(steps))
+        if np.abs(off).max() <= 1e-3 * mean:
+            return float(mean)
+        usual = steps[steps < 1.5 * np.median(steps)]
+        return float(usual.mean())
 
 
 def read_log(options):
@@ -169,7 +172,7 @@ def log_of(recording, options, wanted):
             for part, column in zip("xyz" if len(found) == 3 else [quantity], found)
         ]
     used = {
-        quantity: [part for part in parts if not part["name"].startswith(ZERO)]
+        quantity: [part for part in parts if not part["name"].startswith(ABSENT)]
         for quantity, parts in used.items()
     }
     frame = np.array(options.frame).T
@@ -185,7 +188,7 @@ def log_of(recording, options, wanted):
         extra["contacts"][:, 0] if "contacts" in extra else None,
         axes,
         used,
-        [title for title in names.others(used) if f" {ZERO}" not in title],
+        names.others(used),
         read.scales,
         [note for note in read.notes if not note.startswith("each pose is repeated")],
     )
@@ -195,7 +198,7 @@ def log_of(recording, options, wanted):
             f"{read.left_out[0][0]}: {read.left_out[0][1]}"
         )
     log.quantum_m, log.quantum_N = quanta(log.position), quanta(log.force)
-    log.held = hold_of(log.position)
+    log.held, log.held_force = hold_of(log.position), hold_of(log.force)
     return log
 
 
@@ -265,33 +268,49 @@ def with_usual_columns(recording, options):
         if name is not None:
             options.columns["orientation"] = [name]
             options.optional = options.optional | {"orientation"}
-    alone = {
-        quantity: alone_column(names, options.columns[quantity])
-        for quantity in parts
-        if quantity in options.columns
-    }
+    alone = alone_columns(names, options, parts)
     if len(alone) < 2 or None in alone.values():
         return recording, 3
+    added = len(names.names) + 1
     for quantity, components in parts.items():
         del options.columns[quantity]
-        columns = [alone[quantity] + 1, len(names.names) + 1, len(names.names) + 2]
-        if quantity == "force":
-            columns = [alone[quantity] + 1, len(names.names) + 3, len(names.names) + 4]
+        columns = [alone[quantity] + 1, added, added + 1]
+        added += 2
         options.columns |= {part: [str(at)] for part, at in zip(components, columns)}
+        if quantity in options.named:
+            options.named = options.named - {quantity} | set(components)
     return with_zeros(recording, 4), 1
 
 
-def alone_column(names, words):
-    """The column of a quantity whose name does not say which columns are the other components, or None."""
-    column, by_number = names.find("", words, ("_x", ".x", "x", "[0]", "_0", ".0", "0"))
-    if column is None or by_number:
-        return None
-    return column if names.components(column, ("x", "y", "z")) is None else None
+def alone_columns(names, options, parts):
+    """By quantity: its only column, or None where it has three."""
+    found = {
+        quantity: names.find(
+            "", options.columns[quantity], ("_x", ".x", "x", "[0]", "_0", ".0", "0")
+        )
+        for quantity in parts
+        if quantity in options.columns
+    }
+    numbers = [column for column, by_number in found.values() if by_number]
+    # Three columns from each number would overlap or end beyond the file.
+    are_alone = len(numbers) > 0 and (
+        max(numbers) + 3 > len(names.names)
+        or (len(numbers) == 2 and abs(numbers[0] - numbers[1]) < 3)
+    )
+
+    def alone(column, by_number):
+        if column is None or (by_number and not are_alone):
+            return None
+        if by_number:
+            return column
+        return column if names.components(column, ("x", "y", "z")) is None else None
+
+    return {quantity: alone(*one) for quantity, one in found.items()}
 
 
 def with_zeros(recording, count):
     """The recording with so many columns of zeros."""
-    added = [f"{ZERO}_{i}" for i in range(count)]
+    added = [f"{ABSENT}_{i}" for i in range(count)]
     if recording.is_binary:
         zeros = [np.zeros(len(recording.rows))] * count
         arrays = [recording.rows[name] for name in recording.names] + zeros
@@ -329,7 +348,7 @@ def extra_columns(names, quantity, word, axes):
     if axes == 1:
         return [column]
     if by_number:
-        if column + 3 > len(names.names):
+        if column + 3 > len(names.own()):
             names.fail(quantity, f"takes columns {column + 1} ... {column + 3}")
         return [column, column + 1, column + 2]
     found = names.components(column, ("x", "y", "z"))

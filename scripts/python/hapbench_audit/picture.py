@@ -71,8 +71,9 @@ class Drawing:
         direction = np.array(spring["direction"])
         is_used = (log.time >= spring["start_s"]) & (log.time <= spring["end_s"])
         rows = np.flatnonzero(is_used & self.contacts.in_contact)
-        rows = rows[spring["delay_rows"] :: max(1, len(rows) // MOST_POINTS)]
-        place = log.position[rows - spring["delay_rows"]] @ direction
+        delay = spring["delay_rows"] or 0
+        rows = rows[delay :: max(1, len(rows) // MOST_POINTS)]
+        place = log.position[rows - delay] @ direction
         unit, factor = ("um", 1e6) if np.ptp(place) < SMALL else ("mm", 1e3)
         place, along = factor * place, log.force[rows] @ direction
         ax.plot(place, along, ".", ms=1.5, color=colours[0])

@@ -1,29 +1,48 @@
-"""Stiffness and damping that a contact rendered: regression of the force along its main direction on position, velocity
-and the sign of the velocity, over delays of whole rows."""
-from dataclasses import dataclass
+"""Stiffness, damping and delay that a log determines: of each contact, and combined over the contacts."""
+import math
+from dataclasses import dataclass, field
 
 import numpy as np
+from scipy.stats import t as student
+
+from .models import Motion, fit_of, low_pass_of, neighbours_of, residual_of
 
 FEWEST = 20  # rows of a contact
-MOST_DELAY = 50  # rows
-LONGEST_MEMORY = 1000  # rows
+FEWEST_NEW = 15  # of these, rows with a new force above 0 and below the largest force
+LANDING = 10.0  # residuals of a landing by residuals of the rest: an impact is more than a spring
+EXACT = 0.01  # of the largest change of the force: residuals of a landing that is no impact
 FEWEST_COUNTS = 10  # travel in steps of the position's resolution
 EXPLAINED = 0.5  # share of the variance that a spring must explain
-NEARLY_BEST = 2.0  # times the smallest mean square: delays that explain the force as well
+WELL_KNOWN = 0.25  # half-width of the interval as a share: values known worse are not stated
+UNLIKELY = 5.0  # logarithm of a likelihood ratio: models below it are as good as the best one
+EXACTLY = 1e-9  # share of the variance: an engine whose law the model is leaves less unexplained
+SAMPLED = (
+    2e-3  # share of a value that sampling may change otherwise: (2 pi f T)^2 / 6 at 17 Hz and 1 kHz
+)
+MOST_TRIED = 60  # models with negative damping before one without
+CERTAIN = 20.0  # the logarithm that one contact contributes at most
+SIMILAR = 0.1  # share by which mean squares must differ: the residuals are no white noise
+MOST_EXCUSED = 2.0  # times the smallest mean square: what the sampling of a velocity excuses
+NEGLIGIBLE = 1e-12  # share of the variance that rounding may leave unexplained
+TYPICAL = 10.0  # times the unexplained share of a typical contact
 DRY_GAIN = 0.7  # the sign of the velocity must lower the sum of squares below this share
 DRY_SHARE = 0.02  # and be at least this share of the mean force
-NEGLIGIBLE = 1e-6  # share of the variance that may stay unexplained
+AT_LIMIT = 0.999  # of the largest force
+TILTS = 8  # steps of the search for the normal
+MOST_ROWS = 500  # of the search
+SEARCHED = ("logged", "backward", "central", "low-pass 4")  # velocities of the search
 
 
 @dataclass
-class Fit:
-    values: np.ndarray  # of the columns: position, velocity, (sign), 1
-    errors: np.ndarray  # standard errors
-    squares: float  # sum of squared residuals
-    explained: float  # share of the variance
-    delay: int  # rows
-    rows: int
-    speed: float  # root mean square of the velocity less its mean [m/s]
+class Evidence:
+    """What one contact says about each model."""
+
+    motion: object  # Motion along the direction, or None
+    found: dict  # numbers for the JSON
+    likelihood: dict = field(default_factory=dict)  # logarithm below the best model, by Model
+    place: np.ndarray | None = None  # positions of the rows along the direction [m]
+    resolution: float = 0.0  # [m]
+    rows: np.ndarray | None = None  # row numbers
 
 
 def main_direction(force):
@@ -33,189 +52,532 @@ def main_direction(force):
     return direction if (force @ direction).sum() >= 0.0 else -direction
 
 
-def stiffness_of(log, rows):
-    """Numbers of the contact in these rows (an array of row numbers, mostly consecutive). `why`: why there are none."""
+def evidence_of(log, rows, settled):
+    """Evidence of the contact in these rows. `settled`: of these, those after a landing. Landings count if the model
+    that explains them and the rest explains the rest as well as a model of the rest alone.
+    """
+    rows, settled = pushing(log, rows), pushing(log, settled)
+    if len(rows) < FEWEST_NEW:
+        return Evidence(
+            None, {"why": f"{len(rows)} rows with a new force, {FEWEST_NEW} are needed"}
+        )
+    every = evidence_of_rows(log, rows)
+    if len(settled) < max(FEWEST_NEW, len(rows) // 2) or len(settled) == len(rows):
+        return every
+    return every if explains_landing(every, rows, settled) else evidence_of_rows(log, settled)
+
+
+def explains_landing(evidence, rows, settled):
+    """True if the best model explains the landing nearly as well as the rows after it."""
+    if not evidence.likelihood:
+        return False
+    best = min(evidence.likelihood, key=evidence.likelihood.get)
+    matrix, target = evidence.motion.columns(best)
+    residual = target - matrix @ np.linalg.lstsq(matrix, target, rcond=None)[0]
+    is_settled = np.isin(rows, settled)[evidence.motion.usable()]
+    if is_settled.all() or not is_settled.any():
+        return True
+    landing, rest = np.mean(residual[~is_settled] ** 2), np.mean(residual[is_settled] ** 2)
+    return landing <= LANDING**2 * rest or np.sqrt(landing) <= EXACT * np.ptp(target)
+
+
+def unexplained(evidence):
+    """Share of the variance of the force that no model explains; 1 for a contact without a spring."""
+    return 1.0 - evidence.found.get("explained", 0.0)
+
+
+def pushing(log, rows):
+    """The rows whose force is neither zero nor cut off at the largest force of the log, and new in the row."""
+    size = np.linalg.norm(log.force, axis=1)
+    flat = np.append(np.abs(np.diff(size)) <= 1e-6 * size.max(), False)
+    at_limit = (size >= AT_LIMIT * size.max()) & (flat | np.append(False, flat[:-1]))
+    keep = (size > 0.0) & ~at_limit
+    if log.held_force is not None:
+        keep &= log.held_force.fresh
+    return rows[keep[rows]]
+
+
+def evidence_of_rows(log, rows, given=None):
+    """Evidence of these rows along the normal of the surface, or along a `given` direction."""
     force = log.force[rows]
-    if len(rows) < FEWEST:
-        return {"why": f"{len(rows)} rows, {FEWEST} are needed"}
-    direction = main_direction(force)
-    place, along = log.position @ direction, force @ direction
-    speed = speeds(log, place, direction)
-    if log.held is not None:
-        rows, along = rows[log.held.fresh[rows]], along[log.held.fresh[rows]]
-    travel = float(np.ptp(place[rows])) if len(rows) else 0.0
-    resolution = float(np.abs(direction) @ log.quantum_m)
+    direction = main_direction(force) if given is None else given
+    motion, better = Motion(log, rows, direction), None
+    if given is None and np.linalg.matrix_rank(log.position[rows] - log.position[rows[0]]) > 1:
+        better = normal_of(log, rows, direction, motion)
+    if better is not None:
+        direction, motion = better
+    sideways = np.linalg.norm(force - np.outer(force @ direction, direction)) / np.linalg.norm(
+        force
+    )
+    place = log.position[rows] @ direction
+    resolution, travel = float(np.abs(direction) @ log.quantum_m), float(np.ptp(place))
     found = {
         "direction": direction.tolist(),
-        "off_direction_share": float(
-            np.linalg.norm(force - np.outer(force @ direction, direction)) / np.linalg.norm(force)
-        ),
+        "off_direction_share": float(sideways),
         "travel_m": travel,
         "resolution_m": resolution,
+        "start_s": float(log.time[rows[0]]),
+        "end_s": float(log.time[rows[-1]]),
     }
-    if len(rows) < FEWEST:
-        return found | {"why": f"{len(rows)} fresh rows, {FEWEST} are needed"}
     if travel <= FEWEST_COUNTS * resolution or travel <= 1e-12:
         counts = f", {travel / resolution:.3g} steps of its resolution" if resolution else ""
-        return found | {"why": f"the position along the force moves by {travel:.3g} m only{counts}"}
-    if np.ptp(along) == 0.0:
-        return found | {"why": "the force is constant"}
-    fit, has_sign = best_fit(place, speed, along, rows)
-    if fit is None or fit.explained < EXPLAINED:
-        share = 0.0 if fit is None else fit.explained
-        return found | {
-            "why": f"a spring and a damper explain {100.0 * share:.0f} % of the force's variance, as in a rigid "
-            "contact, or with friction along the force",
-            "explained": share,
-        }
-    return found | numbers_of(fit, has_sign, log, resolution, place[rows], speed[rows], along)
-
-
-def speeds(log, place, direction):
-    """Velocity along the direction [m/s]: as logged, else the difference to the row before."""
-    if log.velocity is not None:
-        return log.velocity @ direction
-    if log.held is None:
-        return np.diff(place, prepend=place[0]) / np.diff(
-            log.time, prepend=2.0 * log.time[0] - log.time[1]
+        why = f"the position along the force moves by {travel:.3g} m only{counts}"
+        return Evidence(None, found | {"why": why}, rows=rows)
+    if np.ptp(log.force[rows] @ direction) == 0.0:
+        return Evidence(None, found | {"why": "the force is constant"})
+    known, best = residuals(motion)
+    if best is None:
+        return Evidence(None, found | {"why": "position and velocity are not independent"})
+    found["explained"] = 1.0 - known[best].mean_square / max(known[best].total, 1e-300)
+    if found["explained"] < EXPLAINED:
+        found["why"] = (
+            f"a spring and a damper explain {100.0 * max(found['explained'], 0.0):.0f} % of the force's variance, as in "
+            "a rigid contact, or with friction along the force"
         )
-    fresh = np.flatnonzero(log.held.fresh)
-    found = np.zeros(len(place))
-    found[fresh[1:]] = np.diff(place[fresh]) / np.diff(log.time[fresh])
-    return found
+        return Evidence(None, found, rows=rows)
+    return Evidence(motion, found, likelihoods(motion, known, best), place, resolution, rows)
 
 
-def best_fit(place, speed, force, rows):
-    """The fit with the shortest delay that explains the force nearly as well as the best and has no negative damping:
-    a delay d of a stiffness K looks like a damping of −K d."""
-    most = min(MOST_DELAY, len(rows) // 10)
+def residuals(motion):
+    """(Residual by Model, Model with the smallest residual or None)."""
+    found = {}
+    for model in motion.models():
+        residual = residual_of(motion, model)
+        if residual is not None:
+            found[model] = residual
+    return found, min(found, key=lambda model: found[model].mean_square, default=None)
+
+
+def likelihoods(motion, found, best):
+    """Logarithms of the likelihood below the likelihood of the best Model.
+
+    A model whose residual is as large as rounding and sampling make it is as good as the best one, although its sum of
+    squares may be larger. An engine that renders the rounded positions themselves leaves smaller residuals than
+    rounding: `share` of the expected ones.
+    """
+    least = found[best]
+    floor = NEGLIGIBLE * least.total
+    share = min(1.0, least.mean_square / max(least.rounding + least.sampling, 1e-300))
+    independent = fit_of(motion, best).independent
+
+    def below(one):
+        # Rounding is known exactly, the error of a sampled velocity only roughly.
+        usual = least.mean_square + share * (one.sampling - least.sampling)
+        usual = float(np.clip(usual, least.mean_square, MOST_EXCUSED * least.mean_square))
+        usual += share * max(one.rounding - least.rounding, 0.0) + floor
+        return max(math.log((one.mean_square + floor) / (1.0 + SIMILAR) / usual), 0.0)
+
+    return {model: 0.5 * independent * below(one) for model, one in found.items()}
+
+
+def normal_of(log, rows, direction, motion):
+    """(normal, Motion along it) of a surface over which the tool slides with friction, or None if the main direction
+    of the force explains the force as well. A force that depends on the depth has its gradient along the normal. The
+    force along the normal is free of friction."""
+    known, best = residuals(motion)
+    if best is None:
+        return None
+    first, normal, model = known[best], direction, None
+    if first.mean_square <= EXACTLY * first.total:
+        return None
+    space = [Motion(log, rows, axis) for axis in np.eye(3)]
+    for _ in range(TILTS):
+        gradient, model = gradient_of(log, rows, normal, space, model)
+        if gradient is None:
+            return None
+        is_found = np.linalg.norm(np.cross(gradient, normal)) < 1e-7
+        normal = gradient
+        if is_found:
+            break
+    motion = Motion(log, rows, normal)
+    known, best = residuals(motion)
+    if best is None:
+        return None
+    is_better = known[best].mean_square * first.total < 0.5 * first.mean_square * known[best].total
+    return (normal, motion) if is_better else None
+
+
+def gradient_of(log, rows, normal, space, model):
+    """(direction in which the force along `normal` grows the most, Model), or (None, None). `space`: Motion along each
+    axis. `model`: None for the best one."""
+    keep = space[0].usable()
+    force = (log.force[rows] @ normal)[keep]
+    some = np.linspace(0, keep.sum() - 1, min(keep.sum(), MOST_ROWS)).astype(int)
+    force = force[some] - force[some].mean()
+    moving = [
+        i for i in range(3) if np.ptp(log.position[rows, i]) > FEWEST_COUNTS * log.quantum_m[i]
+    ]
+    if len(force) < FEWEST_NEW or not moving:
+        return None, None
+    best = (math.inf, None, None)
+    tried = [one for one in space[0].models() if one.kind in SEARCHED] if model is None else [model]
+    for one in tried:
+        columns = np.hstack([space[i].columns(one)[0][some] for i in moving])
+        sizes = np.maximum(np.linalg.norm(columns, axis=0), 1e-300)
+        slopes = np.linalg.lstsq(columns / sizes, force, rcond=1e-6)[0]
+        residual = force - columns / sizes @ slopes
+        best = min(best, (float(residual @ residual), one, slopes / sizes), key=lambda it: it[0])
+    _, model, slopes = best
+    # Components in which the tool does not move keep their share of the direction of the force.
+    gradient, size = normal.copy(), np.linalg.norm(slopes[::2])
+    if not size > 0.0:
+        return None, None
+    gradient[moving] = -slopes[::2] / size * np.linalg.norm(normal[moving])
+    gradient *= np.sign(gradient @ normal) or 1.0
+    return gradient / np.linalg.norm(gradient), model
+
+
+def as_good(evidences):
+    """Models that explain all contacts nearly as well as the best one, the best first. A contact that is too short for
+    a long delay counts as with its longest."""
+    models = sorted({model for one in evidences for model in one.likelihood})
+    if not models:
+        return []
+
+    def score(model):
+        total = 0.0
+        for one in evidences:
+            while model not in one.likelihood and model.delay > 0:
+                model = type(model)(model.delay - 1, model.kind)
+            total += min(one.likelihood.get(model, CERTAIN), CERTAIN)
+        return total
+
+    scores = {model: score(model) for model in models}
+    order = sorted(models, key=lambda model: (scores[model], model))
+    least = scores[order[0]]
+    found = [model for model in order if scores[model] <= least + UNLIKELY]
+    calm = [model for model in found if not is_negative(evidences, model)]
+    if calm:
+        return calm
+    # Neither negative damping nor the next model without it is certain where no model fits well.
+    near = [m for m in order if scores[m] <= least + 0.5 * CERTAIN * len(evidences)]
+    best = next((m for m in near[:MOST_TRIED] if not is_negative(evidences, m)), None)
+    return found if best is None else [*found, best]
+
+
+def is_negative(evidences, model):
+    """True if the damping of a model is negative in most contacts. A delay d of a stiffness K looks like a damping of
+    -K d: of this, a quarter of the damping of one row is zero."""
+    fits = [(one, fit_of(one.motion, model)) for one in evidences if model in one.likelihood]
+    signs = [
+        fit.damping + fit.halves[1] < -0.25 * fit.stiffness * one.motion.interval < 0.0
+        for one, fit in fits
+        if fit is not None
+    ]
+    return 2 * sum(signs) > len(signs)
+
+
+def well_explained(evidences):
+    """The contacts that a spring and a damper explain about as well as they explain the median contact."""
+    usual = float(np.median([unexplained(one) for one in evidences])) if evidences else 0.0
+    return [one for one in evidences if unexplained(one) <= TYPICAL * usual + NEGLIGIBLE]
+
+
+def with_shared_normal(log, evidences):
+    """The evidences, where contacts that a spring explains worse than the best contact use its direction if that
+    explains them better: most logs have one flat surface."""
+    known = [one for one in evidences if one is not None and one.likelihood]
+    if log.axes == 1 or len(known) < 2:
+        return evidences
+    best = min(known, key=unexplained)
+    direction = np.array(best.found["direction"])
+
+    def improved(one):
+        if one is None or one.rows is None or unexplained(one) <= TYPICAL * unexplained(best):
+            return one
+        other = evidence_of_rows(log, one.rows, direction)
+        return other if unexplained(other) < 0.5 * unexplained(one) else one
+
+    return [improved(one) for one in evidences]
+
+
+@dataclass
+class Estimate:
+    """A number with its 95 % interval over several models, of which the first is the best."""
+
+    value: float
+    low: float
+    high: float
+
+    @property
+    def half(self):
+        return 0.5 * (self.high - self.low)
+
+
+def numbers_of(log, evidence, models):
+    """Numbers for the JSON of one contact, with intervals over these models; `why`: why it has no stiffness."""
     fits = [
         fit
-        for delay in range(most + 1)
-        if (fit := fit_at(place, speed, force, rows, delay, False, most)) is not None
+        for model in models
+        if model in evidence.likelihood and (fit := fit_of(evidence.motion, model)) is not None
     ]
     if not fits:
-        return None, False
-    chosen = fit_at(place, speed, force, rows, shortest(fits).delay, False)
-    with_sign = fit_at(place, speed, force, rows, chosen.delay, True)
-    is_dry = (
-        with_sign is not None
-        and chosen.explained < 1.0 - 1e-6
-        and with_sign.squares / with_sign.rows < DRY_GAIN * chosen.squares / chosen.rows
-        and abs(with_sign.values[2])
-        > max(2.0 * with_sign.errors[2], DRY_SHARE * np.abs(force).mean())
-    )
-    return (with_sign, True) if is_dry else (chosen, False)
-
-
-def shortest(fits):
-    def mean_square(fit):
-        return fit.squares / fit.rows
-
-    scale = max(fit.squares / max(1.0 - fit.explained, 1e-30) / fit.rows for fit in fits)
-    floor = NEGLIGIBLE * scale
-    least = min(map(mean_square, fits))
-    good = [fit for fit in fits if mean_square(fit) <= NEARLY_BEST * least + floor]
-    # A force of the wrong sign is no delay, although half a period of a periodic motion explains it as well.
-    if -good[0].values[0] < -2.0 * good[0].errors[0]:
-        return good[0]
-    calm = [
-        fit
-        for fit in good
-        if -fit.values[1] >= -2.0 * fit.errors[1] - 1e-6 * abs(fit.values[1])
-        or abs(fit.values[1]) * fit.speed <= 1e-6 * np.sqrt(scale)
-    ]
-    return calm[0] if calm else min(good, key=mean_square)
-
-
-def fit_at(place, speed, force, rows, delay, with_sign, most=0):
-    """Least squares of the force on position, velocity and 1 of `delay` rows before; None without variation. `most`:
-    the first rows are left out, so that fits up to this delay share their forces."""
-    before = rows - delay
-    # A delayed row must belong to the contact, and the first speed has no row before it.
-    usable = (before >= max(int(rows[0]), 1)) & (rows >= rows[0] + most)
-    x, v, f = place[before[usable]], speed[before[usable]], force[usable]
-    if len(x) < FEWEST // 2 or np.ptp(x) == 0.0:
-        return None
-    columns = [x - x.mean(), v - v.mean()]
-    if with_sign:
-        moving = np.sign(np.where(np.abs(v) > 1e-3 * np.abs(v).max(), v, 0.0))
-        columns.append(moving - moving.mean())
-    sizes = np.array([np.linalg.norm(column) for column in columns])
-    if sizes[1] == 0.0 or (with_sign and sizes[2] == 0.0):
-        return None
-    matrix = np.column_stack(columns) / sizes
-    target = f - f.mean()
-    scaled, _, rank, _ = np.linalg.lstsq(matrix, target, rcond=1e-10)
-    if rank < matrix.shape[1]:
-        return None
-    residual = target - matrix @ scaled
-    squares, variance = float(residual @ residual), float(target @ target)
-    inverse = np.linalg.inv(matrix.T @ matrix)
-    spread = squares / max(len(f) - matrix.shape[1] - 1, 1) * memory(residual)
-    return Fit(
-        scaled / sizes,
-        np.sqrt(np.diag(inverse) * spread) / sizes,
-        squares,
-        1.0 - squares / variance if variance > 0.0 else 0.0,
-        delay,
-        len(f),
-        float(sizes[1] / np.sqrt(len(f))),
-    )
-
-
-def memory(residual):
-    """Rows that one independent residual stands for: 1 + 2 times the sum of the autocorrelations above 0.05."""
-    power, total = float(residual @ residual), 1.0
-    if power == 0.0:
-        return 1.0
-    for lag in range(1, min(len(residual) // 4, LONGEST_MEMORY)):
-        correlation = float(residual[lag:] @ residual[:-lag]) / power
-        if correlation < 0.05:
-            break
-        total += 2.0 * correlation
-    return total
-
-
-def numbers_of(fit, has_sign, log, resolution, place, speed, along):
-    """Values with 95 % intervals."""
-    interval = log.interval
-    # Rounding of the position makes a slope smaller, by its share of the variance.
-    shrink = resolution**2 / 12.0 / max(float(np.var(place)), 1e-300)
-    stiffness, damping = -fit.values[0], -fit.values[1]
-    k_half = 1.96 * fit.errors[0] + (1e-6 + shrink) * abs(stiffness)
-    found = {
-        "stiffness_N_per_m": float(stiffness),
-        "stiffness_interval": [float(stiffness - k_half), float(stiffness + k_half)],
-        "delay_rows": fit.delay,
-        "delay_s": fit.delay * interval,
-        "explained": fit.explained,
-        "dry_friction_N": float(-fit.values[2]) if has_sign else 0.0,
-        "linearity": linearity(place, along + damping * speed, fit),
-    }
-    of_rounding = resolution / interval / np.sqrt(6.0) if log.velocity is None else 0.0
-    if of_rounding > 0.3 * fit.speed and fit.explained < 0.9999:
-        return found | {
-            "damping_N_s_per_m": None,
-            "damping_interval": None,
-            "why_no_damping": "the resolution of the position hides the velocity",
+        return {"why": "the contact is too short for the delay of the force"}
+    nearest = min(fits, key=lambda fit: fit.model.delay)
+    if nearest.stiffness + nearest.halves[0] <= 0.0:
+        return {
+            "why": f"the force grows along its own direction, by {-nearest.stiffness:.4g} N/m",
+            "apparent_stiffness_N_per_m": nearest.stiffness,
         }
-    b_half = 1.96 * fit.errors[1] + 1e-6 * abs(damping) + 1e-9 * abs(stiffness) * interval
-    return found | {
-        "damping_N_s_per_m": float(damping),
-        "damping_interval": [float(damping - b_half), float(damping + b_half)],
+    best = likely(fits)
+    friction = dry_friction(evidence.motion, best)
+    if friction:
+        again = [fit_of(evidence.motion, fit.model, True) for fit in fits]
+        fits = [fit for fit in again if fit is not None]
+        best = next(fit for fit in fits if fit.model == best.model)
+    interval = log.interval
+    for fit in fits:
+        widen(evidence.motion, fit, bool(friction))
+    stiffness = spanned(
+        best.stiffness, fits, lambda fit: (fit.stiffness, stiffness_half(evidence, fit))
+    )
+    damping = spanned(
+        best.damping, fits, lambda fit: (fit.damping, damping_half(log, evidence, fit))
+    )
+    # Slow motion shows B - K d only.
+    slow = spanned(
+        best.damping - best.stiffness * best.model.delay * interval,
+        fits,
+        lambda fit: (
+            fit.damping - fit.stiffness * fit.model.delay * interval,
+            damping_half(log, evidence, fit)
+            + fit.model.delay * interval * stiffness_half(evidence, fit),
+        ),
+    )
+    delays = sorted({fit.model.delay for fit in fits})
+    numbers = {
+        "explained": best.explained,
+        "delay_rows_interval": [delays[0], delays[-1]],
+        "dry_friction_N": -float(best.values[2]) if friction else 0.0,
+        "stiffness": stiffness,
+        "damping": damping,
+        "slow_damping": slow,
+        "best": best,
+        "fits": fits,
     }
+    if stiffness.low <= 0.0 or stiffness.half > WELL_KNOWN * stiffness.value:
+        numbers["why"] = why_unknown(fits, stiffness, delays, interval)
+    return numbers
 
 
-def linearity(place, along, fit):
-    """Stiffness of the deeper half of the travel divided by the stiffness of the other half, or None; 1: linear.
-    `along`: force without the damping."""
+def widen(motion, fit, with_sign):
+    """Adds the distance to the fits of neighbouring velocities to the intervals."""
+    near = [fit_of(motion, model, with_sign) for model in neighbours_of(fit.model, motion.speeds)]
+    distances = [np.abs(one.values - fit.values) for one in near if one is not None]
+    if fit.explained < 1.0 - EXACTLY:
+        fit.halves = fit.halves + SAMPLED * np.abs(fit.values)
+    if distances:
+        # A filter's time constant lies at most half way to the next one.
+        share = 0.5 if low_pass_of(fit.model.kind) else 1.0
+        fit.halves = fit.halves + share * np.max(distances, axis=0)
+
+
+def likely(fits):
+    """The first fit without negative damping, which a delay causes; else the first."""
+    return next(
+        (fit for fit in fits if fit.stiffness > 0.0 and fit.damping + fit.halves[1] >= 0.0), fits[0]
+    )
+
+
+def why_unknown(fits, stiffness, delays, interval):
+    text = f"stiffnesses of {stiffness.low:.3g} to {stiffness.high:.3g} N/m explain the force equally well"
+    if len(delays) > 1:
+        return (
+            f"{text}, with delays of {1e3 * delays[0] * interval:.3g} to {1e3 * delays[-1] * interval:.3g} ms, as in a "
+            "single oscillation or decay"
+        )
+    return text
+
+
+def spanned(value, fits, ends):
+    """The Estimate that spans the intervals of all fits."""
+    pairs = [ends(fit) for fit in fits]
+    return Estimate(
+        float(value),
+        float(min(one - half for one, half in pairs)),
+        float(max(one + half for one, half in pairs)),
+    )
+
+
+def noise_share(evidence, fit, interval):
+    """Share of the residuals' variance that the resolution of the position may have caused, at most 1. An engine that
+    renders the resolved position leaves no residuals."""
+    q = evidence.resolution
+    if q == 0.0:
+        return 0.0
+    rounding = (fit.stiffness * q) ** 2 / 12.0 + (fit.damping * q / interval) ** 2 / 6.0
+    return min(1.0, fit.squares / fit.rows / max(rounding, 1e-300))
+
+
+def stiffness_half(evidence, fit):
+    # Rounding of the position makes a slope smaller, by its share of the variance.
+    shrink = evidence.resolution**2 / 12.0 / max(float(np.var(evidence.place)), 1e-300)
+    return fit.halves[0] + (1e-6 + shrink) * abs(fit.stiffness)
+
+
+def clock_error(log):
+    """Relative error of the interval, from the jitter of the first and the last row."""
+    steps = np.diff(log.time)
+    return (
+        3.0 * float(np.std(steps[steps < 1.5 * log.interval])) / float(log.time[-1] - log.time[0])
+    )
+
+
+def damping_half(log, evidence, fit):
+    interval, q = log.interval, evidence.resolution
+    half = (
+        fit.halves[1]
+        + (1e-6 + clock_error(log)) * abs(fit.damping)
+        + 1e-9 * abs(fit.stiffness) * interval
+    )
+    if log.velocity is not None or q == 0.0:
+        return half
+    # A difference of two rounded positions has the variance q^2/6 and the covariance q^2/12 with the position.
+    bias = (
+        abs(fit.damping) * (q / interval) ** 2 / 6.0 + abs(fit.stiffness) * q**2 / 12.0 / interval
+    )
+    return half + noise_share(evidence, fit, interval) * bias / max(fit.speed**2, 1e-300)
+
+
+def dry_friction(motion, best):
+    """True if the sign of the velocity explains much of what the spring and the damper leave."""
+    if best.explained >= 1.0 - 1e-6:
+        return False
+    fit = fit_of(motion, best.model, True)
+    return (
+        fit is not None
+        and fit.squares < DRY_GAIN * best.squares
+        and abs(fit.values[2]) > max(fit.halves[2], DRY_SHARE * np.abs(motion.force).mean())
+    )
+
+
+def combined(estimates):
+    """Median of the estimates, weighted by the inverse squares of their intervals. Its interval is as wide as the median
+    interval, and at least as the scatter between the estimates makes it."""
+    values = np.array([one.value for one in estimates])
+    halves = np.array([max(one.half, 1e-9 * abs(one.value), 1e-300) for one in estimates])
+    weights = halves**-2.0
+    middle = weighted_median(values, weights)
+    share = weights / weights.sum()
+    count = 1.0 / float(np.sum(share**2))  # contacts of equal weight
+    scatter = 0.0
+    if len(values) > 1:
+        # The median distance times 1.4826 is the standard deviation of normal errors.
+        deviation = 1.4826 * weighted_median(np.abs(values - middle), weights)
+        scatter = student.ppf(0.975, max(count - 1.0, 1.0)) * deviation / math.sqrt(count)
+    index = int(np.argmin(np.abs(values - middle)))
+    low, high = estimates[index].low, estimates[index].high
+    half = max(weighted_median(halves, weights), scatter)
+    return Estimate(middle, min(low, middle - half), max(high, middle + half)), index
+
+
+def weighted_median(values, weights):
+    order = np.argsort(values, kind="stable")
+    total = np.cumsum(weights[order])
+    return float(values[order][np.searchsorted(total, 0.5 * total[-1])])
+
+
+def linearity(motion, fit):
+    """Stiffness of the deeper half of the travel divided by the stiffness of the other half, or None; 1: linear."""
+    if fit.model.delay:
+        return None
+    keep = motion.usable()
+    place = motion.place[motion.rows[keep]]
+    force = motion.force[keep] + fit.damping * motion.speeds[fit.model.kind][motion.rows[keep]]
     middle = 0.5 * (place.min() + place.max())
     slopes = []
     for half in (place < middle, place >= middle):
         if half.sum() < FEWEST or np.ptp(place[half]) == 0.0:
             return None
-        slopes.append(-np.polyfit(place[half] - middle, along[half], 1)[0])
+        slopes.append(-np.polyfit(place[half] - middle, force[half], 1)[0])
     # The force points out of the surface, so deeper is the smaller position.
     deep, shallow = slopes
-    return float(deep / shallow) if fit.delay == 0 and shallow > 0.0 else None
+    return float(deep / shallow) if shallow > 0.0 else None
+
+
+def stated(log, numbers):
+    """The JSON of one contact's numbers_of()."""
+    found = {key: numbers[key] for key in ("why", "apparent_stiffness_N_per_m") if key in numbers}
+    if "stiffness" not in numbers or "why" in numbers:
+        return found
+    return found | values_of(
+        log, numbers["stiffness"], numbers["damping"], numbers["slow_damping"], numbers
+    )
+
+
+def values_of(log, stiffness, damping, slow, numbers):
+    """The JSON of estimates. Delay and damping are None where the log does not determine them."""
+    first, last = numbers["delay_rows_interval"]
+    is_known = first == last
+    found = {
+        "stiffness_N_per_m": stiffness.value,
+        "stiffness_interval": [stiffness.low, stiffness.high],
+        "delay_rows": first if is_known else None,
+        "delay_s": first * log.interval if is_known else None,
+        "delay_interval_s": [first * log.interval, last * log.interval],
+        "slow_damping_N_s_per_m": slow.value,
+        "slow_damping_interval": [slow.low, slow.high],
+        "explained": numbers["explained"],
+        "dry_friction_N": numbers["dry_friction_N"],
+    }
+    # Half a sampling period of the spring: damping below it does not matter to the sampled loop.
+    enough = max(WELL_KNOWN * abs(damping.value), 0.5 * stiffness.value * log.interval)
+    if damping.half <= enough:
+        return found | {
+            "damping_N_s_per_m": damping.value,
+            "damping_interval": [damping.low, damping.high],
+        }
+    why = "the log does not determine it"
+    if not is_known:
+        why = "the log does not separate damping from delay"
+    return found | {
+        "damping_N_s_per_m": None,
+        "damping_interval": [damping.low, damping.high],
+        "why_no_damping": why,
+    }
+
+
+def springs_of(log, evidences):
+    """(JSON of each contact, JSON of the log or None). `evidences`: of each contact, None for a contact of few rows.
+    The contacts share their models: a delay that one contact excludes is the delay of no contact.
+    """
+    evidences = with_shared_normal(log, evidences)
+    known = [one for one in evidences if one is not None and one.likelihood]
+    models = as_good(well_explained(known))
+    numbers = [numbers_of(log, one, models) if one and one.likelihood else {} for one in evidences]
+    each = [
+        None if one is None else one.found | stated(log, its)
+        for one, its in zip(evidences, numbers)
+    ]
+    good = [i for i, one in enumerate(each) if one and "stiffness_N_per_m" in one]
+    if not good:
+        return each, None
+    stiffness, at = combined([numbers[i]["stiffness"] for i in good])
+    damping, _ = combined([numbers[i]["damping"] for i in good])
+    slow, _ = combined([numbers[i]["slow_damping"] for i in good])
+    chosen = good[at]
+    its = numbers[chosen]
+    delays = sorted({fit.model.delay for i in good for fit in numbers[i]["fits"]})
+    its = its | {"delay_rows_interval": [delays[0], delays[-1]]}
+    main = evidences[chosen].found | values_of(log, stiffness, damping, slow, its)
+    main |= {
+        "contacts": len(good),
+        "linearity": linearity(evidences[chosen].motion, its["best"]),
+        "loops": loops_of(log, stiffness, [numbers[i] for i in good]),
+    }
+    return each, main
+
+
+def loops_of(log, stiffness, numbers):
+    """(delay [s], damping) of each delay that the log allows, with both ends of the interval of the damping."""
+    found = []
+    for delay in sorted({fit.model.delay for its in numbers for fit in its["fits"]}):
+        dampings = [
+            fit.damping + sign * min(fit.halves[1], abs(fit.damping))
+            for its in numbers
+            for fit in its["fits"]
+            if fit.model.delay == delay
+            for sign in (-1.0, 1.0)
+        ]
+        found += [[delay * log.interval, max(one, 0.0)] for one in (min(dampings), max(dampings))]
+    return found

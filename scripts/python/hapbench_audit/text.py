@@ -143,22 +143,12 @@ def stiffness_rows(audit):
             "K",
             f"{spring['stiffness_N_per_m']:.4g} N/m, 95 % {ends_text(spring['stiffness_interval'])}",
         ),
-        (
-            "B",
-            "not identifiable"
-            if spring["damping_N_s_per_m"] is None
-            else f"{spring['damping_N_s_per_m']:.3g} N s/m, 95 % {ends_text(spring['damping_interval'])}",
-        ),
+        ("B", damping_text(spring)),
     ]
     if spring["dry_friction_N"]:
         rows.append(("dry friction", f"{spring['dry_friction_N']:.3g} N"))
     rows += [
-        (
-            "delay",
-            f"force {counted(spring['delay_rows'], 'row')} ({1e3 * spring['delay_s']:.3g} ms) behind the position"
-            if spring["delay_rows"]
-            else "none from position to force",
-        ),
+        ("delay", delay_text(spring)),
         (
             "along",
             f"({x:.2g}, {y:.2g}, {z:.2g}); explains {100.0 * spring['explained']:.4g} % of the variance",
@@ -177,15 +167,38 @@ def stiffness_rows(audit):
     return rows
 
 
-def ends_text(interval):
+def damping_text(spring):
+    if spring["damping_N_s_per_m"] is not None:
+        return f"{spring['damping_N_s_per_m']:.3g} N s/m, 95 % {ends_text(spring['damping_interval'], 3)}"
+    text = f"not identifiable, {ends_text(spring['damping_interval'], 3)} N s/m"
+    if spring["delay_s"] is not None:
+        return text
+    return f"{text}; B less K times the delay is {ends_text(spring['slow_damping_interval'], 3)}"
+
+
+def delay_text(spring):
+    if spring["delay_s"] is None:
+        first, last = (1e3 * one for one in spring["delay_interval_s"])
+        return f"not identifiable, {first:.3g} to {last:.3g} ms: it acts like less damping"
+    if not spring["delay_rows"]:
+        return "none from position to force"
+    return f"force {counted(spring['delay_rows'], 'row')} ({1e3 * spring['delay_s']:.3g} ms) behind the position"
+
+
+def ends_text(interval, digits=4):
+    """The two ends, with as many more digits as it takes to tell them from each other."""
     low, high = interval
-    return f"{low:.4g} to {high:.4g}"
+    while digits < 7 and f"{low:.{digits}g}" == f"{high:.{digits}g}":
+        digits += 1
+    return f"{low:.{digits}g} to {high:.{digits}g}"
 
 
 def device_rows(audit):
     device = audit["device"]
     if device is None:
         return []
+    if not device["is_known"]:
+        return range_rows(audit)
     limit, ratio = device["linear_limit_N_per_m"], device["ratio"]
     if limit is None:
         return [(device["device"], "every stiffness is stable in the linear theory")]
@@ -199,10 +212,11 @@ def device_rows(audit):
     rows = [
         (
             "linear limit",
-            f"{limit:.4g} N/m for {device['device']} without a hand, at {audit['clock']['rate_Hz']:.4g} Hz, "
-            f"{device['delay_samples']:.3g} samples of delay, {wall_damping_text(audit)}",
+            f"{limit:.4g} N/m ({limits_text(device)}) for {device['device']} without a hand, at "
+            f"{device['rate_Hz']:.4g} Hz, {device['delay_samples']:.3g} samples of delay, B = "
+            f"{device['damping_N_s_per_m']:.3g} N s/m",
         ),
-        ("K", f"{ratio:.3g} times the limit"),
+        ("K", f"{ratio:.3g} times the limit, {ratios_text(device)}"),
     ]
     if device["worst_hand_limit_N_per_m"] is not None:
         rows.append(
@@ -216,10 +230,31 @@ def device_rows(audit):
     return rows
 
 
-def wall_damping_text(audit):
-    if audit["stiffness"]["damping_N_s_per_m"] is None:
-        return "B = 0 (not identifiable)"
-    return f"B = {audit['device']['damping_N_s_per_m']:.3g} N s/m"
+def range_rows(audit):
+    """Of a log that does not determine damping or delay."""
+    device = audit["device"]
+    return [
+        (
+            "linear limit",
+            f"{limits_text(device)} N/m for {device['device']} without a hand, at {device['rate_Hz']:.4g} Hz, over the "
+            "dampings and delays that the log allows",
+        ),
+        ("K", f"{ratios_text(device)} times the limit"),
+    ]
+
+
+def limits_text(device):
+    low, high = device["linear_limit_interval"]
+    if high is None:
+        return "no limit" if low is None else f"{low:.4g} or more"
+    return ends_text((low, high))
+
+
+def ratios_text(device):
+    low, high = device["ratio_interval"]
+    if high is None:
+        return f"{low:.3g} or more" if low is not None else "infinitely many"
+    return ends_text((low, high), 3)
 
 
 def expected_text(audit):

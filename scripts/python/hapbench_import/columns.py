@@ -20,6 +20,7 @@ UNITS = {
 # A name such as x_mm also has a unit. Short ones such as x_m or x_cm may mean something else.
 _ENDINGS = "ms msec us usec ns nsec mm um mN kN deg".split()
 _BRACKETED = re.compile(r"\s*([\[(])\s*([^\[\]()]*?)\s*[\])]\s*$")
+ABSENT = "\x01absent"  # begins the names of columns that a reader has added; no message names them
 SI = {"time": "s", "position": "m", "force": "N", "angle": "rad"}
 
 
@@ -91,10 +92,15 @@ class Names:
         self.bare, self.units = [bare for bare, _ in parts], [unit for _, unit in parts]
 
     def fail(self, quantity, problem):
-        known = ", ".join(f"{i} {name}".rstrip() for i, name in enumerate(self.names[:20], 1)) + (
-            ", ..." if len(self.names) > 20 else ""
+        own = self.own()
+        known = ", ".join(f"{i} {name}".rstrip() for i, name in enumerate(own[:20], 1)) + (
+            ", ..." if len(own) > 20 else ""
         )
         fail(f"columns: {quantity}: {problem}; the file has {known}", self.file)
+
+    def own(self):
+        """The names of the file's columns."""
+        return [name for name in self.names if not name.startswith(ABSENT)]
 
     def title(self, column):
         return f"{column + 1} {self.names[column]}".rstrip()
@@ -102,7 +108,7 @@ class Names:
     def others(self, used):
         """Numbers and names of the columns that are not `used`, the columns by quantity."""
         read = {part["column"] for parts in used.values() for part in parts}
-        return [self.title(i) for i in range(len(self.names)) if i + 1 not in read]
+        return [self.title(i) for i in range(len(self.own())) if i + 1 not in read]
 
     def index(self, quantity, name):
         """The column of this name, or None. A name is whole, or without its unit."""
@@ -129,7 +135,7 @@ class Names:
 
     def unknown(self, quantity, words):
         word = (words or [""])[0]
-        self.fail(quantity, f"got {quoted(word)}{nearest(word, list(filter(None, self.names)))}")
+        self.fail(quantity, f"got {quoted(word)}{nearest(word, list(filter(None, self.own())))}")
 
     def indices(self, names):
         """The columns of all these names, or None. Names without units, as units come behind components."""

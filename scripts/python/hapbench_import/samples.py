@@ -59,6 +59,16 @@ class Read:
     held: object  # Hold, or None
 
 
+def one_axis(group):
+    """What a message says about a recording of one axis."""
+    if group not in ("position", "force"):
+        return ""
+    return (
+        " for x, y and z: a stroke has three components. Add columns of zeros to a recording of one axis "
+        "(hapbench audit reads it as it is)"
+    )
+
+
 class Columns:
     """The columns that the options ask for: lists of indices in the order of the components, empty for none."""
 
@@ -157,7 +167,9 @@ class Columns:
 
     def _consecutive(self, group, first, by_name, count):
         if first + count > len(self.names.names):
-            self.names.fail(group, f"takes columns {first + 1} ... {first + count}")
+            self.names.fail(
+                group, f"takes columns {first + 1} ... {first + count}{one_axis(group)}"
+            )
         found = list(range(first, first + count))
         if by_name is not None and by_name != found:
             titles = ", ".join(map(self.names.title, found))
@@ -180,7 +192,8 @@ class Columns:
         )
         names.fail(
             group,
-            f'the names do not say which columns go with "{names.names[first]}"; allowed: {alone}{consecutive}',
+            f'the names do not say which columns go with "{names.names[first]}"; allowed: {alone}{consecutive}'
+            + ("" if consecutive else one_axis(group)),
         )
 
     def _other_order(self, first, found):
