@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     )
     from .laws import Parameter, force_law
 
-__version__ = "0.3.0"  # of CMakeLists.txt
+__version__ = "0.4.0"  # of CMakeLists.txt
 
 __all__ = [
     "Folder",
