@@ -128,8 +128,8 @@ class Run(_WithTables):
 
     `summary`, `scenario` (with every default filled in) and `timing` are dicts as in summary.json,
     scenario.effective.json and timing.json. What the scenario records are tables: `trajectory`, and where it asks for
-    them `contacts`, `stiffness_tensor`, `ratios`, `energy`, `ideal_trajectory`, `force_reference`, `six_dof`, `targets`; `tables`
-    has them by name. Of a scenario of several trials, each of `trials` has its own tables. `folder`
+    them `contacts`, `stiffness_tensor`, `ratios`, `energy`, `ideal_trajectory`, `force_reference`, `six_dof`, `targets`;
+    `tables` has them by name. Of a scenario of several trials, each of `trials` has its own tables. `folder`
     is None for a run in memory, `unmet` says which expectations of its scenario a run in memory
     missed."""
 

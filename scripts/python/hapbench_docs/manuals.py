@@ -188,9 +188,9 @@ def robustness(_old=""):
 
 
 def six_dof(_old=""):
-    """The table of the study six_dof, whose sweep.csv is stored as six_dof.csv: for each scene and, in the edge and the slot,
-    each hand, grip and pivot, the force and torque of the device with torque, and the force error of each law with the
-    energy that it creates in a cycle."""
+    """The table of the study six_dof, whose sweep.csv is stored as six_dof.csv: for each scene and, in the edge and the
+    slot, each hand, grip and pivot, the force and torque of the device with torque, and the force error of each law with
+    the energy that it creates in a cycle."""
     with open(REFERENCE / "six_dof.csv", newline="", encoding="utf-8") as lines:
         rows = list(csv.DictReader(lines))
     laws = list(dict.fromkeys(row["six_dof.law"] for row in rows))
@@ -230,7 +230,8 @@ def six_dof(_old=""):
         ]
         lines.append(
             f"| {scene.removeprefix('six_dof_')} | {shown} | {value(first, 'reference_force_rms_N'):.2g} | "
-            f"{1e3 * value(first, 'lost_torque_rms_Nm'):.2g} | {value(of_case[laws[1]], 'unresisted_turn_max_rad'):.2g} | "
+            f"{1e3 * value(first, 'lost_torque_rms_Nm'):.2g} | "
+            f"{value(of_case[laws[1]], 'unresisted_turn_max_rad'):.2g} | "
             + " | ".join(cells)
             + " |"
         )
