@@ -50,11 +50,15 @@ SignificantOrder significant_order(std::span<const NumberWithError> numbers) {
 std::string order_text(std::span<const NumberWithError> numbers, std::span<const std::string> names) {
   const SignificantOrder order = significant_order(numbers);
   std::vector<std::string> parts;
-  for (const std::vector<std::size_t>& group : order.groups) parts.push_back(joined(group, names, " ~ "));
-  std::string text = fmt::format("{}", fmt::join(parts, " < "));
+  std::size_t grouped = 0;
+  for (const std::vector<std::size_t>& group : order.groups) {
+    parts.push_back(joined(group, names, " ~ "));
+    grouped += group.size();
+  }
+  std::string text = grouped < 2 ? "nothing to compare" : fmt::format("{}", fmt::join(parts, " < "));
   if (!order.indistinguishable.empty())
     text += "; error too large to rank: " + joined(order.indistinguishable, names, ", ");
-  return text.empty() ? "nothing to compare" : text;
+  return text;
 }
 
 std::string significant_order_text(std::span<const NumberWithError> numbers, std::span<const std::string> names) {

@@ -34,12 +34,14 @@ int list_kinds(const OutputOptions& output, ProgramContext& context) {
   return kSuccess;
 }
 
-/// Runs the scene, and returns what its run warns of and a warning if it does not end as a scene of its kind should.
-std::vector<std::string> outcome_warnings(const CheckedScenario& scene) {
+/// Runs the scene. If it does not end as a scene of its kind should, returns a warning, after the warnings of the run
+/// unless the start is `explained`.
+std::vector<std::string> outcome_warnings(const CheckedScenario& scene, bool explained) {
   const Result run = run_scenario(scene, std::nullopt, false);
   if (outcome_is_expected(scene.scenario().expect, run.end.outcome)) return {};
   std::vector<std::string> warnings;
-  for (const Warning& warning : run.warnings) warnings.push_back(warning.located_text());
+  if (!explained)
+    for (const Warning& warning : run.warnings) warnings.push_back(warning.located_text());
   warnings.push_back(fmt::format(
       "a run of this scene ends as \"{0}\" (hapbench describe {0}): another start or path is needed, such as "
       "--path with points across the middle of the surface, or --at; or change the hand in the file",
@@ -83,7 +85,7 @@ int write_new(const NewOptions& options, ProgramContext& context) {
   loaded.file = out;
   const CheckedScenario scene = checked(std::move(loaded));
   print_warnings(context, with_files(scene.loaded(), scene.file_warnings()));
-  const std::vector<std::string> failure = outcome_warnings(scene);
+  const std::vector<std::string> failure = outcome_warnings(scene, !start.warnings.empty());
   // Write the scene, draw it with --preview, and explain its fields.
   write_file_atomically(out, json_text(start.scene));
 
