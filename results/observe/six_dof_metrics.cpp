@@ -60,7 +60,8 @@ void SixDofMetrics::report(Section& s) const {
   s.metric(
       "unresisted_turn_max_rad", "rad",
       "largest angle between the handles of the 3-DOF and of the 6-DOF device: the turn that the lost torque would "
-      "have resisted",
+      "have resisted. With the grip at the force point it is the norm of handle_turn_x_rad, handle_turn_y_rad and "
+      "handle_turn_z_rad of six_dof.csv",
       turn_.max());
   s.metric("work_J", "J",
            "work of the law's force on the handle, by the trapezoidal rule over the steps in equilibrium; for a path "
