@@ -53,7 +53,7 @@ constexpr CommandGuide kCommands[] = {
     {"decide", "tune", "choose force law, stiffness and damping for a device", add_tune,
      "tune tap_wall --device touch\n"
      "tune mine.json --device log_device.json --algorithms mean,proxy\n"
-     "tune drag_molar --device omega.3 --bound inside_max_m=3e-4",
+     "tune tap_wall --device omega.3 --bound inside_max_m=1.5e-3",
      "scenarios/TUNING.md, section \"What tune searches\""},
     {"decide", "converge", "estimate the discretization error of a metric", add_converge,
      "converge drag_molar --metric force_max_N\n"
