@@ -287,7 +287,8 @@ class StillnessObserver final : public MetricObserver {
 """,
             ),
             before(
-                '#include "results/observe/target_metrics.hpp"\n\nnamespace hapbench {\nnamespace {\n\n'
+                '#include "results/observe/target_metrics.hpp"\n#include "scenarios/scene/six_dof_observer.hpp"\n\n'
+                "namespace hapbench {\nnamespace {\n\n"
                 "/// A section of the summary: its name, the condition under which a run has it, and its observer.\n",
                 '#include "results/observe/stillness.hpp"\n',
             ),
