@@ -159,7 +159,7 @@ struct Shaking {
 /// of force and position over the last second, which contains an integer number of periods.
 Shaking shake(const Evidence& e, double frequency, bool limited) {
   std::vector<std::string> overrides = {fmt::format("hand.target.x_m.period_s={}", 1.0 / frequency)};
-  if (!limited) overrides.push_back("device.force_limit_N=null");
+  if (!limited) overrides.emplace_back("device.force_limit_N=null");
   const LoadedScenario loaded = e.load("shaking_in_free_air", overrides);
   const double omega = 2.0 * std::numbers::pi * frequency;
   const double start = loaded.scenario.time.step * static_cast<double>(loaded.scenario.time.steps) - 1.0;
