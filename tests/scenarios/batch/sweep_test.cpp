@@ -74,12 +74,6 @@ TEST(SweepPlan, HasExactlyTheMetricsOfItsRuns) {
   prescribed["motion"]["position"] = {{"type", "prescribed"}, {"x_m", 0}, {"y_m", 0}, {"z_m", 0}};
   prescribed["reference_force"] = {{"z_N", 1.0}};
   scenarios.push_back({"with_reference_force", prescribed});
-  prescribed.erase("reference_force");
-  prescribed["six_dof"] = {{"hand_stiffness_N_per_m", 500},
-                           {"hand_rotational_stiffness_N_m_per_rad", 0.2},
-                           {"coupling_rotational_stiffness_N_m_per_rad", 0.4},
-                           {"force_point_m", 0.03}};
-  scenarios.push_back({"with_six_dof", prescribed});
   Json block = minimal_scenario("block_with_hole");
   block["record"] = {{"ideal_trajectory", true}};
   scenarios.push_back({"with_ideal_trajectory", block});

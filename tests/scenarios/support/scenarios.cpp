@@ -117,6 +117,17 @@ std::vector<NamedScenario> rich_scenarios() {
         "mechanics": {"carriage_mass_kg": 0.3, "handle_mass_kg": 0.08, "friction_N_s_per_m": 1,
           "structure_stiffness_N_per_m": 1e5, "structure_damping_N_s_per_m": 20}},
       "record": {"trajectory": true, "energy": true, "ideal_trajectory": true}})")},
+          {"turned_plane", Json::parse(R"({
+      "time": {"step_s": 0.01, "steps": 20},
+      "environment": {"type": "plane", "size_m": 0.004, "spacing_m": 0.0002},
+      "motion": {"orientation": {"up": [0, 0, 1], "lean": [1, 0, 0], "azimuth_rad": 0,
+          "tilt_rad": {"type": "ramp", "start": 0, "rate_per_s": 0.5}},
+        "position": {"type": "prescribed", "x_m": 0, "y_m": 0, "z_m": -0.0001}},
+      "rendering": {"algorithm": "proxy", "parameters": {"proxy": {"rotational_stiffness_N_m_per_rad": 0.13}}},
+      "six_dof": {"hand_stiffness_N_per_m": 500, "hand_rotational_stiffness_N_m_per_rad": 0.2,
+        "coupling_rotational_stiffness_N_m_per_rad": 0.4, "force_point_m": 0.03, "grip_m": 0.01, "pivot_m": 0.02,
+        "law": "shaped_stiffness"},
+      "record": {"six_dof": true}})")},
           {"pushed_plane", Json::parse(R"({
       "time": {"step_s": 0.0005, "steps": 100},
       "environment": {"type": "plane", "size_m": 0.004, "spacing_m": 0.0002},
