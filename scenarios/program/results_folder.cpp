@@ -33,11 +33,20 @@ FolderLock locked_results(ProgramContext& context, const std::filesystem::path& 
   return lock;
 }
 
+/// Throws IoError if `directory` is thesis/SCENARIO in a folder to which `reproduce` writes. Other folders beside
+/// thesis, such as those of studies, are not its own.
+static void require_not_of_reproduce(const std::filesystem::path& directory) {
+  std::error_code ignored;
+  const std::filesystem::path parent = std::filesystem::weakly_canonical(directory, ignored).parent_path();
+  if (parent.filename() == "thesis" && FolderLock::is_held(parent.parent_path(), kReproduceFiles))
+    FolderLock::refuse(parent.parent_path(), kReproduceFiles);
+}
+
 FolderLock locked_run(ProgramContext& context, const std::filesystem::path& directory) {
-  constexpr int kCompareLevels = 3, kReproduceLevels = 2;  // SCENARIO/ALGORITHM/seed_K; thesis/SCENARIO
+  constexpr int kCompareLevels = 3;  // SCENARIO/ALGORITHM/seed_K
   FolderLock lock = locked_results(context, directory, kRunFiles, "run");
   require_unlocked_parents(directory, kCompareFiles, kCompareLevels);
-  require_unlocked_parents(directory, kReproduceFiles, kReproduceLevels);
+  require_not_of_reproduce(directory);
   return lock;
 }
 

@@ -159,6 +159,30 @@ class Folders(unittest.TestCase):
         self.assertIn("because another compare writes to", run.stderr)
         self.assertEqual(self.ends_of([comparison])[0][0], 0)
 
+    def test_beside_reproduce_only_its_own_runs_are_refused(self):
+        """scripts/reproduce runs studies into folders beside those of reproduce."""
+        folder = self.root / "both"
+        reproduce = subprocess.Popen(
+            [str(PROGRAM), "reproduce", "--jobs", "1", "--out", folder],
+            cwd=self.root,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+        )
+        try:
+            while not (folder / ".reproduce.lock").exists() and reproduce.poll() is None:
+                pass
+            for inner, status in (("study/poke_plane", 0), ("thesis/poke_plane", 1)):
+                run = subprocess.run(
+                    [str(PROGRAM), "run", "poke_plane", "--out", folder / inner],
+                    capture_output=True,
+                    text=True,
+                )
+                self.assertEqual(run.returncode, status, run.stderr)
+            self.assertIn("because another reproduce writes to", run.stderr)
+        finally:
+            reproduce.kill()
+            reproduce.wait()
+
 
 if __name__ == "__main__":
     unittest.main()
