@@ -232,13 +232,14 @@ def residual_of(motion, model):
     )
 
 
-def basis(matrix):
-    """Orthonormal basis of the columns, or None where one is constant or explained by the others."""
+def factors(matrix):
+    """(q, r, sizes) with matrix = q r diag(sizes) and an orthonormal q, or None where a column is constant or explained
+    by the others."""
     sizes = np.linalg.norm(matrix, axis=0)
     if len(matrix) < FEWEST or not (sizes > 0.0).all():
         return None
     q, r = np.linalg.qr(matrix / sizes)
-    return q if np.abs(np.diag(r)).min() > COLLINEAR else None
+    return (q, r, sizes) if np.abs(np.diag(r)).min() > COLLINEAR else None
 
 
 def fit_of(motion, model, with_sign=False):
@@ -248,10 +249,10 @@ def fit_of(motion, model, with_sign=False):
     consecutive blocks, which also covers residuals that are correlated with the motion.
     """
     matrix, target = motion.columns(model, with_sign)
-    sizes = np.linalg.norm(matrix, axis=0)
-    if basis(matrix) is None:
+    found = factors(matrix)
+    if found is None:
         return None
-    q, r = np.linalg.qr(matrix / sizes)
+    q, r, sizes = found
     inverse = np.linalg.inv(r)
     residual = target - q @ (q.T @ target)
     values = inverse @ (q.T @ target) / sizes
