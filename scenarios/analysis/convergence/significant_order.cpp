@@ -16,6 +16,28 @@ std::string joined(std::span<const std::size_t> positions, std::span<const std::
   return fmt::format("{}", fmt::join(found, between));
 }
 
+/// Returns the groups of an order, such as "mean ~ shaped_stiffness < proxy"; "nothing to compare" for fewer than two
+/// numbers.
+std::string groups_text(const std::vector<std::vector<std::size_t>>& groups, std::span<const std::string> names,
+                        const char* prefix = "") {
+  std::vector<std::string> parts;
+  std::size_t grouped = 0;
+  for (const std::vector<std::size_t>& group : groups) {
+    parts.push_back(joined(group, names, " ~ "));
+    grouped += group.size();
+  }
+  return grouped < 2 ? "nothing to compare" : fmt::format("{}{}", prefix, fmt::join(parts, " < "));
+}
+
+bool is_alone_in_each(const std::vector<std::vector<std::size_t>>& groups) {
+  return std::ranges::all_of(groups, [](const auto& group) { return group.size() == 1; });
+}
+
+/// Returns the end of a sentence that names the numbers whose error is too large; empty if there are none.
+std::string indistinguishable_text(std::span<const std::size_t> numbers, std::span<const std::string> names) {
+  return numbers.empty() ? "" : "; error too large to rank: " + joined(numbers, names, ", ");
+}
+
 }  // namespace
 
 SignificantOrder significant_order(std::span<const NumberWithError> numbers) {
@@ -49,34 +71,18 @@ SignificantOrder significant_order(std::span<const NumberWithError> numbers) {
 
 std::string order_text(std::span<const NumberWithError> numbers, std::span<const std::string> names) {
   const SignificantOrder order = significant_order(numbers);
-  std::vector<std::string> parts;
-  std::size_t grouped = 0;
-  for (const std::vector<std::size_t>& group : order.groups) {
-    parts.push_back(joined(group, names, " ~ "));
-    grouped += group.size();
-  }
-  std::string text = grouped < 2 ? "nothing to compare" : fmt::format("{}", fmt::join(parts, " < "));
-  if (!order.indistinguishable.empty())
-    text += "; error too large to rank: " + joined(order.indistinguishable, names, ", ");
-  return text;
+  return groups_text(order.groups, names) + indistinguishable_text(order.indistinguishable, names);
 }
 
 std::string significant_order_text(std::span<const NumberWithError> numbers, std::span<const std::string> names) {
   const auto [groups, indistinguishable] = significant_order(numbers);
-  std::vector<std::string> parts;
-  std::size_t grouped = 0;
-  for (const std::vector<std::size_t>& group : groups) {
-    parts.push_back(joined(group, names, " ~ "));
-    grouped += group.size();
-  }
   std::vector<std::size_t> without_error;
   for (std::size_t i = 0; i < numbers.size(); ++i)
     if (numbers[i].value && !numbers[i].error) without_error.push_back(i);
   const char* prefix = groups.size() == 1                                      ? "no significant order: "
-                       : groups.size() == grouped && indistinguishable.empty() ? "significant order: "
+                       : is_alone_in_each(groups) && indistinguishable.empty() ? "significant order: "
                                                                                : "partly significant order: ";
-  std::string text = grouped < 2 ? "nothing to compare" : fmt::format("{}{}", prefix, fmt::join(parts, " < "));
-  if (!indistinguishable.empty()) text += "; error too large to rank: " + joined(indistinguishable, names, ", ");
+  std::string text = groups_text(groups, names, prefix) + indistinguishable_text(indistinguishable, names);
   if (!without_error.empty()) text += "; no error estimate for: " + joined(without_error, names, ", ");
   return text;
 }
