@@ -1,8 +1,10 @@
 #include "scenarios/analysis/work_precision/sampled_motion.hpp"
 
 #include <cmath>
+#include <utility>
 
 #include "scenarios/run/assemble.hpp"
+#include "scenarios/run/outcome.hpp"
 #include "scenarios/run/stop_signal.hpp"
 #include "scenarios/scene/environments.hpp"
 
@@ -44,9 +46,11 @@ SampledMotion sampled_motion(const CheckedScenario& checked, const Vec3& shift) 
   SimulationConfig config = simulation_config(scenario);
   config.position += shift;
   MotionSampler sampler(config.steps, static_cast<std::uint64_t>(scenario.time.stride));
-  Simulation simulation(config, assemble(scenario, checked.files(), make_shell(scenario, checked.files()), Trial{}),
-                        {&sampler});
+  SimulationParts parts = assemble(scenario, checked.files(), make_shell(scenario, checked.files()), Trial{});
+  const auto outcome = outcome_observer(scenario, checked.files(), parts);
+  Simulation simulation(config, std::move(parts), {&sampler, outcome.get()});
   sampler.motion().ending = run_to_end(simulation).ending;
+  sampler.motion().outcome = outcome->outcome(sampler.motion().ending);
   return std::move(sampler.motion());
 }
 

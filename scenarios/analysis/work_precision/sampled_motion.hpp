@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "results/summary/outcome.hpp"
 #include "scenarios/run/checked_scenario.hpp"
 #include "sim/core/types.hpp"
 #include "sim/loop/simulation.hpp"
@@ -16,6 +17,7 @@ struct SampledMotion {
   std::vector<Vec3> position;  ///< position of the tip centre [m]
   std::vector<Vec3> force;     ///< rendered force [N]
   Ending ending = Ending::completed;
+  Outcome outcome = Outcome::completes;
 };
 
 /// Runs the first trial of a scenario and samples every TimeFields::stride-th step. `shift` [m] moves the start of a

@@ -15,7 +15,6 @@
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/run/checked_scenario.hpp"
 #include "scenarios/run/expectations.hpp"
-#include "scenarios/run/run_scenario.hpp"
 #include "scenarios/scene/field_files.hpp"
 #include "sim/core/math.hpp"
 #include "sim/loop/integrators/table.hpp"
@@ -125,37 +124,20 @@ class Motions {
     for (auto& entry : motions_) all.push_back(&entry);
     // Start the longest runs first, so that no thread has a long run left at the end.
     std::ranges::stable_sort(all, [](auto* a, auto* b) { return a->first.level > b->first.level; });
-    // Only settings are judged by their outcome. Reference solutions have none.
-    std::vector<std::pair<const StudyRun, SettingEnd>*> settings;
-    for (const auto* entry : all)
-      if (entry->first.level <= study_.finest()) ends_.try_emplace(entry->first);
-    for (auto& entry : ends_) settings.push_back(&entry);
     const std::size_t shifts = study_.problems();
     shifted_.resize(shifts);
-    for_each_job(all.size() + shifts + settings.size(), jobs, [&](std::size_t job) {
+    for_each_job(all.size() + shifts, jobs, [&](std::size_t job) {
       if (job < all.size()) {
         all[job]->second = sampled_motion(study_.load(all[job]->first));
-      } else if (job < all.size() + shifts) {
+      } else {
         const std::size_t problem = job - all.size();
         const Vec3 shift = Vec3::Constant(kInitialShift / std::sqrt(3.0));
         shifted_[problem] = sampled_motion(study_.load({problem, study_.curves().front(), study_.finest()}), shift);
-      } else {
-        auto& [run, end] = *settings[job - all.size() - shifts];
-        const CheckedScenario scene = study_.load(run);
-        end.outcome = run_scenario(scene, std::nullopt, false).end.outcome;
-        end.is_expected = outcome_is_expected(scene.scenario().expect, end.outcome);
       }
     });
   }
 
   const SampledMotion& at(const StudyRun& run) const { return motions_.at(run); }
-
-  /// How the run of a setting ended.
-  struct SettingEnd {
-    Outcome outcome = {};
-    bool is_expected = true;
-  };
-  const SettingEnd& end(const StudyRun& setting) const { return ends_.at(setting); }
 
   /// Returns the reference solution of a curve.
   const SampledMotion& reference(std::size_t problem, const std::string& curve) const {
@@ -191,8 +173,7 @@ class Motions {
 
   const Study& study_;
   std::map<StudyRun, SampledMotion> motions_;
-  std::map<StudyRun, SettingEnd> ends_;  ///< of the settings
-  std::vector<SampledMotion> shifted_;   ///< shifted motions, by problem
+  std::vector<SampledMotion> shifted_;  ///< shifted motions, by problem
 };
 
 /// Marks the Pareto front of a problem and its knee. Errors that are not resolved do not count, because their true
@@ -219,9 +200,9 @@ std::vector<WorkPrecisionSetting> settings_of(const Study& study, const Motions&
     for (std::size_t level = 0; level <= study.finest(); ++level) {
       WorkPrecisionSetting setting{study.name(problem), curve};
       setting.reference_error = reference_error.value_or(MotionDifference{});
-      const Motions::SettingEnd& end = motions.end({problem, curve, level});
-      setting.outcome = end.outcome;
-      setting.is_expected = end.is_expected;
+      const StudyRun run = {problem, curve, level};
+      setting.outcome = motions.at(run).outcome;
+      setting.is_expected = outcome_is_expected(study.load(run).scenario().expect, setting.outcome);
       if (reference_error && is_predictable)
         setting.error = difference(motions.at({problem, curve, level}), motions.reference(problem, curve));
       settings.push_back(std::move(setting));
