@@ -7,6 +7,7 @@
 
 #include "results/summary/summary.hpp"
 #include "scenarios/run/diagnosis_observer.hpp"
+#include "scenarios/run/expectations.hpp"
 #include "scenarios/scene/load_scenario.hpp"
 #include "sim/tool/tool_shape.hpp"
 
@@ -52,10 +53,12 @@ struct DiagnosedRun {
   Number if_completed(const Number& number) const;
 };
 
-/// Returns 1 if the run ended with one of the outcomes, else an empty value.
+/// Returns 1 if the run ended with one of the outcomes and the scene does not expect that outcome, else an empty value:
+/// what a scene expects is no problem, and needs no advice.
 template <Outcome... outcomes>
 Number ended(const DiagnosedRun& run) {
-  return run.ended(outcomes...) ? Number(1.0) : std::nullopt;
+  const bool is_expected = outcome_is_expected(run.scenario().expect, run.result.end.outcome);
+  return run.ended(outcomes...) && !is_expected ? Number(1.0) : std::nullopt;
 }
 
 /// Thresholds that more than one rule needs.

@@ -248,9 +248,11 @@ struct Scene {
   Words overrides = {};
 };
 
+/// Returns the diagnosed run of a scene with its overrides. Whatever the file expects, the default outcomes are
+/// expected.
 Result run(const Scene& scene) {
-  Words overrides = scene.overrides;
-  overrides.insert(overrides.end(), {"expect={}", "record.trajectory=false"});
+  Words overrides = {"expect={}", "record.trajectory=false"};
+  overrides.insert(overrides.end(), scene.overrides.begin(), scene.overrides.end());
   return run_scenario(checked(load_scenario(find_scenario(scene.name), overrides)), std::nullopt, false, nullptr, true);
 }
 
@@ -355,6 +357,16 @@ TEST(Diagnosis, IsSilentWhereNothingIsWrong) {
         "random_springs", "wedge_stiffness"}) {
     const Result result = run({scene});
     for (const Diagnosed& found : *result.diagnosis) ADD_FAILURE() << scene << ": " << found.says;
+  }
+}
+
+TEST(Diagnosis, NamesNoOutcomeThatTheSceneExpects) {
+  for (const auto& [scene, outcome, rule] : {std::tuple{"single_spring_unstable", "diverges", "diverged"},
+                                             std::tuple{"flat_press_normal_projection", "went_through", "sank"}}) {
+    const Result expected = run({scene, {fmt::format("expect.outcome={}", outcome)}});
+    EXPECT_EQ(finding(expected, rule), nullptr) << scene;
+    const Result unexpected = run({scene});
+    EXPECT_NE(finding(unexpected, rule), nullptr) << scene;
   }
 }
 
