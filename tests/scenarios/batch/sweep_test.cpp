@@ -298,28 +298,37 @@ double processor_seconds() {
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
+/// Returns the processor time of the runs of a plan over three grids, each simulated by itself, with one shell for each
+/// grid as in a sweep.
+double seconds_without_sweep(const SweepPlan& plan) {
+  double simulations = 0.0, shells = 0.0;
+  for (std::size_t run = 0; run < plan.cases.size(); ++run) {
+    const LoadedScenario loaded = plan.cases.load(run);
+    const double start = processor_seconds();
+    const auto shell = make_shell(loaded.scenario, loaded.files);
+    const double before = processor_seconds();
+    shells += before - start;
+    run_with_shell(checked(loaded), shell);
+    simulations += processor_seconds() - before;
+  }
+  return simulations + shells * 3.0 / static_cast<double>(plan.cases.size());
+}
+
 TEST_F(SlowSweepPromises, LittleMoreTimeThanTheSimulationsInWhicheverOrderTheAxesAreGiven) {
   const Json scene = test::minimal_scenario("block_with_hole");
   const std::vector<std::string> vary[] = {{"environment.grid_m=2e-4,1.5e-4,1e-4", "time.steps=20000:20019:20"},
                                            {"time.steps=20000:20019:20", "environment.grid_m=2e-4,1.5e-4,1e-4"}};
   for (const auto& axes : vary) {
     const SweepPlan plan = plan_of(scene, axes, directory_ / "scene.json");
-    const double begun = processor_seconds();
-    run_sweep(plan, {.directory = directory_.path()});
-    const double sweep = processor_seconds() - begun;
-    double simulations = 0.0, shells = 0.0;
-    for (std::size_t run = 0; run < plan.cases.size(); ++run) {
-      const LoadedScenario loaded = plan.cases.load(run);
-      const double start = processor_seconds();
-      const auto shell = make_shell(loaded.scenario, loaded.files);
-      const double before = processor_seconds();
-      shells += before - start;
-      run_with_shell(checked(loaded), shell);
-      simulations += processor_seconds() - before;
+    // Other programs on the machine make every measurement longer, never shorter: the least of five turns counts.
+    double sweep = 1e9, simulations = 1e9;
+    for (int turn = 0; turn < 5; ++turn) {
+      const double begun = processor_seconds();
+      run_sweep(plan, {.directory = directory_.path()});
+      sweep = std::min(sweep, processor_seconds() - begun);
+      simulations = std::min(simulations, seconds_without_sweep(plan));
     }
-    // The sweep makes one shell for each of the three grids, this loop one for each run.
-    const double once = shells * 3.0 / static_cast<double>(plan.cases.size());
-    EXPECT_LT(sweep, 1.3 * (simulations + once)) << axes.front();
+    EXPECT_LT(sweep, 1.3 * simulations) << axes.front();
   }
 }
 
