@@ -20,6 +20,13 @@ std::optional<Vec3> ReferenceForce::at(double t) const noexcept {
   return from.force + (t - from.time) / (next->time - from.time) * (next->force - from.force);
 }
 
+std::optional<Vec3> ReferenceForce::tip_at(double t) const noexcept {
+  const std::optional<Vec3> force = hand_ ? at(t) : std::nullopt;
+  if (!force) return std::nullopt;
+  const auto& target = hand_->target;
+  return Vec3(target[0](t), target[1](t), target[2](t)) + *force / hand_->stiffness;
+}
+
 namespace {
 
 /// Largest number of kept samples. It limits the correlation to about 1e8 products, so that computing the lag does
@@ -138,6 +145,7 @@ void ForceFidelityObserver::on_step(const StepRecord& record) noexcept {
   const Vec3 normal = unit_or(record.force.spring, direction);
   const double along = normal.dot(error);
   ++rows_;
+  if (const auto tip = force_->tip_at(record.time)) displacement_ += (record.tool.pose.position - *tip).squaredNorm();
   reference_ += norm * norm;
   error_ += error.squaredNorm();
   normal_ += along * along;
@@ -224,6 +232,14 @@ void ForceFidelityObserver::report(Section& s) const {
                    "step",
                    per(direction_error_, direction_rows_), Better::less),
           1.0 / kMinForce);
+  const bool has_hand = force_ != nullptr && force_->hand();
+  limited(s.metric("displacement_rms_m", "m",
+                   "root mean square of the distance between the tip centre and the tip centre of a rigid tool without "
+                   "friction in the same hand, hand.target + f_m / hand.stiffness_N_per_m; no value if no hand with a "
+                   "target moves the tool",
+                   has_hand ? std::optional(rms(displacement_)) : std::nullopt, Better::less)
+              .varies_smoothly(),
+          has_hand ? 1.0 / force_->hand()->stiffness : 0.0);
   const double interval = dt_ * static_cast<double>(every_);  // time between kept samples
   const auto lag = lag_between(kept_reference_, kept_rendered_, interval, kMaxLag);
   s.metric(

@@ -22,22 +22,34 @@ class ReferenceForce {
     Vec3 force = Vec3::Zero();
   };
   using Ideal = std::array<Profile, 3>;  ///< x, y, z of the force over time
+  /// The spring of a hand that pulls the tool to a moving target. A rigid tool in static equilibrium with it rests at
+  /// target + f_m / stiffness.
+  struct HandSpring {
+    std::array<Profile, 3> target;  ///< [m]
+    double stiffness;               ///< [N/m]
+  };
 
   /// Measured force. Precondition: at least one sample, and times increase.
-  /// `error`: largest error of a sample [N].
-  explicit ReferenceForce(std::vector<Sample> samples, double error = 0.0)
-      : force_(std::move(samples)), error_(error) {}
+  /// `error`: largest error of a sample [N]. `hand`: the spring with which the force is in equilibrium, if there is
+  /// one.
+  explicit ReferenceForce(std::vector<Sample> samples, double error = 0.0, std::optional<HandSpring> hand = {})
+      : force_(std::move(samples)), error_(error), hand_(std::move(hand)) {}
   explicit ReferenceForce(Ideal ideal) : force_(std::move(ideal)) {}
 
   /// Returns the force at time t [s], interpolated linearly between samples; nothing before the first sample and
   /// after the last. Cost: O(log n).
   std::optional<Vec3> at(double t) const noexcept;
+  /// Returns the tip centre of the rigid tool on which the hand's spring and the reference force are in equilibrium at
+  /// time t [m]; empty without such a spring, and where there is no force.
+  std::optional<Vec3> tip_at(double t) const noexcept;
   /// Largest error of the force itself [N]; 0 if it is given or measured.
   double error() const noexcept { return error_; }
+  const std::optional<HandSpring>& hand() const noexcept { return hand_; }
 
  private:
   std::variant<std::vector<Sample>, Ideal> force_;
   double error_ = 0.0;
+  std::optional<HandSpring> hand_;
 };
 
 /// Directions of two forces are compared if both exceed this value [N]; weaker forces have no meaningful direction.
@@ -84,6 +96,7 @@ class ForceFidelityObserver final : public MetricObserver {
   std::uint64_t every_ = 1;  ///< to compute the lag, the forces of one step out of every_ steps are kept
   std::optional<Vec3> at_row_;
   std::uint64_t rows_ = 0, direction_rows_ = 0;
+  double displacement_ = 0.0;     ///< sum of the squared distances between the tip and ReferenceForce::tip_at() [m^2]
   double direction_error_ = 0.0;  ///< sum of the angles between f and f_m [rad]
   /// Sums of squares [N^2]: of f_m, of f, of the component of f perpendicular to f_m (all of f if f_m is zero), of
   /// the error f - f_m, and of the error's components along n and perpendicular to n.

@@ -290,13 +290,13 @@ int study_settings(const ConvergeOptions& options, ProgramContext& context) {
   question.levels = static_cast<std::size_t>(options.levels > 0 ? options.levels : kLevelsOfSettings);
   question.ratio = options.ratio;
   question.max_error = max_error;
-  // Along a prescribed path nothing is integrated: laws are compared with the reference force.
+  // In a scene with a reference force, laws are compared with this force.
   const LoadedScenario loaded = load_scenario(question.scenario, options.overrides);
   if (loaded.scenario.reference_force) {
     if (std::ranges::count(question.over, "integrator.type", &Axis::path) > 0)
       fail_in_option("--over",
-                     "got integrator.type for a scene with a reference_force, whose path is prescribed; "
-                     "allowed: rendering.algorithm and other fields of rendering");
+                     "got integrator.type for a scene with a reference_force, in which laws are compared with this "
+                     "force; allowed: rendering.algorithm and other fields of rendering");
     const Cases cases({question.scenario}, options.overrides, question.over);
     Report report(options, "converge", "converge_" + file.stem().string(), context);
     report_model_errors(cases, job_options(options, "converge", context), context.layout(), report);

@@ -164,8 +164,8 @@ constexpr const char *kModelErrors = "convergence_model.csv", *kModelTimes = "co
 struct ModelError {
   std::string problem;  ///< values of the fields of --over
   std::string outcome;
-  std::optional<double> direction = {}, force = {}, relative = {};  ///< [rad], [N], [1]
-  double reference_error = 0.0;                                     ///< of the reference force [N]
+  std::optional<double> direction = {}, force = {}, relative = {}, displacement = {};  ///< [rad], [N], [1], [m]
+  double reference_error = 0.0;                                                        ///< of the reference force [N]
   bool shares_reference = false;  ///< renders by the constraints of the reference force
   StepLatency steps = {};         ///< of the fastest repetition
 };
@@ -179,6 +179,7 @@ Columns<ModelError> model_columns() {
   const auto degrees = [](const Row& r) {
     return r.direction ? significant(*r.direction * 180.0 / std::numbers::pi, 3) : "-";
   };
+  const auto millimetres = [](const Row& r) { return r.displacement ? significant(*r.displacement * 1e3, 3) : "-"; };
   const auto microseconds = [](std::uint64_t nanoseconds) { return significant(1e6 * seconds(nanoseconds), 3); };
   const auto share = [](const Row& r) { return significant(100.0 * seconds(r.steps.p99_9) / kStepDeadlines[0], 2); };
   return {
@@ -190,6 +191,11 @@ Columns<ModelError> model_columns() {
       {"force_error_rms_N", "N", "root mean square of the rendered force minus the reference force", &Row::force,
        under("force error\nN rms", 3)},
       {"force_error_relative", "1", "force_error_rms_N / rms of the reference force", &Row::relative},
+      {"displacement_rms_m", "m",
+       "root mean square of the distance between the tip and a rigid tool's tip in the same hand; empty if the path is "
+       "prescribed",
+       &Row::displacement},
+      {"displacement\nmm rms", "1", "displacement_rms_m in millimetres", millimetres, only_printed()},
       {"reference_error_N", "N", "error of the reference force; 0 if it is given or measured", &Row::reference_error},
       {"shares_reference", "",
        "true if the law renders by the constraints of the reference force, so that its error says nothing",
@@ -223,6 +229,7 @@ ModelError model_error(const CheckedScenario& scene, std::string problem) {
                    .direction = metric("fidelity.force_direction_error_rad"),
                    .force = metric("fidelity.force_error_rms_N"),
                    .relative = metric("fidelity.force_error_relative"),
+                   .displacement = metric("fidelity.displacement_rms_m"),
                    .shares_reference = is_rigid && run.algorithm == kSharesReference};
   if (run.sections["fidelity"].contains("reference_error_N"))
     error.reference_error = run.sections["fidelity"]["reference_error_N"].get<double>();

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -16,12 +17,22 @@
 namespace hapbench {
 namespace {
 
-/// Follows the prescribed path and returns the force in every step.
+using HandSpring = ReferenceForce::HandSpring;
+
+/// Returns the hand's spring if it leads the tool; empty if the position is prescribed.
+std::optional<HandSpring> leading_hand(const Scenario& scenario) {
+  const ImpedanceHandFields* spring = spring_of(scenario.hand);
+  if (!position_is_free(scenario.motion) || spring == nullptr) return std::nullopt;
+  return HandSpring{spring->target, spring->stiffness};
+}
+
+/// Follows the prescribed path, or the target of the hand, and returns the force in every step.
 ReferenceForce computed(const Scenario& scenario, const NamedFiles& files) {
   const auto& tool = std::get<CylinderFields>(scenario.tool);
   RigidContact contact(files.at(kEnvironmentFile).mesh().triangles(), {tool.diameter / 2.0, tool.length});
   const auto motion = make_motion(scenario, files);
-  const Vec3 start = motion->position_at(0.0);
+  const std::optional<HandSpring> hand = leading_hand(scenario);
+  const Vec3 start = hand ? scenario.initial.position : motion->position_at(0.0);
   const SurfaceDistance height = make_solid(scenario, files)->at(start);
   if (height.value <= 0.0 || !contact.start(start, motion->axis_at(0.0))) {
     fail_at(
@@ -31,19 +42,21 @@ ReferenceForce computed(const Scenario& scenario, const NamedFiles& files) {
                     length_text(height.value)));
   }
   std::vector<ReferenceForce::Sample> samples;
-  const double K = scenario.rendering.stiffness;
+  const double K = hand ? hand->stiffness : scenario.rendering.stiffness;
   for (std::int64_t step = 0; step < scenario.time.steps; ++step) {
     const double time = static_cast<double>(step) * scenario.time.step;
-    const Vec3 position = motion->position_at(time), free = contact.follow(position, motion->axis_at(time));
+    const Vec3 wanted =
+        hand ? Vec3(hand->target[0](time), hand->target[1](time), hand->target[2](time)) : motion->position_at(time);
+    const Vec3 free = contact.follow(wanted, motion->axis_at(time));
     if (contact.touched_far_end()) {
       fail_at("/reference_force",
               fmt::format("type \"rigid_contact\": the tool's far end touches the mesh at {:.4g} s; allowed: a longer "
                           "tool.length_m, or a path on which only tip and side touch",
                           time));
     }
-    samples.push_back({time, K * (free - position)});
+    samples.push_back({time, K * (free - wanted)});
   }
-  return ReferenceForce(std::move(samples), K * contact.error());
+  return ReferenceForce(std::move(samples), K * contact.error(), hand);
 }
 
 }  // namespace
@@ -51,8 +64,11 @@ ReferenceForce computed(const Scenario& scenario, const NamedFiles& files) {
 std::shared_ptr<const ReferenceForce> rigid_contact_force(const Scenario& scenario, const NamedFiles& files) {
   // The fields that determine the force; neither law nor damping is among them.
   const Json whole = effective_scenario(scenario, {});
-  Json content = {{"stiffness", scenario.rendering.stiffness}, {"mesh", files.at(kEnvironmentFile).hash()}};
+  Json content = {{"mesh", files.at(kEnvironmentFile).hash()}};
+  const bool has_hand = leading_hand(scenario).has_value();
+  if (!has_hand) content["stiffness"] = scenario.rendering.stiffness;
   for (const char* field : {"time", "environment", "tool", "motion"}) content[field] = whole.at(field);
+  if (has_hand) content.update({{"hand", whole.at("hand")}, {"initial", whole.at("initial")}});
   const auto bytes = [&scenario](const ReferenceForce&) {
     return sizeof(ReferenceForce::Sample) * static_cast<std::size_t>(scenario.time.steps);
   };

@@ -252,14 +252,16 @@ void describe(Fields& f, Scenario& scenario) {
   f.object("bounds", scenario.bounds, "bounds beyond which a run counts as diverged");
   f.if_any(
       "reference_force", scenario.reference_force,
-      "force that an ideal rendering would give on the prescribed motion; the metrics of group fidelity compare the "
-      "rendered force with it. Without a type, it is given as functions of time",
+      "force that an ideal rendering would give on the prescribed motion, or in the same hand; the metrics of group "
+      "fidelity compare the rendered force with it. Without a type, it is given as functions of time",
       [](Fields& value, ReferenceForceFields& reference) {
         value.variant(reference, "reference force",
                       {{"given", "given as functions of time"},
                        {"rigid_contact",
                         "K (x' - x), where x' is the free position of the tool nearest to its prescribed position "
-                        "x: frictionless contact with the rigid triangles of the mesh"}},
+                        "x: frictionless contact with the rigid triangles of the mesh. K is rendering.stiffness. If a "
+                        "hand of type impedance or mass_spring_damper moves the tool, x is the hand's target and K the "
+                        "hand's stiffness: the static force, without inertia and damping"}},
                       Untyped::first);
       });
   f.object_if_any(

@@ -234,7 +234,7 @@ bool records_rows(const RecordFields& record);
 struct GivenForceFields {
   std::array<Profile, 3> force;  ///< [N]
 };
-/// K (x' - x) of frictionless contact with the rigid triangles of the mesh (sim/contact/rigid_contact.hpp).
+/// K (x' - x) of frictionless contact with the rigid triangles of the mesh (scenarios/run/rigid_contact_force.hpp).
 struct RigidContactFields {};
 using ReferenceForceFields = std::variant<GivenForceFields, RigidContactFields>;
 

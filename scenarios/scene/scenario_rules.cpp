@@ -90,8 +90,14 @@ constexpr Rule kRules[] = {
      }},
     {"/integrator/tolerance_s", "allowed for integrator.type \"event\" only",
      [](const Scenario& s) { return s.integrator.type != &kEvent && s.integrator.tolerance != kEventTolerance; }},
-    {"/reference_force", "contradicts motion.position of type \"free\"; allowed with a way that is known beforehand",
-     [](const Scenario& s) { return s.reference_force && is<FreePosition>(s.motion.position); }},
+    {"/reference_force",
+     "contradicts motion.position of type \"free\"; allowed with a prescribed position, or type \"rigid_contact\" and "
+     "a hand of type \"impedance\" or \"mass_spring_damper\" without tremor, whose target leads the tool",
+     [](const Scenario& s) {
+       const ImpedanceHandFields* spring = spring_of(s.hand);
+       const bool is_led = is_rigid_contact(s) && spring != nullptr && !spring->tremor;
+       return s.reference_force && is<FreePosition>(s.motion.position) && !is_led;
+     }},
     {"/reference_force/type",
      "got \"rigid_contact\"; allowed with environment.type \"mesh\", whose triangles it touches",
      [](const Scenario& s) { return is_rigid_contact(s) && !is<MeshEnvironment>(s.environment); }},

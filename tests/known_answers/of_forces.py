@@ -3,7 +3,7 @@ import math
 
 import numpy as np
 
-from answers import EXACT, ROUNDING, Within, norms, profile, rms, scene
+from answers import EXACT, ROUNDING, Table, Within, norms, profile, rms, scene
 from physics import BELOW, STEPPED, SUMMED
 
 
@@ -441,3 +441,49 @@ def imported(bench):
             close,
             ("in milliseconds", 2.0),
         )
+
+
+@scene
+def rigid_tool_in_a_hand(bench):
+    """A hand lowers a round drill on the face of a box: the reference is a rigid tool in the same hand."""
+    x, y, z, radius, n, dt = 4.0, 3.0, 1.0, 0.5, 1200, 0.0005
+    corners = [f"v {i} {j} {k}" for k in (-z, z) for j in (-y, y) for i in (-x, x)]
+    faces = ["f 1 3 4 2", "f 5 6 8 7", "f 1 2 6 5", "f 3 7 8 4", "f 1 5 7 3", "f 2 4 8 6"]
+    (bench.folder / "box.obj").write_text("\n".join(corners + faces) + "\n", encoding="utf-8")
+    down = {"type": "waypoints", "points": [[0, 0.0021], [0.2, 0.0012], [0.5, 0.001]]}
+    held = bench.scenario(
+        "rigid_tool_in_a_hand",
+        time={"step_s": dt, "steps": n},
+        environment={"type": "mesh", "file": "box.obj", "scale": 0.001, "spacing_m": 1e-4},
+        tool={"diameter_m": 2e-3 * radius, "length_m": 0.01, "tip": "round"},
+        initial={"position_m": [0.0002, 0.0003, 0.0021]},
+        hand={
+            "type": "impedance",
+            "stiffness_N_per_m": 400,
+            "damping_N_s_per_m": 6,
+            "target": {"x_m": 0.0002, "y_m": 0.0003, "z_m": down},
+        },
+        rendering={"algorithm": "mean", "stiffness_N_per_m": 3000, "mass_kg": 0.05},
+        reference_force={"type": "rigid_contact"},
+    )
+    run = bench.run(held)
+    target = profile(down, np.arange(n) * dt)
+    rigid = np.column_stack(
+        [
+            np.full(n, 0.0002),
+            np.full(n, 0.0003),
+            np.maximum(target, 1e-3 * (z + radius)),
+        ]
+    )
+    tip = run.table().vectors("x_m", "y_m", "z_m")
+    known = (
+        rms(norms(tip - rigid)),
+        "the free position of a ball over a face",
+        Within("the distance to a triangle, in its own frame", relative=1e-9),
+    )
+    naive = ("distance from the target", rms(tip[:, 2] - target))
+    bench.metrics(run, [("fidelity.displacement_rms_m", *known, *naive)])
+    over = bench.folder / "over"
+    bench.hapbench("converge", held, "--over", "rendering.algorithm=mean", "--out", over, "--quiet")
+    printed = Table(over / "convergence_model.csv")["displacement_rms_m"][0]
+    bench.add("convergence_model.csv:displacement_rms_m", printed, *known, naive)

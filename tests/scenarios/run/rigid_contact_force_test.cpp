@@ -26,6 +26,20 @@ Json over_a_cube() {
   })");
 }
 
+/// A hand of 300 N/m whose target comes down to 5 mm, 0.5 mm below the lowest free position over the cube's face, and
+/// then stays there.
+Json held_over_a_cube(const char* algorithm, double K) {
+  Json json = over_a_cube();
+  json.erase("motion");
+  json["initial"] = {{"position_m", {0.0, 0.0003, 0.0065}}};
+  json["hand"] = Json::parse(R"({"type": "impedance", "stiffness_N_per_m": 300, "damping_N_s_per_m": 6,
+      "target": {"x_m": 0, "y_m": 0.0003, "z_m": {"type": "waypoints", "points": [[0, 0.0065], [0.2, 0.005]]}}})");
+  json["rendering"] = {{"algorithm", algorithm}, {"stiffness_N_per_m", K}, {"mass_kg", 0.05}};
+  json["time"]["steps"] = 4000;
+  json["record"] = {{"force_reference", true}};
+  return json;
+}
+
 Scenario scene(const Json& json) {
   return read_scenario(json, test::data_directory()).scenario;
 }
@@ -80,8 +94,47 @@ TEST(RigidContactForce, RefusesByNameWhatItDoesNotCover) {
   EXPECT_NE(plane.find("environment.type \"mesh\""), std::string::npos) << plane;
   const std::string free = refused(R"({"motion": null})");
   EXPECT_NE(free.find("/reference_force"), std::string::npos) << free;
+  Json tremor = held_over_a_cube("mean", 5000.0);
+  tremor["hand"]["tremor"] = {{"rms_m", {1e-5, 1e-5, 1e-5}}};
+  EXPECT_THROW(checked(read_scenario(tremor, test::data_directory())), InputError);
   const std::string inside = refused(R"({"motion": {"position": {"z_m": 0.0054}}})");
   EXPECT_NE(inside.find("touches the mesh in the first step"), std::string::npos) << inside;
+}
+
+TEST(RigidContactForce, InAHandIsThatOfARigidToolInTheSameHand) {
+  for (const double K : {5000.0, 20000.0}) {
+    const LoadedScenario loaded = read_scenario(held_over_a_cube("shaped_stiffness", K), test::data_directory());
+    const auto force = rigid_contact_force(loaded.scenario, loaded.files);
+    // The hand's stiffness times the distance of its target from the free position, 0.15 N: without K.
+    EXPECT_NEAR((*force->at(1.0) - Vec3(0, 0, 300 * 0.0005)).norm(), 0.0, 1e-12);
+    EXPECT_NEAR((*force->tip_at(1.0) - Vec3(0, 0.0003, 0.0055)).norm(), 0.0, 1e-15);
+    EXPECT_EQ(*force->at(0.0), Vec3(0, 0, 0));
+  }
+}
+
+/// With the proxy at the free position, equilibrium is k (z - z_target) = K (z_free - z): the tool is 0.5 mm k / (K + k)
+/// below the free position, and the rendered force is smaller than that of a rigid surface by the factor K / (K + k).
+TEST(RigidContactForce, InAHandComparesForceAndDisplacement) {
+  constexpr double kK = 5000.0, kHand = 300.0;
+  Json json = held_over_a_cube("proxy", kK);
+  json["hand"]["target"]["z_m"] = 0.005;
+  json["initial"]["position_m"] = {0.0, 0.0003, 0.0055 + 1e-9};
+  json["rendering"]["damping_ratio"] = 1.0;
+  const Result run = run_scenario(checked(read_scenario(json, test::data_directory())), std::nullopt, false);
+  const double depth = 0.0005 * kHand / (kK + kHand);
+  const double displacement = *number_of(run.metrics, "fidelity.displacement_rms_m");
+  const double force = *number_of(run.metrics, "fidelity.force_error_rms_N");
+  // A point of the grid of 0.1 mm lies on the tool's axis. The tool starts at the free position and is overdamped: its
+  // slow time constant is below (B + b) / (K + k) = (32 + 6) / 5300 s = 7.1 ms. The mean of the square over 2 s is
+  // smaller by at most 2 * 7.1 ms / 2 s, the root by half of that.
+  EXPECT_NEAR(displacement, depth, 0.004 * depth);
+  EXPECT_NEAR(force, kHand * depth, 0.004 * kHand * depth);
+  EXPECT_EQ(
+      number_of(
+          run_scenario(checked(read_scenario(over_a_cube(), test::data_directory())), std::nullopt, false).metrics,
+          "fidelity.displacement_rms_m"),
+      std::nullopt)
+      << "a prescribed path";
 }
 
 TEST(RigidContactForce, ShiftsWithThePath) {
