@@ -186,7 +186,7 @@ int run_import(const ProgramArguments& given, ProgramContext& context) {
         "  hapbench import stroke log.txt --preset hapi\n"
         "  hapbench import stroke rec.csv --columns time=1,position=2 --scale time=1e-6\n"
         "  hapbench import device log.csv\n\n" +
-        layout.wrapped("Manual: scenarios/README.md, section \"Strokes in\"", 0);
+        layout.wrapped("Manual: scenarios/README.md, section \"Strokes\"", 0);
     print(context, {}, text, {});
     return kSuccess;
   }

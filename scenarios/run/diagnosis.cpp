@@ -50,7 +50,7 @@ constexpr Rule kRules[] = {
     {"stuck", "1 if the hand's target moved on and the tool did not", "1", 0.5, "the tool is stuck",
      ended<Outcome::stuck, Outcome::not_dragged>, against_standstill},
     {"step", "largest displacement of the tip in one time step near the surface, divided by the tool's half width", "1",
-     1.0, "near the surface the tool moves by up to {} of its half widths in one time step", longest_step,
+     1.0, "near the surface the tool moves by up to {} times its half width in one time step", longest_step,
      against_long_steps},
     {"servo", "1 if hand and device are unstable without contact, by the eigenvalues of their loop", "1", 0.5,
      "the loop is unstable without contact", unstable_alone, against_unstable_servo,
@@ -65,10 +65,10 @@ constexpr Rule kRules[] = {
      "1", 0.5, "the loop is unstable at any K: its damping or the device's servo is the cause", unstable_loop,
      against_unstable_loop},
     {"buzz", "rms of the force above 30 Hz, divided by the mean force in settled contact of a pressed tool", "1",
-     kMaxBuzz, "the force vibrates: its rms above 30 Hz is {} of the mean force", buzz, against_buzz, buzz_frequency,
+     kMaxBuzz, "the force vibrates: its rms above 30 Hz is {} times the mean force", buzz, against_buzz, buzz_frequency,
      true},
     {"pop", "largest force step in settled contact, divided by the mean force of a pressed tool", "1", 0.5,
-     "the force jumps: in settled contact one force step is {} of the mean force", pop, against_pops, no_more, true},
+     "the force jumps: in settled contact one force step is {} times the mean force", pop, against_pops, no_more, true},
     {"shake",
      "rms of the tool's velocity above 30 Hz over the run, if the rule buzz has no number: without settled contact, or "
      "for a tool that nothing presses",
@@ -78,7 +78,7 @@ constexpr Rule kRules[] = {
      "largest force step at a change of the contacts kept by rendering.reduction, divided by the mean force in "
      "settled contact",
      "1", kMaxReduction,
-     "the force jumps by {} of its mean when the set of contacts kept by rendering.reduction changes",
+     "the force jumps by {} times its mean when the set of contacts kept by rendering.reduction changes",
      [](const DiagnosedRun& r) { return r.of_mean_force("reduction_force_step_max_N"); },
      [](const DiagnosedRun&) { return std::string("rendering.reduction null"); }, no_more, false, true},
     {"facets",
@@ -89,7 +89,7 @@ constexpr Rule kRules[] = {
      "contact",
      coarseness, against_coarseness, point_spacing},
     {"deep", "median depth of the tool below the surface in settled contact, divided by its half width", "1", 0.75,
-     "the tool sinks into the surface by {} of its half width", depth_in_half_widths, against_depth},
+     "the tool sinks into the surface by {} times its half width", depth_in_half_widths, against_depth},
     {"soft", "K divided by the combined stiffness along the softest contact (1 / ratio_min)", "1", kMaxSoftness,
      "along some contact the rendered stiffness is {} times smaller than K", softness, against_softness},
     {"hard", "combined stiffness along the stiffest contact, divided by K (ratio_max)", "1", 3.0,
@@ -97,8 +97,8 @@ constexpr Rule kRules[] = {
      against_sums},
     {"damping",
      "B dt / m of the moving mass along the stiffest contact, divided by the stability limit of one integration step",
-     "1", kMaxDampingShare, "the damping is {} of the largest damping at which one time step is stable", damping_share,
-     against_damping},
+     "1", kMaxDampingShare, "the damping is {} times the largest damping at which one time step is stable",
+     damping_share, against_damping},
     {"friction",
      "number of steps with a force above explicit_friction_limit_N, beyond which explicit integration of friction is "
      "unstable",
@@ -110,7 +110,7 @@ constexpr Rule kRules[] = {
      "force that one encoder step causes through the damping B, divided by the mean force, if the force vibrates, "
      "jumps "
      "or reverses",
-     "1", kMaxEncoderForce, "each encoder step causes a force of {} of the mean force, through the damping",
+     "1", kMaxEncoderForce, "each encoder step causes a force of {} times the mean force, through the damping",
      encoder_force, against_encoder},
     {"saturated", "fraction of the steps in contact in which the force is at its upper limit", "1", kMaxSaturation,
      "the force is saturated during {} of the contact time", saturation, against_saturation},
@@ -139,8 +139,9 @@ constexpr Rule kRules[] = {
     {"drift",
      "displacement across the force in the last quarter of the run, of a tool under a constant hand force, divided by "
      "the tool's half width",
-     "1", 0.05, "the tool drifts by {} of its half width in the last quarter of the run, under a constant hand force",
-     drift, against_drift},
+     "1", 0.05,
+     "the tool drifts by {} times its half width in the last quarter of the run, under a constant hand force", drift,
+     against_drift},
 };
 
 /// Evaluates the rules for which the member `mark` is true, or all rules if `mark` is null. With

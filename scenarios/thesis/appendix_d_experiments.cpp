@@ -125,7 +125,7 @@ Finding judge_experiment(const Measured& measured, const PublishedNumbers& publi
                   fmt::format("{} {:.2g} and {:.2g}, not near the published ones", m.name, mean_of(a), mean_of(b)),
                   ", ");
     }
-    if (is_rate) number = fmt::format("success {:.2f} against {:.2f}", mean_of(a), mean_of(b));
+    if (is_rate) number = fmt::format("success {:.2f} (original), {:.2f} (shaping)", mean_of(a), mean_of(b));
     append_item(text, fmt::format("{} {:.2g} ± {:.1g} vs {:.2g} ± {:.1g} (t = {:.3g})", m.name, mean_of(a),
                                   standard_error(a), mean_of(b), standard_error(b), c.t));
   }

@@ -47,8 +47,8 @@ Finding judge_stability(const Measured& measured, const PublishedNumbers&) {
           fmt::format("{} of {} runs complete, {} without vibration or jumps that a hand would feel", completed,
                       measured.size(), undisturbed),
           "",
-          fmt::format("{} of {} runs complete; force above 30 Hz up to {:.2f} of the mean", completed, measured.size(),
-                      buzz)};
+          fmt::format("{} of {} runs complete; rms force above 30 Hz up to {:.2f} times the mean", completed,
+                      measured.size(), buzz)};
 }
 
 // ---- G3: largest depth of a contact in each task and density [m].

@@ -51,7 +51,7 @@ def command_line():
         "Convert a recording of poses (and measured forces) into a stroke that a scenario plays back.",
         NOTES,
         EXAMPLES,
-        'scenarios/README.md, section "Strokes in"',
+        'scenarios/README.md, section "Strokes"',
     )
     line.text("file", "<recording>", "the recording; without it, the presets are listed", nargs="?")
     line.text(
