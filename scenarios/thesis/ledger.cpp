@@ -209,7 +209,8 @@ std::string revisions(const Json& claims) {
   std::string text;
   if (!rows.empty())
     text +=
-        "\n### Rules that were changed after their verdicts were known\n\n| id | rule before | verdict before | verdict now | "
+        "\n### Rules that were changed after their verdicts were known\n\nThe column *rule before* quotes the earlier rule "
+        "in its earlier wording.\n\n| id | rule before | verdict before | verdict now | "
         "reason |\n|---|---|---|---|---|\n" +
         rows;
   if (!added.empty())
@@ -364,7 +365,8 @@ std::string claim_pages(const Json& ledger) {
       "- **Published** and **Number**: the number of the thesis and the number of hapbench.\n"
       "- **Cases**: the numbers of all runs of the claim. `signed_distance` and `binary` are the two densities of the "
       "block from which its surface points are computed.\n"
-      "- **Rule**: the conditions of the verdict. *qualitatively* begins the weaker condition.\n"
+      "- **Rule**: the conditions of the verdict. *qualitatively* begins the weaker condition. **Rule before** quotes an "
+      "earlier rule in its earlier wording.\n"
       "- **Sensitivity**: assumptions with another value, each with the verdict and the number that this value gives. "
       "Cases without a verdict (*not judged*, *not measured*) are listed but decide nothing.\n";
   for (const Json& claim : ledger.at("claims")) {
