@@ -169,10 +169,11 @@ Finding judge_springs_limited(const Measured& runs, const PublishedNumbers& p) {
   }
   return {decide(keeps && published_pairs, keeps && !fluctuate.empty()),
           fmt::format("the proposed algorithm {} its performance; {}", keeps ? "keeps" : "does not keep",
-                      fluctuate.empty() ? "no other one is smooth without the limits and fluctuates with them"
-                                        : "smooth without the limits and fluctuating with them: " + fluctuate),
+                      fluctuate.empty() ? "no other algorithm is smooth without the limits and fluctuates with them"
+                                        : "smooth without the limits, but fluctuating with them: " + fluctuate),
           "swings without and with the limits: " + text,
-          fmt::format("proposed: {}; fluctuating: {}", swings, fluctuate.empty() ? "none" : fluctuate)};
+          fmt::format("proposed algorithm: {}; fluctuating algorithms: {}", swings,
+                      fluctuate.empty() ? "none" : fluctuate)};
 }
 
 // ---- A4: the integrator's stability limits. One case for each published number, in the order of the thesis.

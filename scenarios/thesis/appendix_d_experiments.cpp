@@ -166,10 +166,11 @@ Finding judge_wall(const Measured& measured, const PublishedNumbers& published) 
     append_item(text, fmt::format("{} {:.2f} → {:.2f}", law, mean_of(centre), mean_of(side)));
   }
   return {in_simulation(direction),
-          fmt::format("the wall {}; the changes are {} the published changes",
-                      direction ? "helps stiffness shaping and hurts the original algorithm" : "does something else",
+          fmt::format("at the side target, success {}; the changes are {} the published changes",
+                      direction ? "rises with stiffness shaping and falls with the original algorithm"
+                                : "does not change in the published directions",
                       near ? "near" : "not near"),
-          text, text};
+          text, "success rate, centre → side: " + text};
 }
 
 // ---- D6: success rates at the target positions of the pilot experiments. One case for each position, with the mean
@@ -250,7 +251,9 @@ Finding judge_pilots(const Measured& measured, const PublishedNumbers& published
       in_simulation(offset.as_published() && height.as_published()),
       fmt::format("offset: {}; height: {}; stiffness shaping removes fewer targets than the original algorithm at: {}",
                   offset.text(), height.text(), worse.empty() ? "no position" : worse),
-      "", fmt::format("success {:.2f} beyond, {:.2f} at the easiest position", beyond, easiest)};
+      "",
+      fmt::format("success rate of the original algorithm {:.2f} beyond, {:.2f} at the easiest position", beyond,
+                  easiest)};
 }
 
 }  // namespace
