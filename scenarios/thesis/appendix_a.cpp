@@ -131,7 +131,7 @@ Finding judge_springs_unlimited(const Measured& measured, const PublishedNumbers
       published ? Verdict::replicated : Verdict::contradicted,
       "100 pairs of dampers of 88.5 N s/m have 17 700 N s/m in sum, 22 times the stability limit 2 M / Δt = 800 N s/m "
       "of A.3, so the plain sum must diverge",
-      "pairs with which the way is smooth: " + text,
+      "numbers of pairs with which the path is smooth: " + text,
       fmt::format("{} of {} algorithms are smooth with 100 pairs", smooth, std::size(kAlgorithms))};
 }
 
