@@ -31,11 +31,12 @@ Measured measure_peg_motion(const Evidence& e) {
 
 Finding judge_peg_motion(const Measured& measured, const PublishedNumbers& p) {
   const MeasuredCase &original = measured.at(0), &shaped = measured.at(1);
-  return {decide(vibrates_much_more(original, shaped, p), vibrates_more(original, shaped)),
-          fmt::format("without friction the original algorithm's velocity varies {:.3g} times as much, with the "
-                      "trainer's friction {:.3g} times",
-                      original["velocity_variation"] / shaped["velocity_variation"],
-                      measured.at(2)["velocity_variation"] / measured.at(3)["velocity_variation"])};
+  return {
+      decide(vibrates_much_more(original, shaped, p), vibrates_more(original, shaped)),
+      fmt::format("with the original algorithm, the total variation of the velocity is {:.3g} times as large without "
+                  "friction, and {:.3g} times with the trainer's friction",
+                  original["velocity_variation"] / shaped["velocity_variation"],
+                  measured.at(2)["velocity_variation"] / measured.at(3)["velocity_variation"])};
 }
 
 /// The algorithms of the thesis, except the normal projection, which equals stiffness shaping on springs.
@@ -128,10 +129,10 @@ Finding judge_springs_unlimited(const Measured& measured, const PublishedNumbers
       ++smooth;
   return {
       published ? Verdict::replicated : Verdict::contradicted,
-      "100 pairs of 88.5 N s/m are 17 700 N s/m, 22 times the 2 M / Δt = 800 N s/m that A.3 allows, so the plain sum "
-      "must diverge there",
-      "pairs with which the way is smooth: " + text,
-      fmt::format("{} of {} algorithms with 100 pairs", smooth, std::size(kAlgorithms))};
+      "100 pairs of dampers of 88.5 N s/m have 17 700 N s/m in sum, 22 times the stability limit 2 M / Δt = 800 N s/m "
+      "of A.3, so the plain sum must diverge",
+      "numbers of pairs with which the path is smooth: " + text,
+      fmt::format("{} of {} algorithms are smooth with 100 pairs", smooth, std::size(kAlgorithms))};
 }
 
 // Number of pairs with which the plain sum is smooth without limits. With 100 pairs it is not smooth even without
@@ -168,10 +169,11 @@ Finding judge_springs_limited(const Measured& runs, const PublishedNumbers& p) {
   }
   return {decide(keeps && published_pairs, keeps && !fluctuate.empty()),
           fmt::format("the proposed algorithm {} its performance; {}", keeps ? "keeps" : "does not keep",
-                      fluctuate.empty() ? "no other one is smooth without the limits and fluctuates with them"
-                                        : "smooth without the limits and fluctuating with them: " + fluctuate),
+                      fluctuate.empty() ? "no other algorithm is smooth without the limits and fluctuates with them"
+                                        : "smooth without the limits, but fluctuating with them: " + fluctuate),
           "swings without and with the limits: " + text,
-          fmt::format("proposed: {}; fluctuating: {}", swings, fluctuate.empty() ? "none" : fluctuate)};
+          fmt::format("proposed algorithm: {}; fluctuating algorithms: {}", swings,
+                      fluctuate.empty() ? "none" : fluctuate)};
 }
 
 // ---- A4: the integrator's stability limits. One case for each published number, in the order of the thesis.
@@ -237,7 +239,7 @@ Finding judge_damping_at_limit(const MeasuredCase& m, const PublishedNumbers& p)
   const double alone = std::abs(m["alone"] / p["A4.damping"].mean - 1.0);
   const bool before = m["there"] > m["alone"];
   return {decide(before && std::max(there, alone) <= threshold(p, "same_limit"), before),
-          before ? "the damping that belongs to the largest stiffness is unstable by itself" : "stiffness comes first"};
+          before ? "the damping at the largest stiffness is unstable without any spring" : "stiffness comes first"};
 }
 
 // ---- A6: three energies of an undamped mass on a spring, as Eq. A.1 moves it.
@@ -277,11 +279,12 @@ MeasuredValues measure_energy(const Evidence& e) {
 
 Finding judge_energy(const MeasuredCase& m, const PublishedNumbers&) {
   const bool mass = m["mass"] <= kSameEnergy, kept = m["kept"] <= kSameEnergy, naive = m["naive"] <= 1.0 + kSameEnergy;
-  return {
-      decide(mass && kept && naive, mass || kept),
-      fmt::format("it depends on the meaning of the energy: the mass alone {} passive, with a spring a modified energy "
-                  "{} kept, and the energy K x²/2 + M v²/2 oscillates up to 1 / (1 - ω Δt / 2) = {:.4f} of its start",
-                  mass ? "is" : "is not", kept ? "is" : "is not", m["bound"])};
+  return {decide(mass && kept && naive, mass || kept),
+          fmt::format(
+              "the verdict depends on the meaning of energy: the mass alone {} passive; with a spring, a modified "
+              "energy {} constant; the energy K x²/2 + M v²/2 oscillates up to 1 / (1 - ω Δt / 2) = {:.4f} times its "
+              "start",
+              mass ? "is" : "is not", kept ? "is" : "is not", m["bound"])};
 }
 
 }  // namespace

@@ -76,10 +76,12 @@ Finding judge_groove(const Measured& measured, const PublishedNumbers& p) {
   const double most = threshold(p, "most") * static_cast<double>(measured.size());
   return {
       decide(static_cast<double>(with) > most, static_cast<double>(without) > most),
-      fmt::format("true of the normal damping, which acts along the merged direction only; the friction of Table B.1 "
-                  "{} it across that direction",
+      fmt::format("true of the normal damping, which acts only along the merged direction; the friction of Table B.1 "
+                  "{} the missing damping across this direction",
                   static_cast<double>(with) > most ? "does not hide" : "hides"),
-      "", fmt::format("under-damped at {} of {} angles, with friction at {}", without, measured.size(), with)};
+      "",
+      fmt::format("under-damped at {} of {} angles without friction, at {} with friction", without, measured.size(),
+                  with)};
 }
 
 // ---- B3: the merged depth before and after adding two points, in units of the depth of each point. There are 2 n + 1
@@ -113,7 +115,7 @@ Finding judge_added_points(const MeasuredCase& m, const PublishedNumbers&) {
       std::abs(m["depth_before"] - (2.0 * n + 1.0)) <= kExact && std::abs(m["depth_after"] - (2.0 * n + 3.0)) <= kExact;
   const bool turned = m["direction_product"] <= -1.0 + kExact;
   return {decide(depths && turned, turned),
-          depths && turned ? "exact, as the formula says" : "another depth or direction than the formula's"};
+          depths && turned ? "exactly the values of the formula" : "depth or direction differ from the formula"};
 }
 
 /// The laws that P1 compares; the law that the thesis proposes is first.
@@ -208,13 +210,14 @@ Measured measure_density(const Evidence& e) {
 Finding judge_density(const Measured& measured, const PublishedNumbers& p) {
   const double all = measured.front()["x40"], reduced = measured.front()["x40_reduced"], limit = measured.back()["x40"],
                small = threshold(p, "negligible");
-  return {decide(reduced <= small, std::min(all, limit) <= small),
-          fmt::format(
-              "without the reduction {} updates of stiffness shaping {}; its limit {}; the reduction, which removes "
-              "points with similar gradients, {} under any law",
-              measured.front()["updates"],
-              all <= small ? "decouple the force from density" : "are too few to decouple the force from density",
-              limit <= small ? "decouples" : "does not", reduced <= small ? "does" : "does not")};
+  return {
+      decide(reduced <= small, std::min(all, limit) <= small),
+      fmt::format(
+          "without the reduction, {} updates of stiffness shaping {}, and infinitely many updates {}; the reduction, "
+          "which removes points with similar gradients, {} it with any law",
+          measured.front()["updates"],
+          all <= small ? "decouple the force from the density" : "do not decouple the force from the density",
+          limit <= small ? "decouple it" : "do not", reduced <= small ? "decouples" : "does not decouple")};
 }
 
 // ---- T6: change of the spring force in task 2 by the reduction: rms of the difference over the rms of the force of
@@ -233,7 +236,8 @@ MeasuredValues measure_information(const Evidence& e) {
 
 Finding judge_information(const MeasuredCase& m, const PublishedNumbers& p) {
   const bool most = m["change"] <= threshold(p, "over_reduced"), half = m["change"] <= threshold(p, "most");
-  return {decide(most, half), "three updates weigh all points otherwise than the points that are kept"};
+  return {decide(most, half),
+          "three updates give different weights with all points and with the points that the reduction keeps"};
 }
 
 // ---- C6: the damping ratio of 1, 2, 4 and 8 springs in parallel. The stiffness ratio is the number of springs.
@@ -347,8 +351,8 @@ Finding judge_tandpasta(const MeasuredCase& m, const PublishedNumbers& p) {
   return {
       decide(unchanged && smallest >= threshold(p, "boosted"), unchanged && smallest > 1.0),
       fmt::format(
-          "the weights {} the elastic energy and {} the outward force; that the peg leaves after 5 steps at the "
-          "thesis's step is explicit friction blowing up, not the law",
+          "the weights {} the elastic energy and {} the outward force; with the time step of the thesis, the peg leaves "
+          "after 5 steps because the explicit friction diverges, not because of the law",
           unchanged ? "keep" : "change", smallest > 1.0 ? "raise" : "do not raise"),
       fmt::format("energy ratio {:.12g}; outward force at tilts of {} rad {:.1f} times that of the plain springs; in a "
                   "converged run the peg leaves after {:.3f} s, with summation after {:.3f}, with stiffness shaping "
@@ -384,11 +388,12 @@ Finding judge_quick_penetration(const Measured& measured, const PublishedNumbers
   const auto less =
       std::ranges::count_if(measured, [](const MeasuredCase& m) { return m["tandpasta"] < m["summation"]; });
   const auto all = static_cast<std::ptrdiff_t>(measured.size());
-  return {decide(less == all, less > 0),
-          fmt::format(
-              "the drill sinks in less than with the plain sum under {} of {} hands; n points are up to n K stiff, so "
-              "that it hardly sinks in with either",
-              less, all)};
+  return {
+      decide(less == all, less > 0),
+      fmt::format(
+          "the drill sinks in less than with the plain sum under {} of {} hands; n contacts have a stiffness of up to "
+          "n K, so the drill hardly sinks in with either law",
+          less, all)};
 }
 
 }  // namespace

@@ -119,19 +119,21 @@ Finding judge_experiment(const Measured& measured, const PublishedNumbers& publi
     if (m.name != kModelForce) consistent = consistent && c.agrees && (published_difference || !is_rate || c.near);
     const std::vector<double>&a = m.all("original"), &b = m.all("shaped");
     if (!c.agrees) {
-      append_item(deviating, m.name, ", ");
+      append_item(deviating, m.name + " (direction or significance)", ", ");
     } else if (!c.near) {
-      append_item(deviating,
-                  fmt::format("{} {:.2g} and {:.2g}, not near the published ones", m.name, mean_of(a), mean_of(b)),
-                  ", ");
+      append_item(
+          deviating,
+          fmt::format("{} {:.2g} against {:.2g} (far from the published values)", m.name, mean_of(a), mean_of(b)),
+          ", ");
     }
-    if (is_rate) number = fmt::format("success {:.2f} (original), {:.2f} (shaping)", mean_of(a), mean_of(b));
+    if (is_rate)
+      number = fmt::format("success rate {:.2f} (original) against {:.2f} (shaping)", mean_of(a), mean_of(b));
     append_item(text, fmt::format("{} {:.2g} ± {:.1g} vs {:.2g} ± {:.1g} (t = {:.3g})", m.name, mean_of(a),
                                   standard_error(a), mean_of(b), standard_error(b), c.t));
   }
   return {in_simulation(consistent),
           (deviating.empty() ? std::string("every measure agrees with the published one in direction and significance")
-                             : "other than published: " + deviating) +
+                             : "different from the published result: " + deviating) +
               fmt::format("; the {} differs most, by {:.2g} standard errors of the difference; subjects regulate the "
                           "gauge, so the mean force is nearly an input",
                           farthest, largest),
@@ -164,10 +166,11 @@ Finding judge_wall(const Measured& measured, const PublishedNumbers& published) 
     append_item(text, fmt::format("{} {:.2f} → {:.2f}", law, mean_of(centre), mean_of(side)));
   }
   return {in_simulation(direction),
-          fmt::format("the wall {}; the changes are {} the published ones",
-                      direction ? "helps stiffness shaping and hurts the original algorithm" : "does something else",
+          fmt::format("at the side target, success {}; the changes are {} the published changes",
+                      direction ? "rises with stiffness shaping and falls with the original algorithm"
+                                : "does not change in the published directions",
                       near ? "near" : "not near"),
-          text, text};
+          text, "success rate, centre → side: " + text};
 }
 
 // ---- D6: success rates at the target positions of the pilot experiments. One case for each position, with the mean
@@ -248,7 +251,9 @@ Finding judge_pilots(const Measured& measured, const PublishedNumbers& published
       in_simulation(offset.as_published() && height.as_published()),
       fmt::format("offset: {}; height: {}; stiffness shaping removes fewer targets than the original algorithm at: {}",
                   offset.text(), height.text(), worse.empty() ? "no position" : worse),
-      "", fmt::format("success {:.2f} beyond, {:.2f} at the easiest position", beyond, easiest)};
+      "",
+      fmt::format("success rate of the original algorithm {:.2f} beyond, {:.2f} at the easiest position", beyond,
+                  easiest)};
 }
 
 }  // namespace

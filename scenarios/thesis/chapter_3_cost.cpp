@@ -74,7 +74,7 @@ Finding judge_dense_deadline(const MeasuredCase& m, const PublishedNumbers& publ
   const double deadline = published["T4.step"].mean, margin = threshold(published, "margin");
   const bool missed = m["matrix"] >= margin * deadline, met = margin * m["reduced"] <= deadline;
   return {decide(missed && met, met),
-          missed ? fmt::format("in the dense form the thesis uses, {}",
+          missed ? fmt::format("in the dense form of the thesis, {}",
                                met ? "the reduction is needed and suffices" : "even the reduction does not suffice")
                  : "on this machine the dense form does not clearly miss the deadline"};
 }
@@ -82,7 +82,7 @@ Finding judge_dense_deadline(const MeasuredCase& m, const PublishedNumbers& publ
 Finding judge_tensor_deadline(const MeasuredCase& m, const PublishedNumbers& published) {
   const double deadline = published["T4.step"].mean;
   const bool met = threshold(published, "margin") * m["tensor"] <= deadline;
-  return {found(met), met ? "through the 3 × 3 stiffness tensor all points are shaped in time without a reduction"
+  return {found(met), met ? "with the 3 × 3 stiffness tensor, all points are shaped in time without a reduction"
                           : "without the reduction the tensor form misses the deadline, too"};
 }
 
@@ -114,11 +114,12 @@ Finding judge_loop_load(const MeasuredCase& m, const PublishedNumbers& p) {
   const double margin = threshold(p, "margin");
   const bool small = m["reduced_3"] - m["reduced_0"] <= threshold(p, "small_load");
   const bool falls = margin * m["reduced_3"] <= m["unreduced_3"];
-  return {
-      decide(small && falls, small || falls),
-      fmt::format("the iterations cost {}; the reduction {} the load of the dense form and {} that of the tensor form",
-                  small ? "next to nothing" : "more than that", falls ? "lowers" : "does not lower",
-                  margin * m["tensor_reduced_3"] <= m["tensor_unreduced_3"] ? "lowers" : "does not lower")};
+  return {decide(small && falls, small || falls),
+          fmt::format(
+              "the load of the iterations is {}; the reduction {} the load of the dense form and {} the load of the "
+              "tensor form",
+              small ? "small" : "not small", falls ? "lowers" : "does not lower",
+              margin * m["tensor_reduced_3"] <= m["tensor_unreduced_3"] ? "lowers" : "does not lower")};
 }
 
 // ---- P2, F3: computing time of one step over the time step [1], of another algorithm and of stiffness shaping: the
@@ -156,7 +157,7 @@ MeasuredValues measure_tandpasta_cost(const Evidence& e) {
 
 Finding judge_other_cost(const MeasuredCase& m, const PublishedNumbers& p) {
   return {decide(m["other"] >= threshold(p, "considerable"), m["other"] >= threshold(p, "margin") * m["shaped"]),
-          fmt::format("{:.2g} times what stiffness shaping takes", m["other"] / m["shaped"])};
+          fmt::format("{:.2g} times the computing time of stiffness shaping", m["other"] / m["shaped"])};
 }
 
 }  // namespace

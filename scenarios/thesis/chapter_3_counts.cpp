@@ -108,9 +108,9 @@ CountsAgree agreement(const MeasuredCase& c, const PublishedNumbers& published, 
 
 std::string agreement_text(const CountsAgree& agree, bool bounded, double bound) {
   if (agree.whole) return "as published";
-  if (!agree.raw) return "the raw counts are not the published ones";
-  if (!agree.mean) return "another number is left than published";
-  return "the number left is as published, " +
+  if (!agree.raw) return "the raw counts differ from the published counts";
+  if (!agree.mean) return "the number of points left differs from the published number";
+  return "the number of points left is as published, " +
          (bounded ? std::string("its spread is not") : fmt::format("some rows keep {} or more", bound));
 }
 

@@ -102,9 +102,9 @@ MeasuredValues measure_felt_stiffness(const Evidence& e) {
 
 Finding judge_felt_stiffness(const MeasuredCase& m, const PublishedNumbers& p) {
   const double times = m["on"] / m["off"];
-  return {
-      decide(times >= threshold(p, "heavier"), times > 1.0),
-      fmt::format("{:.2g} times as stiff with the limit; what is left are servo and structure, which are ours", times)};
+  return {decide(times >= threshold(p, "heavier"), times > 1.0),
+          fmt::format("{:.2g} times as stiff with the limit; the rest of the compliance is our servo and structure",
+                      times)};
 }
 
 // ---- L2: the steps of task 2 in contact in which the hand's force is at the limit: the spring force f (the reaction)
@@ -140,7 +140,7 @@ Finding judge_saturated_motion(const MeasuredCase& m, const PublishedNumbers& p)
   // With NaN a comparison is false.
   const double most = threshold(p, "around") * m["limit"];
   const bool held = m["p99"] <= most, median = m["median"] <= most;
-  return {decide(held, median), held ? "the reaction stays at the limit, whatever the hand pushes with"
+  return {decide(held, median), held ? "the reaction stays at the limit for every force of the hand"
                                      : "the reaction exceeds the limit while the hand pushes on"};
 }
 

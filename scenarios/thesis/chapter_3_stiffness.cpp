@@ -141,13 +141,13 @@ Finding judge_range(const Measured& measured, const PublishedNumbers& p, double 
       averaged ? decide(averages, false) : decide(inside >= threshold(p, "nearly_all"), inside >= threshold(p, "most"));
   return {
       verdict,
-      fmt::format("one contact against k parallel ones has a ratio down to {:.2f}, {:.2f} and {:.2f} after "
-                  "one update for k = 3, 4 and 5, and the thesis keeps 6 contacts; the averages over all "
-                  "tasks are {:.2f} to {:.2f}",
+      fmt::format("after one update, one contact beside k parallel contacts has a ratio down to {:.2f}, {:.2f} and "
+                  "{:.2f} for k = 3, 4 and 5, and the reduction of the thesis keeps about 6 contacts; averages over "
+                  "all tasks are {:.2f} to {:.2f}",
                   smallest_after_one_update(3), smallest_after_one_update(4), smallest_after_one_update(5), low, high),
       "",
       averaged ? fmt::format("averages {:.2f} to {:.2f}", low, high)
-               : fmt::format("{:.0f} % of the steps in range", 100.0 * inside)};
+               : fmt::format("in {:.0f} % of the steps, all ratios are in the range", 100.0 * inside)};
 }
 
 Finding judge_first_update(const Measured& measured, const PublishedNumbers& p) {
@@ -156,7 +156,7 @@ Finding judge_first_update(const Measured& measured, const PublishedNumbers& p) 
 
 Finding judge_three_updates(const Measured& measured, const PublishedNumbers& p) {
   Finding finding = judge_range(measured, p, p["R1.iterations"].mean, p["ratios.averaged"].mean == 1.0);
-  finding.why = "with three updates the range shrinks, and the steps outside of it are those of many parallel contacts";
+  finding.why = "with three updates the range shrinks; the steps outside the range have many parallel contacts";
   return finding;
 }
 
@@ -172,7 +172,7 @@ Finding judge_bound_in_tasks(const Measured& measured, const PublishedNumbers& p
   const double most = largest(measured, "any_max"), bound = p["R1.bound"].at_most;
   return {decide(most <= bound, false), "the bound (1 + √3)/2 = 1.366 of R2 is proved for all contacts",
           "largest ratio after any update: " + of_tasks(measured, "any_max", "{:.3f}"),
-          fmt::format("at most {:.3f}", most)};
+          fmt::format("largest ratio {:.3f}", most)};
 }
 
 Finding judge_relative_damping_of_tasks(const Measured& measured, const PublishedNumbers& p) {
@@ -181,7 +181,7 @@ Finding judge_relative_damping_of_tasks(const Measured& measured, const Publishe
           "the relative damping is √ρ times that of one contact",
           fmt::format("steps in which √ρ of both extremes is within a factor {} of 1: {}", plain(around),
                       of_tasks(measured, "damped_3", "{:.0f} %", 100.0)),
-          fmt::format("{:.0f} % of the steps within a factor {}", 100.0 * share, plain(around))};
+          fmt::format("relative damping within a factor {} in {:.0f} % of the steps", plain(around), 100.0 * share)};
 }
 
 // ---- R1b: the largest stiffness ratio after 160 iterations and in the exact limit, which is the projection of the
@@ -205,10 +205,11 @@ MeasuredValues measure_convergence(const Evidence& e) {
 
 Finding judge_convergence(const MeasuredCase& m, const PublishedNumbers& p) {
   const bool one = std::abs(m["limit_max"] - 1.0) <= threshold(p, "converged");
-  return {one ? Verdict::replicated : Verdict::contradicted,
-          one ? "the exact limit is 1 at every contact of these runs"
-              : "the iteration converges to the projection of the identity on the cone of contact tensors, where the "
-                "ratio of a contact without weight stays above 1"};
+  return {
+      one ? Verdict::replicated : Verdict::contradicted,
+      one ? "the exact limit is 1 at every contact of these runs"
+          : "the iteration converges to the projection of the identity onto the cone of contact tensors; there, the "
+            "ratio of a contact with weight 0 stays above 1"};
 }
 
 // ---- R2: the largest stiffness in any direction, in units of K, over contact sets found by a random search. One case
@@ -361,7 +362,7 @@ MeasuredValues measure_unshaped_ratios(const Evidence&) {
 Finding judge_unshaped_ratios(const MeasuredCase& m, const PublishedNumbers&) {
   const bool bounded = m["min"] >= 1.0 - kRounding && m["max_per_n"] <= 1.0 + kRounding;
   return {decide(bounded, false),
-          "each of the n squared inner products is at most 1, and that of a gradient with itself is 1"};
+          "each of the n squared inner products is at most 1, and the product of a gradient with itself is 1"};
 }
 
 Measured measure_bounded_laws(const Evidence&) {

@@ -53,8 +53,8 @@ Finding judge_trajectory(const MeasuredCase& m, const PublishedNumbers& publishe
   const bool on_line = m["high_lateral"] <= lateral, shallow = m["inside"] <= depth;
   return {decide(follows && offset && on_line && shallow, follows && offset),
           fmt::format(
-              "below 2 N the tip {} the ideal trajectory; the offset in height {} beyond 2 N; there the error of "
-              "the distance to the axis is {}, the depth {}",
+              "below 2 N the tip {} the ideal trajectory; beyond 2 N the error of the height {}, the error of the "
+              "distance to the axis is {}, and the depth is {}",
               follows ? "follows" : "leaves", offset ? "grows" : "does not grow",
               on_line ? "as published" : "larger than published", shallow ? "as published" : "larger than published")};
 }
@@ -110,7 +110,7 @@ Finding judge_hands(const Measured& measured, const PublishedNumbers& p) {
   const double largest = p["T2.raw"].mean + p["T2.raw"].spread;
   const auto firm = std::ranges::find_if(measured, [](const MeasuredCase& m) { return m["force"] >= 1.8; });
   return {found(measured.front()["raw"] <= largest && (*firm)["raw"] > largest),
-          "the published counts fit a hand about ten times gentler than those of appendix D"};
+          "the published counts fit a hand with about a tenth of the force of appendix D"};
 }
 
 // ---- J2: the tilt [rad] at which the lower edge of the tip leaves the hole, by bisection.

@@ -68,9 +68,9 @@ Finding judge_sinking(const Measured& m, const PublishedNumbers& p) {
   return {decide(easily, more),
           fmt::format("with {} the drill sinks in {}", m.at(1).name,
                       easily ? "easily"
-                      : more ? "further than with stiffness shaping, not easily"
+                      : more ? "further than with stiffness shaping, but not easily"
                              : "no further than with stiffness shaping"),
-          "", fmt::format("{:.2f} mm against {:.2f} mm", 1e3 * law, 1e3 * shaped)};
+          "", fmt::format("{:.2f} mm deep, stiffness shaping {:.2f} mm", 1e3 * law, 1e3 * shaped)};
 }
 
 Measured measure_averaging(const Evidence& e) {
@@ -122,9 +122,9 @@ MeasuredValues measure_pop_through(const Evidence& e) {
 
 Finding judge_pop_through(const MeasuredCase& m, const PublishedNumbers&) {
   const double original = m[kOriginalLaw], proposed = m[kProposedLaw];
-  return {
-      decide(original > 0.0 && proposed == 0.0, original > proposed),
-      original > 0.0 ? "beyond the median line flipped gradients pull the drill on" : "the drill stays in the hole"};
+  return {decide(original > 0.0 && proposed == 0.0, original > proposed),
+          original > 0.0 ? "beyond the median line, flipped gradients pull the drill farther in"
+                         : "the drill stays in the hole"};
 }
 
 // ---- S1, B4: the plain sum of all points (S1), and the highest depth along the averaged direction (B4), compared with
@@ -154,16 +154,17 @@ Finding judge_summation(const Measured& m, const PublishedNumbers& p) {
   };
   const bool peg = unstable(0), task = unstable(2);
   return {decide(peg && task, peg || task),
-          fmt::format("n points are up to n K: in the planar peg the sum is {}, in task 2 {}",
+          fmt::format("n contacts have a stiffness of up to n K: the sum is {} with the planar peg and {} in task 2",
                       peg ? "unstable" : "stable", task ? "unstable" : "stable")};
 }
 
 Finding judge_highest_depth(const Measured& m, const PublishedNumbers& p) {
   const bool peg = vibrates_much_more(m.at(0), m.at(1), p), task = vibrates_much_more(m.at(2), m.at(3), p);
-  return {decide(peg || task, vibrates_more(m.at(0), m.at(1)) && vibrates_more(m.at(2), m.at(3))),
-          fmt::format(
-              "the averaged direction turns quickly where gradients cancel: it {} in the planar peg and {} in task 2",
-              peg ? "vibrates" : "does not vibrate much more", task ? "vibrates" : "does not vibrate much more")};
+  return {
+      decide(peg || task, vibrates_more(m.at(0), m.at(1)) && vibrates_more(m.at(2), m.at(3))),
+      fmt::format(
+          "the averaged direction turns quickly where gradients cancel: the tool {} with the planar peg and {} in task 2",
+          peg ? "vibrates" : "does not vibrate much more", task ? "vibrates" : "does not vibrate much more")};
 }
 
 // ---- G1: gradients on both sides of the tool's median line: the inner product of the gradients for two wall points,
@@ -244,10 +245,12 @@ MeasuredValues measure_underestimation(const Evidence& e) {
 Finding judge_underestimation(const MeasuredCase& m, const PublishedNumbers& published) {
   const double small = threshold(published, "negligible"), shallow = published["G1.negligible"].at_most;
   const bool force = m["force"] <= small, path = m["way"] <= small * shallow, depth = m["depth_95"] <= small * shallow;
-  return {decide(force && path, force || path || depth),
-          fmt::format("the shortfall is {} of {} mm for 95 % of the contacts, and {} for the force and {} for the way",
-                      depth ? "a negligible part" : "no negligible part", plain(1e3 * shallow),
-                      force ? "negligible" : "not negligible", path ? "negligible" : "not negligible")};
+  return {
+      decide(force && path, force || path || depth),
+      fmt::format("the error of the depth is {} of {} mm for 95 % of the contacts; the error of the force is {}, the "
+                  "error of the path {}",
+                  depth ? "a negligible part" : "no negligible part", plain(1e3 * shallow),
+                  force ? "negligible" : "not negligible", path ? "negligible" : "not negligible")};
 }
 
 // ---- G2: computing time of the depth of one contact [s], for contacts of task 2: along the normal, and as in the
@@ -272,7 +275,7 @@ MeasuredValues measure_depth_cost(const Evidence& e) {
 Finding judge_depth_cost(const MeasuredCase& m, const PublishedNumbers& p) {
   const double times = m["normal_projection"] / m["surface_normal"];
   return {decide(times >= threshold(p, "huge"), times >= threshold(p, "margin")),
-          fmt::format("{:.2g} times as much, for a cylinder; a mesh, which the thesis means besides, is not looked at",
+          fmt::format("{:.2g} times as much, for a cylinder; a mesh, which the thesis also means, was not measured",
                       times)};
 }
 
@@ -302,7 +305,8 @@ MeasuredValues measure_one_direction(const Evidence& e) {
 
 Finding judge_one_direction(const MeasuredCase& m, const PublishedNumbers&) {
   const bool same = m["apart"] <= kIdentical;
-  return {decide(same, false), same ? "the deepest of equal gradients is the one that is kept" : "the forces differ"};
+  return {decide(same, false),
+          same ? "the reduction keeps the deepest of the contacts with equal gradients" : "the forces differ"};
 }
 
 // ---- C1: over-reduction: the reduction leaves one point of many, which changes the force.
@@ -345,7 +349,8 @@ Finding judge_turn_into_wall(const Measured& measured, const PublishedNumbers& p
   const double more = blind["velocity_variation"] / seeing["velocity_variation"];
   const bool reverses = blind["force_reversals"] > seeing["force_reversals"];
   return {decide(more >= threshold(p, "turn") && reverses, more > 1.0),
-          fmt::format("the tip's velocity varies {:.2g} times as much as with damping that sees the turn", more)};
+          fmt::format("the total variation of the velocity is {:.2g} times the value with damping that uses the turn",
+                      more)};
 }
 
 Finding judge_slow_turn(const Measured& measured, const PublishedNumbers& p) {

@@ -124,7 +124,7 @@ std::string abstract_table(const Json& ledger) {
   return text;
 }
 
-/// Returns the claims that failed, with the reason and the assumption that carries the verdict.
+/// Returns the claims that failed, with the reason and the assumptions that decide the verdict.
 std::string failures(const Json& claims) {
   std::string text;
   for (const Json& claim : claims) {
@@ -134,6 +134,43 @@ std::string failures(const Json& claims) {
                         text_at(claim, "why"));
   }
   return text;
+}
+
+/// Returns a table of the other values of assumptions with which claims have another verdict, by assumption, and a note
+/// for each claim whose record has another verdict than the ledger. Empty without such values.
+std::string other_values(const Json& claims) {
+  std::map<std::string, std::string> cells;
+  std::string notes;
+  for (const Json& claim : claims) {
+    for (const Json& one : claim.at("cases_moved")) {
+      if (!was_judged(text_at(one, "verdict"))) continue;
+      append_item(cells[text_at(one, "assumption")],
+                  fmt::format("{}: {} *{}*{}, {}", text_at(one, "value"), link_to(claim), text_at(one, "verdict"),
+                              claim.contains("sampled_verdict") ? " (fewer targets)" : "", text_at(one, "number")),
+                  "<br>");
+    }
+    if (claim.contains("sampled_verdict"))
+      notes += fmt::format(
+          "\nThe record of {} uses fewer targets than the ledger. With these targets and the recorded assumptions, its "
+          "verdict is *{}*. The table has the values with which the verdict is another one.\n",
+          link_to(claim), text_at(claim, "sampled_verdict"));
+  }
+  if (cells.empty()) return "";
+  std::string text =
+      "\n### What other assumptions would change\n\nEach row has an assumption, and the values with which a claim has "
+      "another verdict, with the number of this case. [Sensitivity](../../scenarios/thesis/README.md#sensitivity) states "
+      "the meaning of each assumption. For example, the local average is off if `local.average` is false.\n\n"
+      "| assumption | other value: claim with its verdict |\n|---|---|\n";
+  for (const auto& [assumption, cell] : cells) text += fmt::format("| `{}` | {} |\n", assumption, cell);
+  return text + notes;
+}
+
+/// Returns the verdict of a claim's record under the recorded assumptions, if it differs from the verdict of the
+/// ledger.
+std::string sampled_text(const Json& claim) {
+  return claim.contains("sampled_verdict")
+             ? fmt::format("with fewer targets, the recorded assumptions give: {}; ", text_at(claim, "sampled_verdict"))
+             : "";
 }
 
 /// Returns a table of claims for each chapter.
@@ -172,7 +209,8 @@ std::string revisions(const Json& claims) {
   std::string text;
   if (!rows.empty())
     text +=
-        "\n### Rules revised after their verdicts were known\n\n| id | rule before | verdict before | verdict now | "
+        "\n### Rules that were changed after their verdicts were known\n\nThe column *rule before* quotes the earlier rule "
+        "in its earlier wording.\n\n| id | rule before | verdict before | verdict now | "
         "reason |\n|---|---|---|---|---|\n" +
         rows;
   if (!added.empty())
@@ -196,6 +234,9 @@ void add_sensitivity(Json& claim, const JudgedClaim& judged, const SensitivityRe
   const Robustness robustness = robustness_of(judged, entry);
   claim["robustness"] = robustness.text();
   claim["deciders"] = robustness.deciders;
+  // The record of a costly claim uses fewer targets, so its verdict under the recorded assumptions may differ.
+  if (!entry.is_null() && text_at(entry, "verdict") != text_at(claim, "verdict"))
+    claim["sampled_verdict"] = entry.at("verdict");
   Json moved = Json::array();
   std::size_t tried = 0;
   if (!entry.is_null() && robustness.word != kNotSampledVerdict) {
@@ -229,13 +270,15 @@ std::string headline_of(const Json& claims) {
   for (const auto& [verdict, count] : verdicts)
     append_item(counts, fmt::format("{} {}", count, verdict_name(verdict)), ", ");
   std::string text = fmt::format(
-      "{} claims of the thesis: {}. Of these verdicts, {} are exact, {} robust (no single assumption changes them), {} "
-      "sensitive to one assumption, {} depend on several",
+      "{} claims of the thesis: {}. Of these verdicts, {} are exact (no assumption enters), {} are robust (no single "
+      "assumption changes them), {} are sensitive to one assumption, {} depend on several assumptions",
       all, counts, sure[kExactVerdict], sure[kRobustVerdict], sure[kSensitiveVerdict], sure[kSeveralVerdict]);
   const std::size_t others = sure[kNotSampledVerdict];
-  if (others > 0) text += fmt::format(", {} without a sample", others);
+  if (others > 0) text += fmt::format(", {} were not sampled", others);
   text += ".";
-  if (timing > 0) text += fmt::format(" {} claims about computing time stand apart, because machines differ.", timing);
+  if (timing > 0)
+    text += fmt::format(" {} claims about computing time are counted separately, because times depend on the machine.",
+                        timing);
   return text;
 }
 
@@ -277,18 +320,29 @@ Json ledger_json(const std::vector<JudgedClaim>& judged, const PublishedNumbers&
 
 std::string ledger_markdown(const Json& ledger) {
   const Json& claims = ledger.at("claims");
-  std::string text = "# The thesis, claim by claim\n\n" + text_at(ledger, "headline") +
-                     "\n\n## 1. What the abstract claims\n\n" + abstract_table(ledger) + "\n";
+  std::string text =
+      "# The thesis, claim by claim\n\n*Reference.* " + text_at(ledger, "headline") +
+      "\n\nIn the tables, *published* are numbers of the thesis, and *ours* are numbers of hapbench. "
+      "Numbers such as 2.8 and A.3 are sections of the thesis. An id such as R1b links to the section of "
+      "the claim in [claim_pages.md](claim_pages.md), which has the rule of the verdict. A *stiffness "
+      "ratio* is the combined stiffness along a contact, divided by the stiffness K of one contact.\n\n"
+      "## 1. What the abstract claims\n\n" +
+      abstract_table(ledger) + "\nVerdicts:\n\n";
   for (const VerdictText& verdict : kVerdicts)
-    text += fmt::format("{} *{}*: {}.  \n", verdict.mark, verdict.name, verdict.meaning);
+    text += fmt::format("- {} *{}*: {}.\n", verdict.mark, verdict.name, verdict.meaning);
   text +=
-      "\n*Decided by*: each assumption that the thesis leaves open was set to each of its plausible values, one at a "
-      "time, with calibrated hands calibrated anew. *exact*: no assumption enters; *robust*: none changes the verdict; "
-      "*sensitive to* one; *depends on several*. `hapbench describe NAME` explains an assumption and a claim.\n";
+      "\nDecided by: the thesis leaves some values open, so hapbench assumes them. Each assumption was set to each of its "
+      "plausible values, one at a time, and calibrated hands were calibrated again. `hapbench describe NAME` explains an "
+      "assumption or a claim.\n\n"
+      "- *exact*: no assumption enters the claim.\n"
+      "- *robust*: no other value of a single assumption changes the verdict.\n"
+      "- *sensitive to* an assumption: only this assumption changes the verdict.\n"
+      "- *depends on several*: each of the named assumptions changes the verdict alone.\n"
+      "- *not sampled*: no other values were tried.\n";
   const std::string failing = failures(claims);
-  if (!failing.empty()) text += "\n## 2. What failed, and what carries it\n\n" + failing;
-  text += "\n## 3. By chapter\n" + chapters(claims);
-  text += "\n## 4. Times, claims that are not judged, rules and findings\n";
+  text += "\n## 2. Claims that failed, and what other assumptions would change\n\n" + failing + other_values(claims);
+  text += "\n## 3. All claims, by chapter\n" + chapters(claims);
+  text += "\n## 4. Computing times, claims that are not testable, changed rules and findings of this project\n";
   text += table_of(claims, "Computing time, on one machine (medians)",
                    [](const Json& claim) { return is(claim, "timing") && !is(claim, "ours"); });
   std::string untestable;
@@ -301,14 +355,20 @@ std::string ledger_markdown(const Json& ledger) {
   text += table_of(claims, "Findings of this project, which are no claims of the thesis",
                    [](const Json& claim) { return is(claim, "ours"); });
   return text +
-         "\n[ERRATA.md](ERRATA.md) lists what the thesis misprints; [figures.md](figures/figures.md) has the "
-         "figures.\n";
+         "\n[ERRATA.md](ERRATA.md) lists misprints of the thesis; [figures.md](figures/figures.md) has the figures.\n";
 }
 
 std::string claim_pages(const Json& ledger) {
   std::string text =
-      "# Claims, one section each\n\nSee rule, cases and sensitivity of a claim of [the ledger](claims.md); `hapbench "
-      "describe ID` prints the same.\n";
+      "# Claims, one section each\n\n*Reference.* This page has a section for each claim of [the ledger](claims.md). "
+      "`hapbench describe ID` prints the same.\n\n"
+      "- **Published** and **Number**: the number of the thesis and the number of hapbench.\n"
+      "- **Cases**: the numbers of all runs of the claim. `signed_distance` and `binary` are the two densities of the "
+      "block from which its surface points are computed.\n"
+      "- **Rule**: the conditions of the verdict. *qualitatively* begins the weaker condition. **Rule before** quotes an "
+      "earlier rule in its earlier wording.\n"
+      "- **Sensitivity**: assumptions with another value, each with the verdict and the number that this value gives. "
+      "Cases without a verdict (*not judged*, *not measured*) are listed but decide nothing.\n";
   for (const Json& claim : ledger.at("claims")) {
     text +=
         fmt::format("\n## {}\n\n{} ({}).\n\n", text_at(claim, "id"), text_at(claim, "claim"), text_at(claim, "place"));
@@ -323,7 +383,7 @@ std::string claim_pages(const Json& ledger) {
     item("Rule", text_at(claim, "rule"));
     if (claim.contains("revised")) {
       const Json& before = claim.at("revised");
-      item("Rule before", fmt::format("{} ({}). Revised because {}", text_at(before, "rule"),
+      item("Rule before", fmt::format("{} ({}). Changed because {}", text_at(before, "rule"),
                                       text_at(before, "verdict"), text_at(before, "reason")));
     }
     item("Decided by", decided_by(claim));
@@ -333,8 +393,8 @@ std::string claim_pages(const Json& ledger) {
                                      text_at(one, "verdict"), text_at(one, "number").empty() ? "" : ", ",
                                      text_at(one, "number")));
     if (const auto tried = claim.at("cases_tried").get<std::size_t>(); tried > 0)
-      item("Sensitivity",
-           fmt::format("{} other values tried; {}", tried, moved.empty() ? "none moves the verdict" : moved));
+      item("Sensitivity", fmt::format("{}{} other values tried; {}", sampled_text(claim), tried,
+                                      moved.empty() ? "none changes the verdict" : moved));
     item("Figure", text_at(claim, "figure"));
     if (!claim.at("scenarios").empty())
       item("Scenarios", fmt::format("`{}`", fmt::join(claim.at("scenarios").get<std::vector<std::string>>(), "`, `")));

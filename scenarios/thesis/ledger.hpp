@@ -17,12 +17,13 @@ namespace hapbench {
 Json ledger_json(const std::vector<JudgedClaim>& judged, const PublishedNumbers& published,
                  const SensitivityRecord& record);
 /// Returns a sentence with the number of claims for each verdict and for each robustness of a verdict. Claims about
-/// computing time, whose verdicts depend on the machine, are counted apart.
+/// computing time, whose verdicts depend on the machine, are counted separately.
 std::string headline_of(const Json& claims);
 
 /// Returns the content of claims.md from the result of ledger_json, in four parts: the claims of the abstract; the
-/// claims that failed; all claims by chapter; claims about time, claims that are not testable, revised rules and
-/// findings of this project. No cell is shortened. Each id links to a section of claim_pages.md.
+/// claims that failed, and the values of assumptions with which claims have another verdict; all claims by chapter;
+/// claims about time, claims that are not testable, changed rules and findings of this project. No cell is shortened.
+/// Each id links to a section of claim_pages.md.
 std::string ledger_markdown(const Json& ledger);
 
 /// Returns the content of claim_pages.md: a section for each claim, with rule, cases, sensitivity, figure and command.

@@ -12,11 +12,6 @@
 namespace hapbench {
 namespace {
 
-/// Returns true if a recorded verdict is one that the claim's rule has given.
-bool was_judged(const std::string& verdict) {
-  return verdict != kNotMeasured && verdict != verdict_name(Verdict::not_judged);
-}
-
 /// Returns the values of an assumption with which a claim is judged. Empty for an input, and for an assumption or a
 /// claim that other values cannot change. Costly claims have the ends of a range only.
 std::vector<std::string> values_to_try(const Assumption& assumption, const Claim& claim,
@@ -100,6 +95,10 @@ std::string SensitivityRecord::text() const {
     separator = ",\n";
   }
   return text + "\n  ]\n}\n";
+}
+
+bool was_judged(const std::string& verdict) {
+  return verdict != kNotMeasured && verdict != verdict_name(Verdict::not_judged);
 }
 
 std::string Robustness::text() const {

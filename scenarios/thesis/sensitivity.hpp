@@ -50,6 +50,9 @@ class SensitivityRecord {
   Json claims_ = Json::object();  ///< entry by claim
 };
 
+/// Returns true if the verdict of a case is a verdict on the claim: neither "not judged" nor "not measured".
+bool was_judged(const std::string& verdict);
+
 /// How a verdict depends on the assumptions.
 struct Robustness {
   std::string word = {};  ///< kExactVerdict, kRobustVerdict, kSensitiveVerdict, kSeveralVerdict or kNotSampledVerdict

@@ -44,10 +44,10 @@ Finding judge_stability(const Measured& measured, const PublishedNumbers&) {
     pop = std::max(pop, m["pop"]);
   }
   return {decide(undisturbed == measured.size(), completed == measured.size()),
-          fmt::format("{} of {} runs complete, {} without vibration or jumps that a hand would feel", completed,
+          fmt::format("{} of {} runs complete; in {} of them, the diagnosis finds no vibration or jumps", completed,
                       measured.size(), undisturbed),
           "",
-          fmt::format("{} of {} runs complete; rms force above 30 Hz up to {:.2f} times the mean", completed,
+          fmt::format("{} of {} runs complete; rms force above 30 Hz up to {:.2f} times the mean force", completed,
                       measured.size(), buzz)};
 }
 
@@ -68,7 +68,7 @@ Finding judge_depths(const Measured& measured, const PublishedNumbers& published
   const bool small = deepest < published["G1.negligible"].at_most;
   return {decide(small, false),
           small ? "the limit of the input force keeps the depths small" : "some contact is deeper", "",
-          fmt::format("at most {:.3f} mm", 1e3 * deepest)};
+          fmt::format("largest depth {:.3f} mm", 1e3 * deepest)};
 }
 
 }  // namespace

@@ -195,7 +195,7 @@ def six_dof(_old=""):
         rows = list(csv.DictReader(lines))
     laws = list(dict.fromkeys(row["six_dof.law"] for row in rows))
     lines = [
-        "| scene | hand, grip, pivot | F6 rms N | lost torque rms mN m | unresisted turn rad | "
+        "| scene | hand, grip, pivot | reference force [N rms] | lost torque [mN m rms] | unresisted turn [rad] | "
         + " | ".join(law.replace("_", " ") for law in laws)
         + " |",
         "|---|---|---|---|---|" + "---|" * len(laws),

@@ -20,10 +20,12 @@ NOTHING_DRAWN = 1
 ROWS = "rows.json"
 NUMBER = re.compile(r"(?:[A-F]\.)?\d+")  # of a figure
 FORMATS = ("svg", "pdf", "png")
-PAGE = """# Figures on record
+PAGE = """# Stored figures
 
-See every figure of the thesis that a simulation can draw, and some of ours: made by `scripts/figures RESULTS --out DIR
---record results/reference/figures` from what `scripts/reproduce` leaves.
+*Reference.* This page shows every figure of the thesis that a simulation can draw, and some figures of this project.
+`scripts/figures RESULTS --out DIR --record results/reference/figures` draws them from the results of
+`scripts/reproduce`. *Data: ours* marks numbers that hapbench computed, *published* marks numbers of the thesis. Numbers
+such as 3.2 and C.4.2 are sections of the thesis. *Differs* states how a figure differs from the thesis's figure, and why.
 """
 
 

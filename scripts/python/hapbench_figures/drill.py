@@ -77,9 +77,9 @@ def trajectory(results):
     drawn, errors = samples(results), []
     for rows, name, own in zip(drawn, ("below 2 N", "from 2 N on"), style.SERIES):
         errors.append(
-            f"{name} {np.mean(rows['height_m'] - rows['ideal_height_m']):.2f} mm and "
-            f"{np.abs(rows['lateral_m'] - rows['ideal_lateral_m']).max():.2f} mm, "
-            f"{rows['interpenetration_m'].max():.2f} mm inside"
+            f"{name} {np.mean(rows['height_m'] - rows['ideal_height_m']):.2f}, "
+            f"{np.abs(rows['lateral_m'] - rows['ideal_lateral_m']).max():.2f} and "
+            f"{rows['interpenetration_m'].max():.2f} mm"
         )
         pick = slice(None, None, max(1, -(-len(rows["tilt_rad"]) // MARKS)))
         thin = {key: column[pick] for key, column in rows.items()}

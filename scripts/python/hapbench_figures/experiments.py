@@ -212,8 +212,8 @@ def threshold(results):
         ax.set_xticks([0, 1, 2, 5], ["0", "1", "2", "5"])
         ax.minorticks_off()
         said.append(
-            f"{title} {every:.2f}, {graces[-1][1]:.2f} and {max(success for _, success in slow):.2f}"
+            f"{title}: {every:.2f}, {graces[-1][1]:.2f} and {max(success for _, success in slow):.2f}"
         )
     axes[0, 0].set_ylabel("success rate")
     axes[0, 3].legend(loc="lower right", fontsize=6)
-    return style.lettered(figure, axes[0]), {"success": ", ".join(said)}
+    return style.lettered(figure, axes[0]), {"success": "; ".join(said)}
