@@ -475,7 +475,7 @@ def rigid_tool_in_a_hand(bench):
             np.maximum(target, 1e-3 * (z + radius)),
         ]
     )
-    tip = run.table().vectors("x_m", "y_m", "z_m")
+    tip = run.table().vectors("px_m", "py_m", "pz_m")
     known = (
         rms(norms(tip - rigid)),
         "the free position of a ball over a face",
