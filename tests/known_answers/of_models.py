@@ -11,7 +11,8 @@ K, PRESSED, DEADLINE = 1000.0, 1e-3, 0.5e-3
 
 @scene
 def laws_against_a_force(bench):
-    """A prescribed tool presses two parallel springs: summation gives 2 K x, mean K x. The reference force leans by 0.1."""
+    """A prescribed tool presses two parallel springs: summation gives 2 K x, mean K x. The reference force leans by
+    0.1."""
     reference = (-1.5, 0.15, 0.0)
     base = bench.scenario(
         "model",

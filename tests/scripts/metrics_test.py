@@ -1,5 +1,5 @@
-"""Every metric of twelve runs, computed anew from the files of the run by the definitions of `hapbench describe metrics`
-alone, with numpy."""
+"""Every metric of twelve runs, computed anew from the files of the run by the definitions of `hapbench describe
+metrics` alone, with numpy."""
 import csv
 import json
 import math

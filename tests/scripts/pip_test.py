@@ -1,5 +1,5 @@
-"""pip install ./scripts/python into a virtual environment, with the build of the tests. Arguments: the program, the folder
-of the built package."""
+"""pip install ./scripts/python into a virtual environment, with the build of the tests. Arguments: the program, the
+folder of the built package."""
 import os
 import shutil
 import sys

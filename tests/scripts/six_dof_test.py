@@ -1,5 +1,6 @@
-"""The force of a 6-DOF device (six_dof.csv) against an independent minimiser around scipy's NNLS, which shares no code with
-hapbench: signed distances of the shell's points to the drill and energies of the springs are written down anew."""
+"""The force of a 6-DOF device (six_dof.csv) against an independent minimiser around scipy's NNLS, which shares no
+code with hapbench: signed distances of the shell's points to the drill and energies of the springs are written down
+anew."""
 import csv
 import json
 import unittest
@@ -96,7 +97,8 @@ class Problem:
         return distances(self.points, tip, tool)[0] / MM
 
     def solution(self, random):
-        """Sequential quadratic programs, each solved by scipy's NNLS (Lawson and Hanson's least distance programming)."""
+        """Sequential quadratic programs, each solved by scipy's NNLS (Lawson and Hanson's least distance
+        programming)."""
 
         def derivative(function, x, h=1e-5):
             """Central differences: 1e-5 mm and rad leave 1e-10 of the third derivative and 1e-11 of rounding."""

@@ -1,4 +1,4 @@
-"""python -m hapbench_audit WORDS…; the program calls it for `hapbench audit`: what a log of any engine shows."""
+"""python -m hapbench_audit WORDS…: analyses a log of any engine. The program calls it for `hapbench audit`."""
 import sys
 from pathlib import Path
 
@@ -101,7 +101,7 @@ def command_line():
 
 
 def run(options):
-    # These modules load numpy, scipy and matplotlib, which the help does without.
+    # Imported here, because these modules load numpy, scipy and matplotlib, which the help does not need.
     import json
 
     from hapbench_import.stroke import columns_text
