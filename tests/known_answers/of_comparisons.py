@@ -1,4 +1,4 @@
-"""Scenes behind the tables of compare, recomputed from the summaries of single runs."""
+"""Scenes for the tables of compare, recomputed from the summaries of single runs."""
 import math
 from itertools import product
 
@@ -14,8 +14,9 @@ SEEDS = 14
 
 @scene
 def league(bench):
-    """A mass on two parallel springs, soft, and so stiff that leapfrog amplifies every step: some
-    starts leave the bounds in time. The league by the book: means over common seeds, and ranks."""
+    """A mass on two parallel springs. One is soft; the other is so stiff that leapfrog amplifies every step, and some
+    starts leave the bounds. Computes the ranking by its definition: means over common seeds, and ranks.
+    """
     start = {"position_m": [1e-4, -1e-3, 0]}
     bench.scenario(
         "held",
@@ -84,7 +85,7 @@ def league(bench):
             {name: 1 + sum(bad[other] < bad[name] for other in LAWS) for name in LAWS if bad[name]}
         )
         if len(set(rank.values())) < 2:
-            rank = {}  # all would be equal
+            rank = {}  # all ranks would be equal
         of_law = outcomes[s, law]
         counts = [f"{name} {of_law.count(name)}" for name in dict.fromkeys(of_law)]
         known.append(
@@ -143,8 +144,8 @@ def league(bench):
             wrong,
         )
     order = [law["algorithm"] for law in printed["laws"]]
-    # The other laws are stiffer than 4 M / dt^2 = 4e5 N/m, of which virtual coupling has two
-    # thirds.
+    # The stiffness of the other laws exceeds 4 M / dt^2 = 4e5 N/m; the stiffness of virtual coupling is two thirds of
+    # it.
     for key, values, wrong in (
         ("mean_rank", [np.mean(ranks[law]) for law in order], ("place in the order", [1, 2, 3, 4])),
         (
@@ -169,8 +170,8 @@ def league(bench):
 
 @scene
 def compared(bench):
-    """comparison.csv is the runs' summaries, one of each law; a shell is what the file of a point
-    shell says."""
+    """comparison.csv contains the summaries of the runs, one for each law. A shell is described by the contents of the
+    point shell's file."""
     base = bench.scenario(
         "compared",
         time={"step_s": 0.001, "steps": 400},
