@@ -282,7 +282,7 @@ TEST(Renderer, StartsInsideTheObjectWithoutForce) {
     ASSERT_EQ(norm(output.force), 0.0);
     ASSERT_GT(output.contacts, 0u);
   }
-  // Three calls outside are not enough; then the count starts again.
+  // Three calls in free air are not enough; contact then restarts the count.
   for (int i = 0; i < 3; ++i) loop.at(0.002);
   EXPECT_EQ(loop.at(-0.001).status, static_cast<unsigned>(HAPBENCH_WAITING));
   for (int i = 0; i < 4; ++i) EXPECT_EQ(loop.at(0.002).status, static_cast<unsigned>(HAPBENCH_WAITING));
@@ -294,7 +294,7 @@ TEST(Renderer, LetsTheForceFallAfterAGap) {
   loop.engage();
   const double before = loop.at(kInside).force[2];
   ASSERT_GT(before, 0.05);
-  // 50 ms of the ramp of 100 ms have passed, so half of the force is left, whatever the present pose is.
+  // 50 ms of the ramp of 100 ms have passed, so half of the force remains, whatever the current pose is.
   const HapbenchOutput gap = loop.at(-0.003, 0.05);
   EXPECT_EQ(gap.status, static_cast<unsigned>(HAPBENCH_STALE));
   EXPECT_NEAR(gap.force[2], 0.5 * before, 1e-9);
@@ -427,7 +427,7 @@ TEST(Renderer, LimitsTheForceAndItsRate) {
   output = slow.at(kInside);
   EXPECT_EQ(output.limited, static_cast<unsigned>(HAPBENCH_MAX_FORCE_RATE));
   EXPECT_NEAR(norm(output.force), 0.01, 1e-12);
-  // The smaller limit of mount and scenario holds: force_max_N is 50 N.
+  // The smaller limit of mount and scenario applies: force_max_N is 50 N.
   EXPECT_NE(std::string(hapbench_renderer_inspect(slow.renderer.get())).find("largest force: 50 N"), std::string::npos);
 }
 
@@ -489,7 +489,7 @@ TEST(Renderer, HoldsTheSetPointDuringAFault) {
   HapbenchOutput output{};
   for (int i = 0; i < 150; ++i) output = loop.pushed(0.01, 0.0);
   EXPECT_EQ(output.status, static_cast<unsigned>(HAPBENCH_ON));
-  // A mass of 0.1 kg under 0.01 N: 0.1 m/s^2, after 150 periods of 1 ms 0.015 m/s.
+  // A force of 0.01 N on a mass of 0.1 kg gives 0.1 m/s^2, and 0.015 m/s after 150 periods of 1 ms.
   EXPECT_NEAR(output.set_velocity[0], 0.015, 1e-12);
   EXPECT_NEAR(output.set_position[2], 0.102, 1e-12);
   const HapbenchOutput last = output;
@@ -644,7 +644,7 @@ TEST(Renderer, AnswersNullArguments) {
   hapbench_renderer_close(nullptr);
 }
 
-// The layout of version 1. A change of a size or an offset needs a new HAPBENCH_RENDERER_VERSION.
+// The layout of version 1. A change of a size or an offset requires a new HAPBENCH_RENDERER_VERSION.
 TEST(RendererAbi, IsThatOfVersion1) {
   static_assert(HAPBENCH_RENDERER_VERSION == 1);
   static_assert(sizeof(HapbenchPose3) == 56);
