@@ -304,7 +304,8 @@ double trial_count(const HandFields& hand);
 /// search.
 bool has_external_contacts(const Scenario& scenario);
 
-/// Returns true if a slower loop finds the contacts, so that the contact is not part of a loop at the period of a step.
+/// Returns true if contacts are found at a lower rate than the steps, so that the contact is not part of a loop at the
+/// period of a step.
 inline bool has_multi_rate_contacts(const Scenario& scenario) {
   return scenario.rendering.late && scenario.rendering.late->any();
 }

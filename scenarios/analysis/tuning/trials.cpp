@@ -285,8 +285,8 @@ std::vector<NamedLoop> Trials::loops_in_contact(const Scenario& scenario, const 
   return contact_loops(scenario, scaled(*contact.linear, contact.rendering, scenario.rendering), over_hands);
 }
 
-/// Returns the contact of a settled run, near the last step in which the tool was in contact. Without a contact that
-/// lasts there is no linear loop.
+/// Returns the contact of a settled run, near the last step in which the tool was in contact. Returns no contact if the
+/// contact does not persist, because there is then no linear loop.
 ContactOfTrial Trials::contact_of(const CheckedScenario& scene, const RunStability& run) const {
   ContactOfTrial contact;
   contact.rendering = scene.scenario().rendering;

@@ -44,7 +44,7 @@ struct WorkPrecisionSetting {
   std::string integrator;  ///< name of the integrator
   double step_s = 0.0;     ///< time step [s]
   Outcome outcome = {};    ///< of the run; of the first trial if the scenario has several
-  /// True if the scenario expects the outcome. The error of another run says nothing about the scene: a tool that does
+  /// True if the scenario expects the outcome. The error of a run with another outcome has no meaning: a tool that does
   /// not move has a small error.
   bool is_expected = true;
   std::optional<MotionDifference> error = {};  ///< empty if the run ended otherwise than the reference solution
