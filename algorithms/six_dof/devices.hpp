@@ -35,8 +35,8 @@ struct Intent {
 struct Handle {
   Vec3 position = Vec3::Zero();  ///< p, the force point [m]
   Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();
-  Vec3 force = Vec3::Zero();   ///< on the handle [N]
-  Vec3 torque = Vec3::Zero();  ///< about the force point [N m]
+  Vec3 force = Vec3::Zero();   ///< force on the handle [N]
+  Vec3 torque = Vec3::Zero();  ///< torque on the handle about the force point [N m]
 };
 
 /// Largest motion of a point of the tool in one sub-step, relative to the tool's half width. If a step of the intent
@@ -58,7 +58,7 @@ class SixDofDevice {
   /// free space. Allocates nothing.
   struct Step {
     bool solved = true;     ///< the pose is an equilibrium; false: no room for the tool, or no convergence
-    bool jumped = false;    ///< the pose is no continuation of the one before
+    bool jumped = false;    ///< true if the pose does not continuously follow from the previous pose
     double residual = 0.0;  ///< largest residual of the step's equilibria [N]; see ToolEquilibrium::Outcome
   };
   Step follow(const Intent& intent) noexcept;
@@ -75,7 +75,7 @@ class SixDofDevice {
   ToolEquilibrium equilibrium_;
   double jump_;  ///< [m]
   bool starts_ = true;
-  bool was_solved_ = true;  ///< false: the step before was not solved, so that this step is not bisected
+  bool was_solved_ = true;  ///< false if the previous step was not solved; the next step is then not bisected
   Intent intent_;
   CoupledPose tool_;
   Handle handle_;

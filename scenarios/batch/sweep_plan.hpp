@@ -14,7 +14,7 @@ namespace hapbench {
 /// Cases to run, checked before the first run.
 struct SweepPlan {
   Cases cases;
-  RunLength length = RunLength::full;      ///< of all runs
+  RunLength length = RunLength::full;      ///< whether runs end at a failure
   std::vector<std::string> warnings = {};  ///< warnings of the checked runs, without duplicates
   std::vector<std::string> metrics = {};   ///< metrics that at least one checked run has
   std::vector<std::string> bounded = {};   ///< metrics that have an error bound (tolerance)

@@ -262,7 +262,7 @@ void print_sweep(const SweepCommand& command, const SweepTable& table, ProgramCo
 /// Cost of a run of a sweep.
 struct TimedRun {
   std::size_t index;
-  std::vector<std::string> values;  ///< of the varied fields
+  std::vector<std::string> values;  ///< values of the varied fields
   RunCost cost;
 };
 
@@ -358,7 +358,7 @@ int sweep(const SweepCommand& command, ProgramContext& context) {
   const SweepReport report = run_sweep(plan, options);
   const SweepTable table = read_sweep(options.table(), command.where);
   std::error_code ignored_error;
-  fs::remove(options.directory / kTimesFile, ignored_error);  // of an earlier sweep
+  fs::remove(options.directory / kTimesFile, ignored_error);  // removes the times of an earlier sweep
   const bool is_timed = command.time && !report.failed;
   const std::vector<RunCost> costs =
       is_timed ? timed_runs(plan.cases, options.directory, job_options(command, "timing", context))

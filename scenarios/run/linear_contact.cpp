@@ -240,7 +240,8 @@ LinearContact scaled(LinearContact contact, const RenderingConfig& from, const R
 
 std::optional<double> linear_stiffness_limit(const CheckedScenario& scenario,
                                              const std::shared_ptr<const PointShell>& shell, const ContactState& near) {
-  constexpr double kStep = 1.1, kMax = 2.0, kMin = 1e-9;  // of the search, in units of the scenario's K
+  constexpr double kStep = 1.1, kMax = 2.0,
+                   kMin = 1e-9;  // factor of a search step, and ends of the search relative to the scenario's K
   const double K = scenario.scenario().rendering.stiffness;
   if (!(K > 0.0) || !has_linear_loop(scenario.scenario())) return std::nullopt;
   const auto at_K = contact_at_rest(scenario.scenario(), scenario.files(), shell, near);

@@ -13,7 +13,7 @@ namespace hapbench {
 
 /// A state of a run in contact, from which linear_contact() searches the equilibrium.
 struct ContactState {
-  ToolPose pose;      ///< of the tool; true position of the handle if the handle moves the tool
+  ToolPose pose;      ///< pose of the tool; true position of the handle if the handle moves the tool
   double time = 0.0;  ///< [s]
 };
 
@@ -42,8 +42,8 @@ struct ContactAtRest {
 std::optional<ContactAtRest> linear_contact(const CheckedScenario& scenario,
                                             const std::shared_ptr<const PointShell>& shell, const ContactState& near);
 
-/// Returns a contact that was linearised with the stiffness and damping of `from`, as it is with those of `to`:
-/// stiffness in proportion to K, damping in proportion to B.
+/// Converts a contact that was linearised with the stiffness K and damping B of `from` to the K and B of `to`: its
+/// stiffness is proportional to K, and its damping to B.
 LinearContact scaled(LinearContact contact, const RenderingConfig& from, const RenderingConfig& to);
 
 /// Returns the largest stiffness K [N/m] at which the loop of hand, device and contact is stable. The search starts at
