@@ -443,8 +443,9 @@ void add_sweep(CommandLine& line) {
       "another --out.\n\n"
       "Failed runs: a run that goes through the surface, diverges or leaves for good ends at this moment "
       "(hapbench describe \"early end\"). Such runs are counted; the exit status is still 0.\n\n"
-      "Exit status: 0 success, 1 a run could not be computed, 2 bad input, 3 a run did not meet the field expect of its "
-      "scenario (an override that changes the run lifts it), 130 stopped by Ctrl-C; running runs are finished first.");
+      "Exit status: 0 success, 1 a run could not be computed, 2 bad input, 3 a run did not meet the field expect of "
+      "its scenario (an override that changes the run lifts it), 130 stopped by Ctrl-C; running runs are finished "
+      "first.");
 }
 
 }  // namespace hapbench

@@ -76,7 +76,8 @@ class Recordings(Given):
         self.assertEqual(
             self.refusal(STRAIGHT, "time=1,position=3"),
             "rec.csv: columns: position: takes columns 3 ... 5 for x, y and z: a stroke has three components. "
-            "Add columns of zeros to a recording of one axis (hapbench audit reads it as it is); the file has 1, 2, 3, 4",
+            "Add columns of zeros to a recording of one axis (hapbench audit reads it as it is); the file has 1, 2, "
+            "3, 4",
         )
 
     def test_clocks_of_other_units_are_refused(self):

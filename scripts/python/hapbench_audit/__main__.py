@@ -28,8 +28,8 @@ NOTES = [
     'engine gives to the hand; the largest sum is the net created energy. "Along the path" the force changes '
     "linearly between rows, without the effect of holding it. The error follows from the resolution of the log.",
     "Contacts: from touch to release. The first 0.05 s are a landing, the rest is settled contact, as in `run`.",
-    "Stiffness: regression of the force on position and velocity, along the normal of the surface, over delays of whole "
-    "rows; the weighted median of the contacts. Where the log does not determine a number, it is not stated.",
+    "Stiffness: regression of the force on position and velocity, along the normal of the surface, over delays of "
+    "whole rows; the weighted median of the contacts. Where the log does not determine a number, it is not stated.",
     "Expectations: any number of audit.json, such as energy_mJ=1, force_rms_above_30Hz_N=0.1 or "
     "stiffness_N_per_m=900:1100.",
     "Files: audit.json, audit.svg and audit.html in results/out/audit_LOG. They replace earlier ones.",

@@ -175,8 +175,8 @@ def disagreement(springs):
     if common > 0.75 * len(springs):
         return []
     return [
-        f"the contacts disagree by more than their intervals: {min(values):.4g} to {max(values):.4g} N/m. The stiffness "
-        "is not linear, or the tool touches several surfaces; audit.json has each contact"
+        f"the contacts disagree by more than their intervals: {min(values):.4g} to {max(values):.4g} N/m. The "
+        "stiffness is not linear, or the tool touches several surfaces; audit.json has each contact"
     ]
 
 

@@ -141,8 +141,8 @@ def evidence_of_rows(log, rows, given=None):
     found["explained"] = 1.0 - known[best].mean_square / max(known[best].total, 1e-300)
     if found["explained"] < EXPLAINED:
         found["why"] = (
-            f"a spring and a damper explain {100.0 * max(found['explained'], 0.0):.0f} % of the force's variance, as in "
-            "a rigid contact, or with friction along the force"
+            f"a spring and a damper explain {100.0 * max(found['explained'], 0.0):.0f} % of the force's variance, as "
+            "in a rigid contact, or with friction along the force"
         )
         return Evidence(None, found, rows=rows)
     return Evidence(motion, found, likelihoods(motion, known, best), place, resolution, rows)

@@ -441,8 +441,8 @@ def limited_by_travel(kind, numbers, peak):
         return []
     said = (
         f"the signal has at most {peak:.3g} N, not {force:g} N: it begins at a low frequency, where a larger force "
-        f"moves the handle further than the travel of {numbers['travel']:g} m. That is enough for dry friction of up to "
-        f"{FRICTION_TOLD * peak:.3g} N. "
+        f"moves the handle further than the travel of {numbers['travel']:g} m. That is enough for dry friction of up "
+        f"to {FRICTION_TOLD * peak:.3g} N. "
     )
     asked = force_to_ask(kind, numbers)
     return [

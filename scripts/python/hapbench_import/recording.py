@@ -150,7 +150,10 @@ class Recording:
         return cells
 
     def _note_times_of_day(self, column, row):
-        note = f"column {self.title(column)}: times of day such as {self.shown(column, row)} are read as seconds since the first"
+        note = (
+            f"column {self.title(column)}: times of day such as {self.shown(column, row)} are read as seconds "
+            "since the first"
+        )
         if note not in self.notes:
             self.notes.append(note)
 

@@ -102,7 +102,8 @@ def summary(scenes, runs):
 NOTE = (
     "<p class=note>Mean ± standard deviation over the seeds in which no law failed that succeeds at all; seeds agree "
     "if the deviation is at most 0.1 % of the mean. In bold the rank, where the metric has a better direction and the "
-    "numbers can be told apart: 1 + the number of laws that are better by more than 0.1 % and by more than both errors. "
+    "numbers can be told apart: 1 + the number of laws that are better by more than 0.1 % and by more than both "
+    "errors. "
     "A law with failed runs ranks behind the others by their number. Digits follow the error of the number; ≤ stands "
     "for a number that is not larger than its error, which has no rank unless runs failed.</p>"
 )

@@ -141,8 +141,9 @@ def ledger_section(claims, figures):
         "<p>Each claim of the thesis, what it publishes, what our runs give, and a verdict by a rule, which unfolds "
         "with the figures and scenarios behind it. "
         "Hands are calibrated to mean and standard deviation of the raw colliding points; all else is a prediction. "
-        "Decided by: each assumption that the thesis leaves open (<code>results/reference/assumptions.json</code>) was set "
-        "to its other plausible values, one at a time. Exact: no assumption enters; robust: none changes the verdict.</p>"
+        "Decided by: each assumption that the thesis leaves open (<code>results/reference/assumptions.json</code>) "
+        "was set to its other plausible values, one at a time. Exact: no assumption enters; robust: none changes the "
+        "verdict.</p>"
         + FILTER
         + table(headings, rows, "<b>The ledger</b>", "sortable stack", "ledger-table")
         + (

@@ -385,7 +385,8 @@ TEST(Claims, AreJudgedByTheirThresholds) {
        "success rate: original=0.2,0.3,0.4 shaped=0.9,1,1 | model force: original=1,2,1.5 shaped=2,1,1.5",
        {{"", consistent}}},
       {"D2",
-       "success rate: original=0.5,0.6,0.4 shaped=0.6,0.4,0.5 | speed: original=2e-3,2.1e-3,2.2e-3 shaped=2.1e-3,2e-3,2.2e-3",
+       "success rate: original=0.5,0.6,0.4 shaped=0.6,0.4,0.5 | speed: original=2e-3,2.1e-3,2.2e-3 "
+       "shaped=2.1e-3,2e-3,2.2e-3",
        {{"", consistent},
         {"0.original=0.2,0.3,0.4 0.shaped=0.9,1,1", not_consistent},
         {"0.original=0.1,0.2,0.15 0.shaped=0.12,0.1,0.2", not_consistent},
