@@ -234,7 +234,9 @@ bool records_rows(const RecordFields& record);
 struct GivenForceFields {
   std::array<Profile, 3> force;  ///< [N]
 };
-/// K (x' - x) of frictionless contact with the rigid triangles of the mesh (sim/contact/rigid_contact.hpp).
+/// The reference force is K (x' - x) of frictionless contact with the rigid triangles of the mesh: x is the prescribed
+/// position of the tool, and x' the free position at which a tool that is pulled towards x rests
+/// (sim/contact/rigid_contact.hpp).
 struct RigidContactFields {};
 using ReferenceForceFields = std::variant<GivenForceFields, RigidContactFields>;
 

@@ -209,7 +209,7 @@ def stop_on_ctrl_c(name):
         for scratch in list(_unfinished):
             with suppress(OSError):
                 os.unlink(scratch)
-        # line end of notice(): erases the status line on a terminal
+        # Line end of notice(): erases the status line on a terminal.
         end_of_line = "\r\033[K" if sys.stderr.isatty() else ""
         with suppress(OSError):
             os.write(2, f"{end_of_line}hapbench: {name} {stopped()}\n".encode())

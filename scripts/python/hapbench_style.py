@@ -23,7 +23,7 @@ from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter  # noqa: 
 from matplotlib.transforms import Bbox  # noqa: E402
 
 WIDTH = 7.0  # text width of a page [inch]
-# resolution of a PNG, and of rasterised points in a PDF; journals require at least this value
+# Resolution of a PNG, and of rasterised points in a PDF; journals require at least this value.
 DPI = 300
 SCREEN_DPI = 150  # resolution of a picture in a notebook, and of rasterised points in an SVG
 MM = 1 / 25.4  # [inch]

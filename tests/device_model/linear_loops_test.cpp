@@ -96,7 +96,7 @@ double first_crossing(SampledLoop loop) {
   for (int i = 1; i <= 2000; ++i) {
     const double high = 1e-3 + (std::numbers::pi - 1e-3) * i / 2000;
     const std::complex<double> at = stiffness_at(high);
-    // there is no pole between the two angles
+    // There is no pole between the two angles.
     if (before.imag() * at.imag() <= 0.0 && std::abs(before - at) < std::abs(at)) {
       double a = low, b = high;
       while (b - a > 1e-13) {

@@ -12,7 +12,7 @@ def pressed_on_one_point(bench):
     (K_t + K_h) and K_r' = K_r K_phi / (K_r + K_phi)."""
     K, hand, turning, coupling = 2000.0, 500.0, 0.2, 0.4
     r, a, height, n, step, dt = 0.5e-3, 0.03, 2e-3, 101, 1e-8, 0.01
-    # normal of the surface; the point lies on the other side of the tool
+    # Normal of the surface; the point lies on the other side of the tool.
     normal = np.array([0.8, 0.6, 0.0])
     bench.write("one.csv", "x_m,y_m,z_m,nx,ny,nz", [(*(-r * normal + [0, 0, height]), *normal)])
     rate = -step / dt * normal

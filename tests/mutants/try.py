@@ -120,7 +120,9 @@ def main():
     )
     parser.add_argument("names", nargs="*", metavar="NAME", help="mutants to try instead of all")
     options = parser.parse_args()
-    signal.signal(signal.SIGTERM, signal.default_int_handler)  # so that the source is restored
+    signal.signal(
+        signal.SIGTERM, signal.default_int_handler
+    )  # SIGTERM then restores the source, as Ctrl-C does
     try:
         return 1 if tried(options.build and options.build.resolve(), options.names) else 0
     except RuntimeError as problem:

@@ -11,7 +11,7 @@ os.environ.setdefault("HAPBENCH_PROGRAM", str(PROGRAM))
 from hapbench import audit  # noqa: E402  (finds the program in the environment)
 
 T = 1e-3  # sampling period [s]
-# mass of the handle [kg], stiffness [N/m] and damping [N s/m] of the hand
+# Mass of the handle [kg], stiffness [N/m] and damping [N s/m] of the hand.
 MASS, HAND, HAND_DAMPING = 0.12, 250.0, 3.5
 # Intervals of exact models only contain rounding: positions have six decimals, forces nine digits.
 ROUNDING = 1e-4

@@ -110,7 +110,7 @@ class KnownAnswers(unittest.TestCase):
             "--set", f"time.step_s={T}", "--set", f"rendering.damping_N_s_per_m={damping}",
         )  # fmt: skip
         row = json.loads(answer)["limits"][0]
-        # this loop is linear, so either limit is valid
+        # This loop is linear, so either limit is valid.
         same = row["theoretical_limit"] or row["linear_limit"]
         self.assertAlmostEqual(found["linear_limit_N_per_m"] / same, 1.0, delta=2 * EXACT)
 
@@ -191,7 +191,7 @@ class KnownAnswers(unittest.TestCase):
                 }
             )
         )
-        # limit approximated by the formula of Gil and Hulin
+        # Limit approximated by the formula of Gil and Hulin.
         stiffness = 2.3 * viscous / (T * (0.5 + delay))
         log = handle_at_wall(mass, viscous, delay, stiffness)
         found = audit(log, device)

@@ -125,7 +125,7 @@ def shortened(command, folder):
     ):
         shorter = [*shorter, "--algorithms", "shaped_stiffness"]  # for studies over all laws
     if "--errors" in given:
-        # the errors use half of this spacing
+        # The errors use half of this spacing.
         shorter = [*shorter, "--set", "environment.spacing_m=4e-4"]
     if "--resolution" in given:
         shorter = [word for word in shorter if word not in ("--resolution", "0.5")]
@@ -154,7 +154,7 @@ class Commands(unittest.TestCase):
         prepare(prepared)
         for manual in MANUALS:
             if manual.file.is_relative_to(RECORD) or manual.file.is_relative_to(TUTORIALS):
-                # records that take minutes; tutorials_test.py runs these commands completely
+                # Records that take minutes; tutorials_test.py runs these commands completely.
                 continue
             folder = shutil.copytree(prepared, scratch_folder(self), dirs_exist_ok=True)
             for command in manual.commands():

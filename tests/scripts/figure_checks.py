@@ -6,7 +6,7 @@ import numpy as np
 from hapbench_style import fix_layout
 
 SMALLEST, LARGEST = 7, 9  # smallest and largest font size [points]
-# tolerance for texts that leave the figure or overlap another text [pixels]; 100 pixels are an inch
+# Tolerance for texts that leave the figure or overlap another text [pixels]; 100 pixels are an inch.
 SLACK = 2.0
 
 

@@ -11,7 +11,7 @@ from unittest import mock
 
 from fixture import PROGRAM, SOURCE, in_process, must, ran, scratch_folder
 
-# in scripts/python, which the fixture adds to the path
+# In scripts/python, which the fixture adds to the path.
 from hapbench_figures import __main__ as command
 
 SVG = "{http://www.w3.org/2000/svg}"
@@ -144,7 +144,7 @@ class Figures(unittest.TestCase):
         cls.directory = scratch_folder(cls)
         cls.results, cls.drawn = cls.directory / "results", cls.directory / "figures"
         make_results(cls.results)
-        # the program finds the knees
+        # The program finds the knees.
         program = mock.patch.dict(os.environ, {"HAPBENCH_PROGRAM": str(PROGRAM)})
         program.start()
         cls.addClassCleanup(program.stop)

@@ -164,7 +164,7 @@ class Identify(Logs):
             time % 0.5 < 0.1,
             1.0,
             0.0
-            # the force pushes in one direction, so that friction and a constant force cannot be distinguished
+            # The force pushes in one direction, so that friction and a constant force cannot be distinguished.
         )
         told, warned = self.told(
             self.log(

@@ -19,7 +19,7 @@ def setUpModule():
     page = folder / "live.html"
     made = ran(SOURCE / "scripts" / "live" / "make", "--out", page)
     if "could not" in made.stderr:
-        # packages that are not available on this machine
+        # Packages that are not available on this machine.
         raise unittest.SkipTest(made.stderr.strip())
     assert made.returncode == 0, made.stderr
     Live.show(page)

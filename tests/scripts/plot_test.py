@@ -58,7 +58,7 @@ class Plot(Given):
         plt.close(figure)
         for name in ("$a$ and $b$", r"$\bad{$", "$x$"):
             self.assertIn(f">{name}</text>", drawn_as)
-        # tick labels of the logarithmic axis are formulas
+        # Tick labels of the logarithmic axis are formulas.
         self.assertNotIn("mathdefault", drawn_as)
 
     def test_a_span_of_time_and_a_peak_that_is_cut_off(self):
@@ -199,7 +199,7 @@ class Plot(Given):
             self.assertEqual(len(figure.axes), panels, away)
             plt.close(figure)
 
-    # the program provides the surface
+    # The program provides the surface.
     @mock.patch.dict(os.environ, {"HAPBENCH_PROGRAM": str(PROGRAM)})
     def test_an_open_scan_is_a_surface_and_no_solid(self):
         """A molar without one of its triangles is an open surface."""

@@ -16,7 +16,7 @@ NEAR = 0.1e-3  # only points within this distance [m] can be in contact
 DOWN = np.array([0.0, 0.0, -1.0])  # axis of the drill in its own frame
 MM = 1e-3
 PASSES, LONGEST = 300, 0.02  # iterations of the search, and largest step [mm, rad]
-# spread of the starting values around the known pose [mm, rad]
+# Spread of the starting values around the known pose [mm, rad].
 START = np.repeat([1e-4, 1e-5], [3, 6])
 # Springs of hand and coupling. The grip is beside the force point, so that the force also rotates the handle.
 SPRINGS = {

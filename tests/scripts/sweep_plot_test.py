@@ -73,7 +73,7 @@ class Sweeps(Given):
         some = plotted(folder, "--metric", "force_max_N", "--where", "rendering.mass_kg<0.15")
         self.assertIn(" over 20 runs", " ".join(some.split()))
 
-    # the program evaluates the conditions
+    # The program evaluates the conditions.
     @mock.patch.dict(os.environ, {"HAPBENCH_PROGRAM": str(PROGRAM)})
     def test_conditions_are_those_of_sweep(self):
         """The conditions select the same rows as sweep and cause the same error messages."""

@@ -37,7 +37,7 @@ FORMAL = {
 # log2(1.07) = 0.1.
 WITHIN = 0.1
 NONLINEAR = {"static_coupling"}  # its spring softens, so that there is no closed form
-# relative to the amplitude of the motion; smaller errors are not caused by the step
+# Relative to the amplitude of the motion; smaller errors are not caused by the step.
 ROUNDING = 1e-11
 
 

@@ -4,7 +4,7 @@ import sys
 from pathlib import Path
 
 _HERE = Path(__file__)
-# package installed by pip, with the program and its files inside
+# Package installed by pip, with the program and its files inside.
 _PACKAGE = _HERE.absolute().parent
 _PREFIX = _HERE.absolute().parents[4]  # prefix of a build or of cmake --install
 

@@ -254,7 +254,7 @@ class Folder(_WithTables):
             file.parent.relative_to(self.folder).as_posix(): load_run(file.parent) for file in files
         }
         for run in found.values():
-            # keeps this folder alive, because its files may be deleted with this object
+            # Keeps this folder alive, because its files may be deleted with this object.
             run.part_of = self
         return found
 
@@ -423,5 +423,5 @@ class Files:
         return read(self.directory / path)
 
 
-# cached, because several figures draw the same table
+# Cached, because several figures draw the same table.
 _columns = lru_cache(maxsize=16)(read_columns)

@@ -35,7 +35,7 @@ UNITS = {
     "bytes": "bytes",
 }
 MOST_NAMED = 16
-# largest numbers of rows and of characters per line in a printed table
+# Largest numbers of rows and of characters per line in a printed table.
 MOST_PRINTED, WIDEST = 20, 100
 
 

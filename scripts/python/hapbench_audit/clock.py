@@ -3,7 +3,7 @@ import numpy as np
 
 from .log import LONG_INTERVALS
 
-# standard deviation, relative to the interval, above which the clock causes a warning
+# Standard deviation, relative to the interval, above which the clock causes a warning.
 JITTER = 0.05
 
 

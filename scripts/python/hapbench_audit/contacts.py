@@ -8,7 +8,7 @@ from .log import LONG_INTERVALS
 SETTLING = 0.05  # [s], default of metrics.settling_s of a scenario
 # If at least this fraction of the rows has exactly zero force, every other row is in contact.
 SOME_ZEROS = 0.01
-# threshold of contact relative to the 99th percentile of the force; used if the force is hardly ever zero
+# Threshold of contact relative to the 99th percentile of the force; used if the force is hardly ever zero.
 TOUCH_SHARE = 0.05
 
 
@@ -18,14 +18,14 @@ class Contacts:
     runs: np.ndarray  # for each contact, the first row and the row after the last
     # (first contact, contact after the last) of each sequence of contacts separated by less than SETTLING
     stretches: list
-    # first row of each contact that begins after at least SETTLING without contact
+    # First row of each contact that begins after at least SETTLING without contact.
     landings: np.ndarray
     landing: np.ndarray  # for each row, true if it is within SETTLING of a landing
     settled: np.ndarray  # for each row, true if it is in contact and not part of a landing
-    # force above which a row is in contact [N]; 0 if any force counts, or if the log counts contacts
+    # Force above which a row is in contact [N]; 0 if any force counts, or if the log counts contacts.
     touch_N: float
     rule: str  # how contact was detected, in words
-    # for each interval between rows, true if it is so long that a contact ends in it
+    # For each interval between rows, true if it is so long that a contact ends in it.
     gap: np.ndarray
 
     @property

@@ -10,7 +10,7 @@ from .text import HAMMERS, expected_text
 AT_LIMIT = 0.999  # fraction of the largest force from which a row counts as saturated
 CONSTANT = 0.9  # fraction of the rows at the largest force from which the force counts as constant
 FLAT = 20  # number of rows at the largest force from which this force counts as a limit
-# vibration relative to the mean force; the threshold of the rule "edge" of the program
+# Vibration relative to the mean force; the threshold of the rule "edge" of the program.
 HAS_BUZZ = 0.1
 GAIN_MARGIN = 2.0
 

@@ -12,7 +12,7 @@ STEP_SHARE = 0.1  # steps above this fraction of the mean force are counted
 MOST_PEAKS = 3
 SMALLEST_PEAK = 0.1  # smallest reported peak, relative to the amplitude of the strongest peak
 LOWEST_PEAK = 10.0  # lowest reported frequency [Hz]; voluntary motion of a hand is slower
-# relative distance within which a frequency counts as a multiple of a stronger peak
+# Relative distance within which a frequency counts as a multiple of a stronger peak.
 HARMONIC = 0.02
 LEAST_PEAK = 0.01  # smallest reported amplitude of the strongest peak, relative to the mean force
 SHORTEST_SPECTRUM = 64  # smallest number of rows of a spectrum

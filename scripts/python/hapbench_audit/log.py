@@ -45,7 +45,7 @@ class Log:
     measured: np.ndarray | None = None  # force that a sensor measured [N]
     contacts: np.ndarray | None = None  # number of contacts in each row
     axes: int = 3  # 1 for a log of one axis
-    # columns by quantity, in the form of `import stroke`
+    # Columns by quantity, in the form of `import stroke`.
     columns: dict = field(default_factory=dict)
     columns_not_read: list = field(default_factory=list)
     scales: dict = field(default_factory=dict)  # factors to SI units by quantity
@@ -56,7 +56,7 @@ class Log:
     quantum_N: np.ndarray | None = None  # resolution of each force component [N]; 0: full precision
     held: object = None  # Hold of the positions, or None if positions are not held
     held_force: object = None  # Hold of the forces, or None if forces are not held
-    # force above which a row is in contact [N]; None: found from the log
+    # Force above which a row is in contact [N]; None: found from the log.
     touch: float | None = None
 
     @property

@@ -15,7 +15,7 @@ LOW_PASS = "low-pass "  # prefix of the kinds of filtered velocity
 EVEN = "even "  # prefix of the kinds that assume a clock without jitter
 BEFORE = MOST_DELAY + 10 * max(LOW_PASSES)  # rows after which the start of a filter has no effect
 BLOCKS = 10  # number of blocks of the jackknife
-# smallest fraction of a column's norm that the other columns must leave unexplained
+# Smallest fraction of a column's norm that the other columns must leave unexplained.
 COLLINEAR = 1e-9
 
 
@@ -34,7 +34,7 @@ class Fit:
     explained: float  # explained fraction of the variance
     rows: int
     independent: float  # number of independent rows: rows divided by the memory of the residuals
-    # root mean square of the part of the velocity that is not proportional to the position [m/s]
+    # Root mean square of the part of the velocity that is not proportional to the position [m/s].
     speed: float
 
     @property

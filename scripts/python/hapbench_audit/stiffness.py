@@ -8,38 +8,38 @@ from scipy.stats import t as student
 from .models import Motion, fit_of, low_pass_of, neighbours_of, residual_of
 
 FEWEST = 20  # smallest number of rows of a contact
-# smallest number of these rows with a new force above 0 and below the largest force
+# Smallest number of these rows with a new force above 0 and below the largest force.
 FEWEST_NEW = 15
-# ratio of the rms residual in a landing to the residual elsewhere up to which the landing is no impact
+# Ratio of the rms residual in a landing to the residual elsewhere up to which the landing is no impact.
 LANDING = 10.0
-# rms residual of a landing, relative to the range of the force, up to which the landing is no impact
+# Rms residual of a landing, relative to the range of the force, up to which the landing is no impact.
 EXACT = 0.01
 FEWEST_COUNTS = 10  # smallest travel, in steps of the position's resolution
 EXPLAINED = 0.5  # smallest fraction of the variance that a spring must explain
 WELL_KNOWN = 0.25  # largest relative half-width of the interval with which a value is stated
-# difference of log-likelihood within which a model counts as equally good as the best model
+# Difference of log-likelihood within which a model counts as equally good as the best model.
 UNLIKELY = 5.0
-# unexplained fraction of the variance below which the engine's law is exactly the model
+# Unexplained fraction of the variance below which the engine's law is exactly the model.
 EXACTLY = 1e-9
 SAMPLED = (
-    # relative change of a value by sampling that is allowed: (2 pi f T)^2 / 6 at 17 Hz and 1 kHz
+    # Relative change of a value by sampling that is allowed: (2 pi f T)^2 / 6 at 17 Hz and 1 kHz.
     2e-3
 )
 MOST_TRIED = 60  # largest number of models tried in the search for a model without negative damping
 CERTAIN = 20.0  # largest log-likelihood difference that one contact contributes
-# relative difference below which two mean squares count as equal, because the residuals are not white noise
+# Relative difference below which two mean squares count as equal, because the residuals are not white noise.
 SIMILAR = 0.1
-# largest factor, over the smallest mean square, that the sampling of the velocity may explain
+# Largest factor, over the smallest mean square, that the sampling of the velocity may explain.
 MOST_EXCUSED = 2.0
 NEGLIGIBLE = 1e-12  # fraction of the variance that rounding may leave unexplained
 TYPICAL = 10.0  # factor over the unexplained fraction of a typical contact
-# dry friction is reported if the sign of the velocity reduces the sum of squares below this fraction
+# Dry friction is reported if the sign of the velocity reduces the sum of squares below this fraction.
 DRY_GAIN = 0.7
 DRY_SHARE = 0.02  # and if it is at least this fraction of the mean force
 AT_LIMIT = 0.999  # fraction of the largest force from which a row counts as saturated
 TILTS = 8  # number of steps of the search for the normal
 MOST_ROWS = 500  # largest number of rows in the search for the normal
-# kinds of velocity in the search for the normal
+# Kinds of velocity in the search for the normal.
 SEARCHED = ("logged", "backward", "central", "low-pass 4")
 
 
@@ -49,7 +49,7 @@ class Evidence:
 
     motion: object  # Motion along the fitted direction, or None
     found: dict  # numbers for the JSON
-    # difference of log-likelihood to the best model, by Model
+    # Difference of log-likelihood to the best model, by Model.
     likelihood: dict = field(default_factory=dict)
     place: np.ndarray | None = None  # positions of the rows along the direction [m]
     resolution: float = 0.0  # resolution of the position along the direction [m]

@@ -32,7 +32,7 @@ TASKS = {
     "D3": "turning, 3 mm high",
     "D4": "turning, 4 mm high",
 }
-# matches the line of Program.provenance()
+# Matches the line of Program.provenance().
 STAMP = re.compile(r"hapbench \d[\w.]*, \d{4}-\d\d-\d\d, [^\n]+\.")
 PAIR = re.compile(r"success(?: rate)? (.+?) vs ([^;(]+)")
 

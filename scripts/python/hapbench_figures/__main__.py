@@ -32,7 +32,7 @@ class Figure:
     """A figure as described by captions.txt."""
 
     id: str
-    # number of the thesis's figure that this figure redraws; empty for figures of this project
+    # Number of the thesis's figure that this figure redraws; empty for figures of this project.
     thesis: str
     module: str
     function: str
@@ -40,7 +40,7 @@ class Figure:
     title: str
     caption: str
     differs: str  # difference from the thesis's figure, with the reason
-    # further claims that the figure draws, besides the claims located in the thesis's figure
+    # Further claims that the figure draws, besides the claims located in the thesis's figure.
     rows: tuple
 
     @property

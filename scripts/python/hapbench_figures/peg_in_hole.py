@@ -51,7 +51,7 @@ def trajectories(results):
     figure, axes = style.panels(
         2, SNAPSHOTS + 1, 5.2, gridspec_kw={"width_ratios": [1] * SNAPSHOTS + [2.7]}
     )
-    # leaves room for the titles of the rows
+    # Leaves room for the titles of the rows.
     figure.get_layout_engine().set(rect=(0, 0, 1, 0.96), hspace=0.12)
     for line, (algorithm, title), letters in zip(axes, RUNS, ("ab", "cd")):
         look = style.look(algorithm)

@@ -57,7 +57,7 @@ PANELS = (
 )
 # The order of these settings is not the order of their costs, so their marks are not joined.
 UNORDERED = ("reduction/",)
-# largest drawn error [mm]: the block is 15 mm wide, so with a larger error the drill has left it
+# Largest drawn error [mm]: the block is 15 mm wide, so with a larger error the drill has left it.
 LARGEST_ERROR_MM = 10
 
 

@@ -22,7 +22,7 @@ HAND, HAND_ROTATION, COUPLING, COUPLING_ROTATION = (
     0.4,
 )  # values of the hand and of six_dof in the scenes
 SMALLEST = 1e-3  # smaller errors are drawn at this value [N]
-# distance from the force point to the edge of the plane, which is 4 mm above the tip [m]
+# Distance from the force point to the edge of the plane, which is 4 mm above the tip [m].
 LEVER = 0.026
 
 

@@ -66,7 +66,7 @@ UNITS = {
 }
 UNTRUSTED = "The true values can lie outside of the intervals: do not read them as 95 % intervals"
 NEGLIGIBLE = 1e-3  # offset force that counts as negligible, relative to the largest force
-# largest number of drawn samples, which limits the size of the picture of a long log
+# Largest number of drawn samples, which limits the size of the picture of a long log.
 MOST_DRAWN = 6000
 IN_DEVICE = (
     "handle_mass_kg",

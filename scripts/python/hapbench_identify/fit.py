@@ -13,7 +13,7 @@ SCORED, PIECE, SHORT_PIECE = (
     20.0,
     0.5,
     0.2,
-    # duration on which starting values are scored, and lengths of the pieces whose means are subtracted [s]
+    # Duration on which starting values are scored, and lengths of the pieces whose means are subtracted [s].
 )
 KEPT, DISTINCT, BLOCKS = 8, 3, 12
 LONGEST = 20.0  # largest delay in the search [samples]
@@ -23,12 +23,12 @@ SMOOTHINGS = (0.02, 0.05, 0.1)  # full widths of the smoothing kernel [s]
 GRID = [
     (m, c, d) for m in (0.05, 0.2, 0.8) for c in (0.02, 0.2, 0.5) for d in (1.0, 4.0)
 ]  # mass [kg], dry friction as a fraction of the peak force, delay [samples]
-# window lengths over which the residual is averaged to find its slow part [s]
+# Window lengths over which the residual is averaged to find its slow part [s].
 WINDOWS = (0.005, 0.02, 0.05, 0.2)
 # Size of the slow part, in standard deviations, above which the intervals are widened, and above which the intervals
 # are not trusted.
 WIDENED, DISTRUSTED = 1.5, 4.0
-# smallest decrease of the sum of squares, in units of the variance, for which a non-zero initial speed is fitted
+# Smallest decrease of the sum of squares, in units of the variance, for which a non-zero initial speed is fitted.
 FROM_REST = 12.0
 
 
@@ -36,16 +36,16 @@ FROM_REST = 12.0
 class Fit:
     values: np.ndarray  # in the order of NAMES
     intervals: np.ndarray  # 95 % intervals, one row [low, high] for each value
-    # measured minus simulated position of each sample [m]; NaN for missing samples
+    # Measured minus simulated position of each sample [m]; NaN for missing samples.
     residual: np.ndarray
     rms: float  # root mean square of the residual [m]
-    # number of samples of the residual that count as one independent sample, from its autocorrelation
+    # Number of samples of the residual that count as one independent sample, from its autocorrelation.
     memory: float
-    # true if the residual exceeds noise and encoder error: the device has effects that the model lacks
+    # True if the residual exceeds noise and encoder error: the device has effects that the model lacks.
     misfit: bool
-    # true if noise and encoder error explain the residual and its slow part, so that the intervals are 95 % intervals
+    # True if noise and encoder error explain the residual and its slow part, so that the intervals are 95 % intervals.
     trusted: bool
-    # names of the parameters that the log does not determine, with the reason
+    # Names of the parameters that the log does not determine, with the reason.
     untold: dict = field(default_factory=dict)
 
 

@@ -11,9 +11,9 @@ KINDS = {
     "steps": "alternating pushes, from short to long",
     "multisine": "sum of thirty sines",
 }
-# largest identifiable dry friction, relative to the largest force; with more friction the handle moves too little
+# Largest identifiable dry friction, relative to the largest force; with more friction the handle moves too little.
 FRICTION_TOLD = 0.6
-# largest frequency of a signal [Hz]; higher frequencies give little information about mass and friction
+# Largest frequency of a signal [Hz]; higher frequencies give little information about mass and friction.
 HIGHEST = 100.0
 # Frictions for which a signal is verified to keep its travel: dry friction relative to the largest force, keyed by
 # viscous friction divided by mass [1/s].
@@ -23,7 +23,7 @@ DRY_SHARES = {
     10.0: np.linspace(0.0, FRICTION_TOLD, 13),
 }
 TRAVEL_USED = (
-    # fraction of the travel that is used; for frictions between the simulated values the travel is up to 6 % longer
+    # Fraction of the travel that is used; for frictions between the simulated values the travel is up to 6 % longer.
     0.9
 )
 

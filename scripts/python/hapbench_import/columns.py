@@ -21,7 +21,7 @@ UNITS = {
 # Endings that are units, as in x_mm. Short endings such as in x_m or x_cm may have another meaning.
 _ENDINGS = "ms msec us usec ns nsec mm um mN kN deg".split()
 _BRACKETED = re.compile(r"\s*([\[(])\s*([^\[\]()]*?)\s*[\])]\s*$")
-# prefix of the names of columns that a reader has added; messages do not name these columns
+# Prefix of the names of columns that a reader has added; messages do not name these columns.
 ABSENT = "\x01absent"
 SI = {"time": "s", "position": "m", "force": "N", "angle": "rad"}
 
@@ -29,7 +29,7 @@ SI = {"time": "s", "position": "m", "force": "N", "angle": "rad"}
 @dataclass
 class Unit:
     text: str  # unit as written in the name
-    # true if the ending is certainly a unit: in square brackets, or after "_" at the end of the name
+    # True if the ending is certainly a unit: in square brackets, or after "_" at the end of the name.
     is_sure: bool
 
 

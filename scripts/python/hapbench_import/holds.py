@@ -11,7 +11,7 @@ ALL, NEARLY_ALL = 0.98, 0.9  # fractions of the changes that must match the rhyt
 @dataclass
 class Hold:
     rows: float  # mean number of rows of each sample
-    # true in the first row of each sample; while the value does not change for longer, true every `rows` rows
+    # True in the first row of each sample; while the value does not change for longer, true every `rows` rows.
     fresh: np.ndarray
 
 

@@ -53,7 +53,7 @@ class Options:
     scale: dict = field(
         default_factory=dict
     )  # units of "time", "position", "angle" and "force", in SI units
-    # a key of ORIENTATIONS; None: determined from the names of the columns
+    # A key of ORIENTATIONS; None: determined from the names of the columns.
     orientation: str | None = None
     named: frozenset = frozenset()  # quantities of `columns` that the command line sets
     tip_axis: tuple = (
@@ -67,7 +67,7 @@ class Options:
         (0.0, 0.0, 1.0),
     )  # rotation from the recorded world frame to the scenario's frame
     shift: tuple = (0.0, 0.0, 0.0)  # added to positions in the scenario's frame [m]
-    # true if the recorded forces act on the object; they are then negated
+    # True if the recorded forces act on the object; they are then negated.
     force_by_tool: bool = False
     rate: float | None = None  # rate of the stroke [Hz]; None: as recorded
     smooth: dict | None = None  # window [samples] and order

@@ -39,7 +39,7 @@ class Recording:
         self.file, self.names, self.rows, self.places = file, names, rows, places
         self.row_word, self.notes, self._decimal = row_word, list(notes), decimal
         self.is_binary = isinstance(rows, np.ndarray)
-        # true if the user has chosen the decimal comma, or after a note has mentioned it
+        # True if the user has chosen the decimal comma, or after a note has mentioned it.
         self._says_comma = decimal == "comma"
 
     def place(self, row):

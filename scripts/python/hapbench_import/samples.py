@@ -25,7 +25,7 @@ LETTERS = {
     ("qw", "qx", "qy", "qz"): ("w", "x", "y", "z"),
     ("qx", "qy", "qz", "qw"): ("x", "y", "z", "w"),
 }
-# names of all components of orientations
+# Names of all components of orientations.
 PARTS = list(dict.fromkeys(sum(ORIENTATIONS.values(), ())))
 LATEST = 1e11  # [s]; later times have other units
 SINCE_1970 = (9e8, 4e9)  # plausible seconds since 1970: 1998 to 2096 [s]

@@ -28,8 +28,8 @@ PATH_COLUMNS, AXIS_COLUMNS = ("px_m", "py_m", "pz_m"), ("axis_x", "axis_y", "axi
 SNAPSHOTS = (0.35, 0.5, 0.7, 0.95)  # opacity of the tool at these equally spaced times
 SAID = "circle: start; square: end; triangle: first touch"
 TOOL_SAID = "outlines: the tool at four times"
-# smallest component of the tool's axis in the plane for which its outline is drawn; the axis is then at most 30 degrees
-# out of the plane
+# Smallest component of the tool's axis in the plane for which its outline is drawn; the axis is then at most 30 degrees
+# out of the plane.
 LEAST_IN_PLANE = 0.85
 
 
@@ -92,7 +92,7 @@ def draw_over_time(ax, quantity, samples, looks):
     mark_thrown(ax, quantity, thrown)
     for (s, one, (time, low, high)), equal in zip(drawn, equal_curves([of for _, _, of in drawn])):
         line = {"color": one.colour, "ls": striped(one.line, *equal)}
-        # a solid thin line, because a peak may fall into a gap of the dashes
+        # A solid thin line, because a peak may fall into a gap of the dashes.
         if one.dash and equal[1] == 1:
             ax.plot(*curve(time, low, high, SPANS), lw=0.4 * one.width, color=one.colour, alpha=0.7)
         if low is high:

@@ -25,7 +25,7 @@ from .panels import (
 )
 from .quantities import Samples
 
-# height of a scene or of the first quantity, and of the other quantities [inch]
+# Height of a scene or of the first quantity, and of the other quantities [inch].
 LARGE, SMALL = 2.6, 1.35
 ROOM = 0.35  # height of the title of the time axis [inch]
 TITLE_LETTER = 0.085  # width of a letter of the title [inch]

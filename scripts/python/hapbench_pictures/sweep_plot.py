@@ -24,7 +24,7 @@ FAILURES = ("diverges", "error")
 NO_VALUE = {"facecolor": "#F4F4F4", "edgecolor": "#C8C8C8", "lw": 0.5}
 WIDTH = 100  # width of the text [characters]
 MOST_COSINES, ROWS_PER_COSINE = 6, 10
-# smallest number of rows of a sample for which the influence of a field is computed
+# Smallest number of rows of a sample for which the influence of a field is computed.
 LEAST_ROWS = 20
 # If the ratio of the largest to the smallest positive value is larger, the Sobol index of the logarithm is also
 # computed.

@@ -25,7 +25,7 @@ ROOM = np.array([0.2, 0.13])  # size of a label, as fractions of the panel's wid
 KNEE = {"marker": "o", "ms": 10, "mfc": "none", "mec": GREY, "ls": "none"}
 ASKED = {"color": GREY, "lw": 0.8, "ls": ":"}
 SPEED = {"color": GREY, "lw": 0.8, "ls": "--"}
-# processor time per simulated second at which the simulation runs in real time [ms]
+# Processor time per simulated second at which the simulation runs in real time [ms].
 REAL_TIME = 1000.0
 
 

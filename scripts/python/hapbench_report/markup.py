@@ -13,7 +13,7 @@ from hapbench.table import ending_of, unit_of
 ABSENT = "–"
 ASSETS = Path(__file__).parent / "assets"
 PER = "seconds_per_"  # prefix of metrics of the time of a step or of a call
-SMALL_M = 0.01  # smaller lengths are printed in millimetres [m]
+SMALL_M = 0.01  # [m]; smaller lengths are printed in mm
 # Title, unit and factor of the metrics in the program's tables, with the words of its headings (kRunHeadings).
 TITLES = {
     "force_max_N": ("largest force", "N", 1),

@@ -40,12 +40,12 @@ CONTACT_COLUMNS = (
     "weight",
 )
 NORMAL_COLUMNS = ("nx", "ny", "nz")
-# number of points of a rounded tip: deviates from the circle by 0.013 % of its radius
+# Number of points of a rounded tip: deviates from the circle by 0.013 % of its radius.
 ARC_POINTS = 48
 SPANS = 500  # number of time spans of a run; each keeps up to five rows
 SETTLING_S = 0.05
 CUTOFF_HZ = 30.0
-# largest number of rows of a sound: two minutes at 2 kHz, half a megabyte in the page
+# Largest number of rows of a sound: two minutes at 2 kHz, half a megabyte in the page.
 LONGEST = 1 << 18
 LEAST_SETTLED_S = (
     1 / 30

@@ -1,4 +1,4 @@
-// run --replay and compare --replay: the function that rendered the log of a haptic loop renders it again.
+// `run --replay` and `compare --replay`: the function that rendered the log of a haptic loop renders it again.
 
 #include <gtest/gtest.h>
 

@@ -40,12 +40,12 @@ void compare(const CheckedScenario& scene, std::map<Outcome, int>& early) {
 /// Every bundled scenario with its own gains, and with gains and forces that make the tool sink in, fly off and
 /// diverge.
 TEST(EarlyEnd, HasTheOutcomeOfTheFullRun) {
-  // runs that are cut off before their failure must also have the same outcome
+  // Runs that are cut off before their failure must also have the same outcome.
   constexpr std::int64_t kMostSteps = 1500;
   std::map<Outcome, int> early;
   for (const auto& [name, group, file] : bundled_scenarios()) {
     const LoadedScenario own = load_scenario(file);
-    // many trials: such a run never ends early
+    // Many trials: such a run never ends early.
     if (std::holds_alternative<TrackingHandFields>(own.scenario.hand)) continue;
     const std::string steps = "time.steps=" + std::to_string(std::min(kMostSteps, own.scenario.time.steps));
     const double K = own.scenario.rendering.stiffness;
