@@ -51,8 +51,8 @@ def their_mesh(block, spacing, density):
 def compare(program, block, spacing, density):
     ours, our_faces = our_mesh(program, block, spacing, density)
     theirs, their_faces, nodes = their_mesh(block, spacing, density)
-    # The library scikit-image computes in single precision: half a unit in the last place of an index up to `nodes`, and a few
-    # units of the field, which is of the order of one next to the surface.
+    # The library scikit-image computes in single precision. Errors: half a unit in the last place of an index up to
+    # `nodes`, and a few units of the field, which is of the order of one next to the surface.
     tolerance = (nodes + 8) * 2.0**-24
     gap, partner = cKDTree(theirs).query(ours)
     print(
