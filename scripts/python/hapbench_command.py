@@ -140,12 +140,8 @@ class CommandLine(Arguments):
             for action in actions:
                 if action.help == SHARED:
                     continue
-                word = action.metavar
-                if named:
-                    value = f" {action.metavar}" if action.nargs != 0 else ""
-                    word = ",".join(action.option_strings) + value
-                else:
-                    word += "..." if action.nargs in ("+", "*") else ""
+                word = word_of(action)
+                if not named:
                     usage += f" {word}" if action.required else f" [{word}]"
                 parts.append(entry(word, action.help, width))
             if shared and named:
@@ -159,6 +155,14 @@ class CommandLine(Arguments):
 
 
 WHOLE_WORDS = {"break_long_words": False, "break_on_hyphens": False}
+
+
+def word_of(action):
+    """Returns an option with its placeholder, or the placeholder of an argument, as the help prints it."""
+    if action.option_strings:
+        value = f" {action.metavar}" if action.nargs != 0 else ""
+        return ",".join(action.option_strings) + value
+    return action.metavar + ("..." if action.nargs in ("+", "*") else "")
 
 
 def entry(word, meaning, width):

@@ -182,24 +182,8 @@ def disagreement(springs):
 
 def missing(log, audit, device):
     """Returns what the log cannot determine, and which column or test would determine it."""
-    found = []
-    if not len(audit["contacts"]):
-        found.append("contact: no row has a force")
-    if audit["stiffness"] is None and audit["contacts"]:
-        whys = [
-            one["spring"]["why"]
-            for one in audit["contacts"]
-            if one["spring"] and "why" in one["spring"]
-        ]
-        why = whys[0] if whys else f"no contact has {FEWEST} rows"
-        found.append(f"stiffness: {why}; tap, and press to several depths at several speeds")
-    elif audit["stiffness"] and audit["stiffness"].get("why_no_damping"):
-        found.append(
-            f"damping: {audit['stiffness']['why_no_damping']}; taps and quick presses, more digits, or a column of "
-            "velocities"
-        )
-    elif audit["stiffness"] and audit["stiffness"]["delay_s"] is None:
-        found.append("delay: the log does not separate it from damping; taps and quick presses")
+    found = [] if len(audit["contacts"]) else ["contact: no row has a force"]
+    found += missing_of_spring(audit)
     if device is None:
         found.append("whether the device can render this stiffness: --device FILE.json or a preset")
     elif audit["device"] is None:
@@ -228,3 +212,23 @@ def missing(log, audit, device):
     if audit["clock"]["rate_Hz"] <= 60.0:
         found.append("vibration above 30 Hz: a log of more than 60 Hz")
     return found
+
+
+def missing_of_spring(audit):
+    """Returns which of stiffness, damping and delay the log does not determine, and what would determine it."""
+    if audit["stiffness"] is None and audit["contacts"]:
+        whys = [
+            one["spring"]["why"]
+            for one in audit["contacts"]
+            if one["spring"] and "why" in one["spring"]
+        ]
+        why = whys[0] if whys else f"no contact has {FEWEST} rows"
+        return [f"stiffness: {why}; tap, and press to several depths at several speeds"]
+    if audit["stiffness"] and audit["stiffness"].get("why_no_damping"):
+        return [
+            f"damping: {audit['stiffness']['why_no_damping']}; taps and quick presses, more digits, or a column of "
+            "velocities"
+        ]
+    if audit["stiffness"] and audit["stiffness"]["delay_s"] is None:
+        return ["delay: the log does not separate it from damping; taps and quick presses"]
+    return []

@@ -174,33 +174,9 @@ def identify(options, out):
         refuse_units(options, log, f"the log has a mean interval of {log.step:.4g} s")
     found = fit(log)
     require_right_sign(options, log, found)
-    told = {
-        name: {"value": None if name in found.untold else value, "interval": ends}
-        for name, value, ends in zip(NAMES, found.values.tolist(), found.intervals.tolist())
-    }
-    late = told["delay_s"]
-    told["delay_samples"] = {
-        "value": late["value"] if late["value"] is None else late["value"] / log.step,
-        "interval": [end / log.step for end in late["interval"]],
-    }
-    step = log.encoder_step
-    told["encoder_step_m"] = {"value": step, "interval": [step * (1.0 - 1e-9), step * (1.0 + 1e-9)]}
-    count = np.isfinite(found.residual).sum() / found.memory
-    beyond = found.rms**2 - step**2 / 12.0
-    spread = found.rms**2 * math.sqrt(2.0 / count) * 1.96
-    told["position_noise_m"] = unless_wide(
-        math.sqrt(max(beyond, 0.0)),
-        [math.sqrt(max(beyond + way * spread, 0.0)) for way in (-1.0, 1.0)],
-    )
-    if told["offset_N"]["value"] is not None:
-        told["offset_N"] = unless_wide(*told["offset_N"].values())
-    told = {
-        name: told[name]
-        | {"interval": [end if math.isfinite(end) else None for end in told[name]["interval"]]}
-        for name in UNITS
-    }
-    if not options.scale and not is_likely(found.values[MASS], step):
-        handle = f"a handle of {found.values[MASS]:.3g} kg and an encoder step of {step:.3g} m"
+    told = parameters_of(log, found)
+    if not options.scale and not is_likely(found.values[MASS], log.encoder_step):
+        handle = f"a handle of {found.values[MASS]:.3g} kg and an encoder step of {log.encoder_step:.3g} m"
         refuse_units(options, log, f"the fit gives {handle}", found)
     if told["handle_mass_kg"]["value"] is None:
         fail(
@@ -246,6 +222,36 @@ def identify(options, out):
         "not_in_log": missing,
         "picture": str(picture),
         "warnings": warnings,
+    }
+
+
+def parameters_of(log, found):
+    """Returns value and interval of each parameter by name, in the order of UNITS. A value is None if the log does not
+    determine it, and an end of an interval is None if it is infinite."""
+    told = {
+        name: {"value": None if name in found.untold else value, "interval": ends}
+        for name, value, ends in zip(NAMES, found.values.tolist(), found.intervals.tolist())
+    }
+    late = told["delay_s"]
+    told["delay_samples"] = {
+        "value": late["value"] if late["value"] is None else late["value"] / log.step,
+        "interval": [end / log.step for end in late["interval"]],
+    }
+    step = log.encoder_step
+    told["encoder_step_m"] = {"value": step, "interval": [step * (1.0 - 1e-9), step * (1.0 + 1e-9)]}
+    count = np.isfinite(found.residual).sum() / found.memory
+    beyond = found.rms**2 - step**2 / 12.0
+    spread = found.rms**2 * math.sqrt(2.0 / count) * 1.96
+    told["position_noise_m"] = unless_wide(
+        math.sqrt(max(beyond, 0.0)),
+        [math.sqrt(max(beyond + way * spread, 0.0)) for way in (-1.0, 1.0)],
+    )
+    if told["offset_N"]["value"] is not None:
+        told["offset_N"] = unless_wide(*told["offset_N"].values())
+    return {
+        name: told[name]
+        | {"interval": [end if math.isfinite(end) else None for end in told[name]["interval"]]}
+        for name in UNITS
     }
 
 

@@ -198,15 +198,7 @@ def _fit(log, simulate):
         wide = without_blocks(whole, found, scale)
         intervals[:, 0] = np.minimum(intervals[:, 0], found.x - wide)
         intervals[:, 1] = np.maximum(intervals[:, 1], found.x + wide)
-    half = 0.5 * np.diff(intervals)[:, 0]
-    for i, most, said in (
-        (MASS, 0.25 * found.x[MASS], "25 % of the value"),
-        (DELAY, 2.0 * log.step, "2 samples"),
-        (DRY, 0.1 * peak, "10 % of the largest force"),
-        (VISCOUS, 0.1 * peak / fast, "10 % of the largest force at full speed"),
-    ):
-        if i not in untold and not half[i] <= most:
-            untold[i] = f"its interval is wider than +- {said}"
+    untold = _wide_intervals(intervals, found.x, log.step, peak, fast) | untold
     intervals[:OFFSET, 0] = np.maximum(intervals[:OFFSET, 0], 0.0)
     filled = np.full(len(log.time), np.nan)
     filled[whole.known] = residual
@@ -220,6 +212,22 @@ def _fit(log, simulate):
         not misfit and slow <= DISTRUSTED,
         {NAMES[i]: f"{why} ({seen})" for i, why in sorted(untold.items()) if i != SPEED},
     )
+
+
+def _wide_intervals(intervals, x, step, peak, fast):
+    """Returns the indices of parameters whose intervals are too wide to state a value, with the reason. `peak`: largest
+    force [N], `fast`: largest speed [m/s]."""
+    half = 0.5 * np.diff(intervals)[:, 0]
+    return {
+        i: f"its interval is wider than +- {said}"
+        for i, most, said in (
+            (MASS, 0.25 * x[MASS], "25 % of the value"),
+            (DELAY, 2.0 * step, "2 samples"),
+            (DRY, 0.1 * peak, "10 % of the largest force"),
+            (VISCOUS, 0.1 * peak / fast, "10 % of the largest force at full speed"),
+        )
+        if not half[i] <= most
+    }
 
 
 def _search(first, whole, log, place, scale):

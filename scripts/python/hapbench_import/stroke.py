@@ -258,8 +258,19 @@ def number_text(value):
 
 def table_of(found):
     """Returns rows of a label and a text about the result of import_stroke."""
-    interval, (low, high) = found["interval_s"], found["box_m"]
-    bad, smoothing = found["rows_left_out"], found["smoothing"]
+    least, most = found["force_min_N"], found["force_max_N"]
+    return [
+        ("columns", columns_text(found["columns"], found["columns_not_read"], found["scales"])),
+        *recording_rows(found),
+        *motion_rows(found),
+        *resolution_rows(found),
+        ("force", "not measured" if least is None else f"measured, {least:.4g} ... {most:.4g} N"),
+    ]
+
+
+def recording_rows(found):
+    """Returns the rows of table_of() about rows, clock and gaps of the recording."""
+    interval, bad = found["interval_s"], found["rows_left_out"]
     rows = [
         (
             "rows",
@@ -281,6 +292,22 @@ def table_of(found):
             if found["gaps"]
             else "none (of at least ten median intervals)",
         ),
+    ]
+    if found["rows_per_held_sample"] > 1.0:
+        rows.insert(
+            1,
+            (
+                "held",
+                f"{found['rows_per_held_sample']:.4g} rows per pose; the first row of each pose is used",
+            ),
+        )
+    return rows
+
+
+def motion_rows(found):
+    """Returns the rows of table_of() about positions, speeds and orientations."""
+    low, high = found["box_m"]
+    return [
         (
             "tip",
             ", ".join(
@@ -304,6 +331,13 @@ def table_of(found):
             f"[{', '.join(f'{part + 0.0:.3g}' for part in found['tip_direction'])}] in the mean; all "
             f"directions within {math.degrees(found['tip_direction_spread_rad']):.3g} degrees of it",
         ),
+    ]
+
+
+def resolution_rows(found):
+    """Returns the rows of table_of() about the resolution of the positions and about smoothing."""
+    smoothing = found["smoothing"]
+    rows = [
         (
             "resolution",
             ", ".join(
@@ -329,20 +363,7 @@ def table_of(found):
                 f"tool by at most {1e3 * turned:.4g} mrad ({1e3 * turned_rms:.4g} mrad rms)",
             )
         )
-    least, most = found["force_min_N"], found["force_max_N"]
-    if found["rows_per_held_sample"] > 1.0:
-        rows.insert(
-            1,
-            (
-                "held",
-                f"{found['rows_per_held_sample']:.4g} rows per pose; the first row of each pose is used",
-            ),
-        )
-    return [
-        ("columns", columns_text(found["columns"], found["columns_not_read"], found["scales"])),
-        *rows,
-        ("force", "not measured" if least is None else f"measured, {least:.4g} ... {most:.4g} N"),
-    ]
+    return rows
 
 
 def columns_text(columns, not_read, scales):

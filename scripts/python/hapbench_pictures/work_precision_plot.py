@@ -129,6 +129,16 @@ def draw_work_precision(files, sheet=SHEET):
         ax.label_outer()
     for ax in list(axes.flat)[len(problems) :]:
         ax.set_visible(False)
+    unresolved = (np.isfinite(error) & (error > 0) & ~is_true(errors, "resolved")).any()
+    marks, names = legend_of(looks, asked, is_knee.any(), unresolved, cost.max() > 0.1 * REAL_TIME)
+    legend_above(figure, marks, names, columns=None)
+    return figure
+
+
+def legend_of(looks, asked, has_knee, has_unresolved, has_real_time):
+    """Returns handles and labels of the elements that are drawn. `looks`: look of each integrator; `asked`: requested
+    error [µm]."""
+    integrators = list(looks)
     marks = [
         Line2D([], [], marker=looks[name].marker, color=looks[name].colour, ls=looks[name].line)
         for name in integrators
@@ -136,19 +146,18 @@ def draw_work_precision(files, sheet=SHEET):
     names = [name.replace("_", " ") for name in integrators]
     marks.append(Line2D([], [], **FRONT))
     names.append("front, with time steps [ms]")
-    if is_knee.any():
+    if has_knee:
         marks.append(Line2D([], [], **KNEE))
         names.append("knee")
-    if (np.isfinite(error) & (error > 0) & ~is_true(errors, "resolved")).any():
+    if has_unresolved:
         marks.append(Line2D([], [], marker="s", color=GREY, mfc="white", ls="none"))
         names.append("not resolved by the reference")
     marks.append(Line2D([], [], **ASKED))
     names.append(f"error that is asked for: {asked:g} µm")
-    if cost.max() > 0.1 * REAL_TIME:
+    if has_real_time:
         marks.append(Line2D([], [], **SPEED))
         names.append("real time")
-    legend_above(figure, marks, names, columns=None)
-    return figure
+    return marks, names
 
 
 def draw_front(ax, errors, cost, error, chosen, is_knee):
