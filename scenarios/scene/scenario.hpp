@@ -141,7 +141,7 @@ inline bool position_is_free(const MotionFields& motion) {
   return std::holds_alternative<FreePosition>(motion.position);
 }
 
-/// Nobody holds the handle.
+/// No hand holds the handle.
 struct NoHandFields {};
 struct ForceHandFields {
   std::array<Profile, 3> force;  ///< [N]
