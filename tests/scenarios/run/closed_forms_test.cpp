@@ -282,7 +282,8 @@ TEST_P(ProxyOverAWholeRun, NeitherEntersTheShellNorGetsStifferThanOneSpringNorTa
   EXPECT_LE(points.most_passes, 10u);
 }
 
-/// The peg penetrates both walls of a hole of the same width by 0.4 mm, because it is tilted and fits nowhere.
+/// At the start, the peg penetrates both walls of a hole of the same width by 0.4 mm. A tilted peg does not fit into
+/// this hole.
 TEST(ProxyInATightHole, LeavesSlowly) {
   const PointsInProxy points = watch("peg_in_hole_2d_shaped_stiffness", 2'000);
   // A move is only nearly proportional to the depths.
