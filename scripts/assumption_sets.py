@@ -18,7 +18,7 @@ ASSUMPTIONS = Path(__file__).resolve().parents[1] / "results" / "reference" / "a
 
 
 def value(assumption, part):
-    """What the assumption is at a part in [0, 1) of its range or its options."""
+    """Returns the value of an assumption at the fraction `part`, in [0, 1), of its range or of its list of options."""
     if "options" in assumption:
         return assumption["options"][int(part * len(assumption["options"]))]
     low, high = assumption["range"]
@@ -28,8 +28,8 @@ def value(assumption, part):
 
 
 def column(assumption, count, seed):
-    """The values of an assumption, from random numbers of its own: an assumption that is added
-    leaves the others as they are."""
+    """Returns the values of an assumption. Each assumption has its own random numbers, so that a new assumption does
+    not change the values of the others."""
     draw = random.Random(f"{seed} {assumption['id']}")
     strata = draw.sample(range(count), count)
     return [value(assumption, (stratum + draw.random()) / count) for stratum in strata]

@@ -9,16 +9,16 @@
 
 #include "sim/core/types.hpp"
 
-/// Nearest point of a polyhedron in N dimensions: the quadratic programs of the proxies. N = 3 for a proxy that
-/// translates, N = 6 for a pose.
+/// Nearest point of a polyhedron in N dimensions: the quadratic programs of the proxies. N = 3 for a proxy that only
+/// translates, N = 6 for a proxy that also rotates.
 ///
 ///   minimise |x - t|^2   subject to   d_i + <u_i, x> <= 0
 ///
 /// A type `Rows` of constraints has the functions
-///   size()                  number of constraints,
-///   depth(i), row(i)        d_i and the vector u_i of dimension N,
-///   largest_violation(x, tolerance)   the largest d_i + <u_i, x>, the first if several are equal; amount 0 if
-///                                     all are within the tolerance.
+///   size()                            number of constraints
+///   depth(i), row(i)                  d_i and the vector u_i of dimension N
+///   largest_violation(x, tolerance)   the largest d_i + <u_i, x>, the first if several are equal;
+///                                     amount 0 if all are within the tolerance.
 /// Nothing here allocates.
 namespace hapbench::nearest_point {
 
@@ -153,12 +153,12 @@ template <int N, class Rows>
 bool solve_exactly(const Rows& rows, double tolerance, Vector<N>& x, ActiveSet<N>& active, int& iterations) noexcept {
   for (;;) {
     const Violation worst = rows.largest_violation(x, tolerance);
-    // An active constraint is violated by rounding only.
+    // An active constraint can only be violated by rounding.
     if (!(worst.amount > tolerance) || active.contains(worst.contact)) break;
     if (++iterations > kMaxIterations) return false;
     if (!satisfy<N>(worst.contact, worst.amount, rows.row(worst.contact), x, active)) return false;
   }
-  // A constraint that the point only just reaches does not hold it back. Make it inactive, because otherwise
+  // A constraint that the point only just touches does not hold the point back. Make it inactive, because otherwise
   // rounding would decide whether it is active.
   for (int k = active.size() - 1; k >= 0; --k) {
     if (active.lambda(k) <= tolerance) active.remove(k);
@@ -194,8 +194,8 @@ struct Compromise {
   }
 };
 
-/// Minimises the compromise by Newton's method with a line search, which ends at the minimum, because the problem is
-/// convex and piecewise quadratic. On entry, `x` is t. Returns the problem at the minimum x.
+/// Minimises the compromise by Newton's method with a line search. The method converges, because the problem is convex
+/// and piecewise quadratic. On entry, `x` is t. Returns the problem at the minimum x.
 template <int N, class Rows>
 Compromise<N> solve_least_squares(const Rows& rows, double epsilon, double tolerance, Vector<N>& x,
                                   int& iterations) noexcept {
@@ -209,7 +209,7 @@ Compromise<N> solve_least_squares(const Rows& rows, double epsilon, double toler
       step *= 0.5;
       next = Compromise<N>(rows, wanted, x + step * direction, epsilon);
     }
-    if (!(next.value < here.value)) break;  // only rounding is left
+    if (!(next.value < here.value)) break;  // only rounding errors remain
     x += step * direction;
     here = next;
   }

@@ -58,7 +58,7 @@ class TurningProxy final : public ForceAlgorithm {
       damping_and_limits_.release();
       return;
     }
-    Mat3 loads;  // uninitialised unless read
+    Mat3 loads;  // only initialised if the loads are needed
     if (damping_and_limits_.needs_loads()) loads = load_along(out.spring);
     out.rendered = damping_and_limits_.rendered_force(out.spring, S_, {tool.velocity, Vec3(S_ * tool.velocity)}, loads);
     out.friction = damping_and_limits_.friction_state();
@@ -88,14 +88,14 @@ class TurningProxy final : public ForceAlgorithm {
   }
 
  private:
-  /// Moves the proxy for the tool's pose. `free`: the tool touches no point.
+  /// Moves the proxy for the current pose of the tool. `free`: true if the tool touches no point.
   void follow(bool free) noexcept {
     if (!has_proxy_) proxy_ = relaxed(springs_);
     has_proxy_ = true;
     proxy_.handle = springs_.target;
     outcome_ = equilibrium_->solve(springs_, proxy_, kMaxProxyPasses);
     work_.iterations += static_cast<std::uint64_t>(outcome_.passes);
-    // A tool in free air that is too far away for the proxy to follow: move the proxy to the tool.
+    // If the tool is in free air and the proxy cannot follow it because it is too far away, move the proxy to the tool.
     if (!outcome_.solved && free) proxy_ = relaxed(springs_);
   }
 

@@ -17,15 +17,16 @@ constexpr int kMaxPasses = 100;
 constexpr int kMaxNewtonSteps = 60;
 /// Largest number of sub-steps of a step of the intent.
 constexpr double kMaxSubsteps = 64.0;
-/// A difference of forces [N] that a Newton step need not improve: the rounding of 20 000 N/m times 10 mm is 1e-13 N.
+/// Smallest difference of forces that a Newton step still reduces [N]; the rounding error of 20 000 N/m times 10 mm is
+/// 1e-13 N.
 constexpr double kExact = 1e-11;
-/// Step of the force for derivatives [N]. It moves the handle by 20 nm at 500 N/m.
+/// Change of the force for difference quotients [N]. It moves the handle by 20 nm at 500 N/m.
 constexpr double kForceStep = 1e-5;
-/// Smallest fraction of a Newton step that the line search tries.
+/// Smallest fraction of a Newton step in the line search.
 constexpr double kSmallestStep = 1.0 / 1024.0;
 
-/// Largest number of calls of a law with a memory at one pose, and the factor by which its own motion must bring hand
-/// and device closer together to go on.
+/// Limits for a law with a memory: largest number of calls at one pose, and the factor below which the motion of its
+/// memory must reduce the imbalance between hand and device for the iteration to continue.
 constexpr int kMaxSettling = 20;
 constexpr double kStillMoves = 0.5;
 
@@ -72,7 +73,7 @@ void SixDofDevice::follow_in_parts(const Intent& intent, int bisections, Step& s
     intent_ = intent;
     return;
   }
-  // Go half of the way first.
+  // Bisect the step of the intent: first follow its first half.
   tool_ = before;
   const Intent half{0.5 * (intent_.grip + intent.grip),
                     turned(intent_.orientation, 0.5 * turn_between(intent_.orientation, intent.orientation))};
@@ -116,12 +117,13 @@ void ThreeDofDevice::reset() noexcept {
   starts_ = true;
 }
 
-/// Puts the handle where the hand holds it against a force of the device.
+/// Places the handle in the equilibrium of the hand under a given force of the device.
 void ThreeDofDevice::place(const Intent& intent, const Vec3& force) noexcept {
   Vec3 yield = Vec3::Zero();
   Vec3 axis = axis_of(intent.orientation);
   if (springs_.grip != 0.0) {
-    // The moment depends on the turn by terms of the second order, which this iteration contracts by |c f| / K_phi.
+    // The moment depends on the handle's rotation only to second order. Each iteration reduces the error by the factor
+    // |c f| / K_phi.
     for (int i = 0; i < kMaxNewtonSteps; ++i) {
       const Vec3 next = -springs_.grip / springs_.hand_rotation * axis.cross(force);
       const double change = (next - yield).norm();
@@ -134,7 +136,7 @@ void ThreeDofDevice::place(const Intent& intent, const Vec3& force) noexcept {
   handle_.position = intent.grip + force / springs_.hand - springs_.grip * axis;
 }
 
-/// Returns by how much the force that the device renders differs from the force that the hand holds.
+/// Returns the rendered force minus the force that the hand balances at this handle pose [N].
 Vec3 ThreeDofDevice::unbalanced(const Intent& intent, const Vec3& force) noexcept {
   place(intent, force);
   ToolState tool;
@@ -148,7 +150,7 @@ Vec3 ThreeDofDevice::unbalanced(const Intent& intent, const Vec3& force) noexcep
   return rendered.spring - force;
 }
 
-/// Returns unbalanced() of a law with a memory, such as a proxy, when the law has come to its own equilibrium.
+/// Returns unbalanced() after a law with a memory, such as a proxy, has converged at this pose.
 Vec3 ThreeDofDevice::settled(const Intent& intent, const Vec3& force) noexcept {
   Vec3 rest = unbalanced(intent, force);
   for (int i = 0; i < kMaxSettling; ++i) {
@@ -163,7 +165,7 @@ Vec3 ThreeDofDevice::settled(const Intent& intent, const Vec3& force) noexcept {
 double ThreeDofDevice::follow(const Intent& intent) noexcept {
   if (starts_) from_ = intent;
   starts_ = false;
-  // Sub-steps that move no point of the tool far keep a law with a memory on its branch.
+  // Short sub-steps, in which no point of the tool moves far, keep a law with a memory near its previous equilibrium.
   const Vec3 turn = turn_between(from_.orientation, intent.orientation);
   const double far = (intent.grip - from_.grip).norm() + (tool_->reach() + springs_.force_point) * turn.norm();
   const double steps = std::clamp(std::ceil(far / step_), 1.0, kMaxSubsteps);
@@ -177,7 +179,7 @@ double ThreeDofDevice::follow(const Intent& intent) noexcept {
   return rest;
 }
 
-/// Finds the equilibrium at one intent.
+/// Finds the equilibrium for one intent. Returns the remaining imbalance between hand and device [N].
 double ThreeDofDevice::balance(const Intent& intent) noexcept {
   Vec3 force = handle_.force;
   Vec3 rest = settled(intent, force);
@@ -187,7 +189,7 @@ double ThreeDofDevice::balance(const Intent& intent) noexcept {
       jacobian.col(k) = (unbalanced(intent, force + kForceStep * Vec3::Unit(k)) - rest) / kForceStep;
     Vec3 newton = -jacobian.partialPivLu().solve(rest);
     if (const double longest = springs_.hand * step_; newton.norm() > longest) newton *= longest / newton.norm();
-    // Shorten the step until it brings hand and device closer together.
+    // Shorten the step until it reduces the imbalance between hand and device.
     double step = 1.0;
     Vec3 next = unbalanced(intent, force + newton);
     while (!(next.norm() < rest.norm()) && step > kSmallestStep) {
@@ -199,7 +201,8 @@ double ThreeDofDevice::balance(const Intent& intent) noexcept {
       rest = next;
       continue;
     }
-    // Go on if the steps have moved a law with a memory, and it comes closer from where it is now.
+    // If the line search fails, the steps may have moved the memory of the law. Continue from there if the imbalance is
+    // smaller.
     next = settled(intent, force);
     if (!(next.norm() < kStillMoves * rest.norm())) break;
     rest = next;

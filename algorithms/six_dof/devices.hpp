@@ -7,8 +7,8 @@
 #include "sim/contact/contact_source.hpp"
 #include "sim/loop/force_algorithm.hpp"
 
-/// Quasi-static devices in the hand of a user: one that renders force and torque, and one that renders a force only.
-/// Both are led along the same path of the hand's intent, from free space.
+/// Quasi-static devices in the hand of a user: one device renders force and torque (6-DOF), the other renders only a
+/// force (3-DOF). Both follow the same path of the hand's intent, which starts in free space.
 namespace hapbench::six_dof {
 
 /// A hand that holds a handle, and the coupling between handle and tool.
@@ -20,44 +20,45 @@ struct HandAndCoupling {
   double force_point = 0.0;        ///< distance from the tip centre back to the force point [m]
   double grip = 0.0;               ///< c, distance from the force point to the grip, towards the tip [m]
 
-  /// K_r K_phi / (K_r + K_phi): the rotational stiffness with which a proxy renders the force of a 6-DOF device, if the
-  /// grip is the force point.
+  /// Returns K_r K_phi / (K_r + K_phi) [N m/rad]. A proxy with this rotational stiffness renders the force of a 6-DOF
+  /// device if the grip is at the force point.
   double matched_rotation() const noexcept;
 };
 
-/// Where the hand wants the handle.
+/// Pose to which the hand pulls the handle.
 struct Intent {
   Vec3 grip = Vec3::Zero();                                         ///< q* [m]
   Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();  ///< phi*, from the tool frame to the world frame
 };
 
-/// Pose of a handle, and what the device renders there.
+/// Pose of a handle, and the force and torque that the device renders at this pose.
 struct Handle {
   Vec3 position = Vec3::Zero();  ///< p, the force point [m]
   Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();
-  Vec3 force = Vec3::Zero();   ///< on the handle [N]
-  Vec3 torque = Vec3::Zero();  ///< about the force point [N m]
+  Vec3 force = Vec3::Zero();   ///< force on the handle [N]
+  Vec3 torque = Vec3::Zero();  ///< torque on the handle about the force point [N m]
 };
 
-/// A tool that sub-steps follow: when a step of the intent moves the tool by more than this fraction of its half
-/// width, the step is bisected, kBisections times at most. A sub-step of 1/64 that still moves the tool so far is a
-/// jump.
+/// Largest motion of a point of the tool in one sub-step, relative to the tool's half width. If a step of the intent
+/// moves the tool farther, the step is bisected, at most kBisections times. If a sub-step of 1/64 of the step still
+/// moves the tool farther, the motion counts as a jump.
 inline constexpr double kJump = 0.1;
 inline constexpr int kBisections = 6;
 
-/// The reference: tool, coupling and hand in equilibrium, with force and torque. The equilibrium is the local minimum
-/// of the energy that continuation of the intent reaches, and not the global one, which in a hole may lie outside of
-/// it.
+/// The reference: tool, coupling and hand in equilibrium, with force and torque. When the intent changes continuously,
+/// the equilibrium is the local minimum of the energy that follows continuously. It need not be the global minimum,
+/// which for a tool in a hole may lie outside of the hole.
 class SixDofDevice {
  public:
   /// Shell and tool must outlive the device.
   SixDofDevice(const PointShell& shell, const ToolShape& tool, const HandAndCoupling& springs, Skips skips);
 
   void reset() noexcept;
-  /// Follows the intent from that of the call before; the first call starts in free space. Allocates nothing.
+  /// Moves the intent from its previous value to `intent`, and the tool to the equilibrium. The first call starts in
+  /// free space. Allocates nothing.
   struct Step {
     bool solved = true;     ///< the pose is an equilibrium; false: no room for the tool, or no convergence
-    bool jumped = false;    ///< the pose is no continuation of the one before
+    bool jumped = false;    ///< true if the pose does not continuously follow from the previous pose
     double residual = 0.0;  ///< largest residual of the step's equilibria [N]; see ToolEquilibrium::Outcome
   };
   Step follow(const Intent& intent) noexcept;
@@ -74,28 +75,28 @@ class SixDofDevice {
   ToolEquilibrium equilibrium_;
   double jump_;  ///< [m]
   bool starts_ = true;
-  bool was_solved_ = true;  ///< false: the step before was not solved, so that this step is not bisected
+  bool was_solved_ = true;  ///< false if the previous step was not solved; the next step is then not bisected
   Intent intent_;
   CoupledPose tool_;
   Handle handle_;
 };
 
-/// Largest force [N] by which hand and device may differ in an equilibrium of a ThreeDofDevice. The proxy that
-/// translates is exact to 9 nm, which are 2e-4 N at 20 000 N/m.
+/// Largest imbalance between hand and device [N] that counts as an equilibrium of a ThreeDofDevice. The position of a
+/// translating proxy has an error of 9 nm, which is 2e-4 N at 20 000 N/m.
 inline constexpr double kBalanced = 1e-3;
 
-/// A device that renders the force of a law, and no torque: the hand yields to the force and to its moment about the
-/// grip, K_phi Log(phi*^T phi) = -c e x f.
+/// A device that renders the force of a law and no torque. The hand yields to the force f and to its moment about the
+/// grip: K_phi Log(phi*^T phi) = -c e x f, with the symbols of PoseSprings.
 class ThreeDofDevice {
  public:
-  /// Shell and tool must outlive the device. `config`: the law, with its own stiffness.
+  /// `config`: the law and its stiffness. `dt`: time step [s]. Shell and tool must outlive the device.
   ThreeDofDevice(const PointShell& shell, const ToolShape& tool, const HandAndCoupling& springs,
                  const RenderingConfig& config, double dt);
 
   void reset() noexcept;
-  /// Finds the equilibrium near that of the call before, by Newton's method with a line search. Returns the force
-  /// [N] by which hand and device differ. Above kBalanced the law has no equilibrium nearby, as where its force jumps
-  /// past the hand's. Allocates nothing.
+  /// Finds the equilibrium near the equilibrium of the previous call, by Newton's method with a line search. Returns
+  /// the remaining imbalance between hand and device [N]. If it exceeds kBalanced, the law has no equilibrium nearby;
+  /// this happens if the force of the law jumps. Allocates nothing.
   double follow(const Intent& intent) noexcept;
   const Handle& handle() const noexcept { return handle_; }
 

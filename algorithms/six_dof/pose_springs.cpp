@@ -13,8 +13,9 @@ Mat3 symmetric(const Mat3& m) noexcept {
   return 0.5 * (m + m.transpose());
 }
 
-/// Second derivative of K/2 |w|^2 by the handle's turn, with w = x + c e - q*. The term of the second order of e is
-/// left out if it would make the matrix indefinite, as it may under a large force towards the grip.
+/// Returns the second derivative of K/2 |w|^2 with respect to the handle's rotation, with w = x + c e - q*. Omits the
+/// term with the second derivative of e if this term would make the matrix indefinite, which can happen with a large
+/// force towards the grip.
 Mat3 grip_hessian(const PoseSprings& springs, const Vec3& arm, const Vec3& force, const Mat3& rest) noexcept {
   const Mat3 cross = cross_matrix(arm);
   const Mat3 first = springs.stiffness * cross.transpose() * cross;
@@ -40,7 +41,7 @@ EnergyModel energy_model(const PoseSprings& springs, const CoupledPose& pose) no
   const Vec3 twist = turn_between(pose.handle, pose.orientation);
   const Mat3 derivative = rotation_vector_derivative(twist);
   const Vec3 force = spring_force(springs, pose);
-  // Tool alone.
+  // Derivatives with respect to the tool's pose.
   EnergyModel model;
   model.tool_gradient << force, K_r * twist;
   model.gradient = model.tool_gradient;
@@ -51,15 +52,15 @@ EnergyModel energy_model(const PoseSprings& springs, const CoupledPose& pose) no
   model.handle_turn.setZero();
   model.handle_follows.setZero();
   if (!springs.handle_turns()) return model;
-  // The handle's turn, and how it acts on the tool.
+  // Derivatives with respect to the handle's rotation, and mixed derivatives.
   const Vec3 yield = turn_between(springs.target, pose.handle);
   const Vec3 arm = springs.grip * pose.handle_axis();
   model.handle_gradient = springs.hand_rotation * yield - K_r * twist + arm.cross(force);
   const Mat3 rest = K_r * symmetric(derivative) + springs.hand_rotation * symmetric(rotation_vector_derivative(yield));
   const Mat3 inverse = grip_hessian(springs, arm, force, rest).inverse();
-  Eigen::Matrix<double, 6, 3> mixed;  // derivative of the tool's gradient by the handle's turn
+  Eigen::Matrix<double, 6, 3> mixed;  // derivative of the tool's gradient with respect to the handle's rotation
   mixed << -K * cross_matrix(arm), -K_r * derivative.transpose();
-  // Eliminate the handle's turn.
+  // Eliminate the handle's rotation.
   model.handle_turn = -inverse * model.handle_gradient;
   model.handle_follows = -inverse * mixed.transpose();
   model.gradient += mixed * model.handle_turn;

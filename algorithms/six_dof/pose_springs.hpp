@@ -4,20 +4,20 @@
 
 #include "sim/core/types.hpp"
 
-/// Springs that hold the pose of a tool: the coupling of a haptic device, in series with the hand.
+/// Springs that hold the pose of a tool: the coupling of a haptic device in series with the hand.
 namespace hapbench::six_dof {
 
 using Vec6 = Eigen::Matrix<double, 6, 1>;
 using Mat6 = Eigen::Matrix<double, 6, 6>;
 
-/// Springs between the pose (x, theta) of the tool and the intent (q*, phi*) of a hand,
+/// Springs between the pose (x, theta) of the tool and the intent (q*, phi*) of a hand. Their energy is
 ///
 ///   E = K/2 |x + c e - q*|^2 + K_r/2 |Log(phi^T theta)|^2 + K_phi/2 |Log(phi*^T phi)|^2.
 ///
-/// x [m] is the force point of the tool, where the device measures and applies its force; theta is the tool's rotation.
-/// phi is the rotation of the handle and e its axis, out of the tip. The grip lies at q = p + c e, where p is the
-/// handle's force point. The stiffness K is that of coupling and hand in series, K_t K_h / (K_t + K_h), because p is
-/// eliminated exactly. With an infinite K_phi the handle keeps phi = phi*.
+/// x [m] is the force point of the tool, where the device measures and applies its force, and theta is the rotation of
+/// the tool. phi is the rotation of the handle, and e its axis, which points out of the tip. The grip is at p + c e,
+/// where p is the handle's force point; the hand pulls the grip to q*. K = K_t K_h / (K_t + K_h) is the stiffness of
+/// coupling (K_t) and hand (K_h) in series, because p is eliminated exactly. If K_phi is infinite, phi = phi*.
 struct PoseSprings {
   double stiffness = 0.0;                                      ///< K [N/m]
   double coupling_rotation = 0.0;                              ///< K_r [N m/rad]
@@ -42,8 +42,8 @@ struct CoupledPose {
 /// Returns the pose in which the springs are relaxed.
 CoupledPose relaxed(const PoseSprings& springs) noexcept;
 
-/// The energy near a pose, as a function of the move z = (dx, dtheta) of the tool [m, rad], with the handle's turn
-/// eliminated: it turns to where the quadratic model is smallest.
+/// The energy near a pose as a function of the motion z = (dx, dtheta) of the tool [m, rad]. The handle's rotation is
+/// eliminated: it minimises the quadratic model.
 struct EnergyModel {
   Vec6 tool_gradient;                          ///< derivative by z without a turn of the handle [N, N m]
   Vec6 gradient;                               ///< derivative by z with the turn [N, N m]
@@ -54,10 +54,11 @@ struct EnergyModel {
 };
 EnergyModel energy_model(const PoseSprings& springs, const CoupledPose& pose) noexcept;
 
-/// Moves the tool by z = (dx, dtheta) and turns the handle as the model says.
+/// Moves the tool by z = (dx, dtheta) and rotates the handle by the rotation that minimises the model.
 void move(CoupledPose& pose, const EnergyModel& model, const Vec6& z) noexcept;
 
-/// Force K (x + c e - q*) on the handle [N] and moment K_r Log(phi^T theta) [N m] about the force point.
+/// Return the force K (x + c e - q*) on the handle [N], and the moment K_r Log(phi^T theta) about the force point [N
+/// m].
 Vec3 spring_force(const PoseSprings& springs, const CoupledPose& pose) noexcept;
 Vec3 spring_torque(const PoseSprings& springs, const CoupledPose& pose) noexcept;
 

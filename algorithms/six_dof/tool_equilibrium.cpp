@@ -14,24 +14,25 @@
 namespace hapbench::six_dof {
 namespace {
 
-/// Factor on the margin of the search, above the rounding errors of margin and move.
+/// Factor on the search margin that covers the rounding errors of margin and motion.
 constexpr double kQueryMargin = 1.0 + 1e-6;
-/// Relative step of the differences that give the second derivatives of the constraints. Their error, of the order of
-/// the square of the step, changes the speed of the convergence and not the solution.
+/// Relative step of the difference quotients for the second derivatives of the constraints. Their error, of second
+/// order in the step, affects the speed of convergence but not the solution.
 constexpr double kDifference = 1e-4;
-/// Tolerances of a quadratic program relative to its largest length (1e-4 m). The first, 1e-17 m, is ten times the
-/// rounding of a depth. Constraints of points on one line of the tool depend on each other but for rounding, and may
-/// contradict each other within the first tolerance. The second, 1e-15 m, is 2e-11 N at 20 000 N/m.
+/// Tolerances of a quadratic program, relative to its largest length (1e-4 m). The first corresponds to 1e-17 m, ten
+/// times the rounding error of a depth. Constraints of points on one line of the tool are linearly dependent up to
+/// rounding, and may contradict each other within the first tolerance. The second tolerance corresponds to 1e-15 m, or
+/// 2e-11 N at 20 000 N/m.
 constexpr double kProgramTolerances[] = {1e-13, 1e-11};
-/// First move off a saddle, in margins. Moves after a return to the saddle are longer.
+/// Length of the first move off a saddle, in margins. Later moves are longer.
 constexpr double kNudge = 0.02;
-/// Shortest move off a saddle relative to the first, where another point is as near as this: 2e-12 m for a drill of 1
-/// mm.
+/// Smallest move off a saddle relative to the first move, used if another point is close: 2e-12 m for a drill of 1 mm.
 constexpr double kShortestNudge = 1e-6;
-/// Smallest stiffness of a direction in a quadratic program, in units of the springs' stiffness along it.
+/// Smallest stiffness in any direction of a quadratic program, relative to the stiffness of the springs in this
+/// direction.
 constexpr double kFlat = 1e-3;
-/// Passes after which second derivatives of the constraints are used in every second pass only: active sets that
-/// alternate under one model may converge under the other.
+/// Number of passes after which only every second pass uses second derivatives of the constraints. If the active set
+/// alternates between passes with one model, the passes may converge with the other model.
 constexpr int kManyPasses = 40;
 
 }  // namespace
@@ -110,8 +111,8 @@ void ToolEquilibrium::find_constraints(const CoupledPose& pose) noexcept {
     if (contacts_.depth[i] > 0.0) contacts_.depth[i] *= recovery_ / deepest_;
 }
 
-/// Returns sum lambda_i times the second derivative of -g_i by the move of the tool, over the points that held the
-/// tool in the last pass.
+/// Returns the sum of lambda_i times the second derivative of -g_i with respect to the tool's motion, over the points
+/// that held the tool in the last pass.
 Mat6 ToolEquilibrium::curvature(const CoupledPose& pose) noexcept {
   Mat6 sum = Mat6::Zero();
   if (holding_count_ == 0) return sum;
@@ -132,13 +133,13 @@ Mat6 ToolEquilibrium::curvature(const CoupledPose& pose) noexcept {
   return 0.5 * (sum + sum.transpose());
 }
 
-/// Solves the quadratic program of a pass with these second derivatives. Writes the move z and the points that hold
-/// the tool. Returns false if the matrix is not positive definite; nothing is written then.
+/// Solves the quadratic program of a pass with the second derivatives `hessian`. Writes the motion z and the points
+/// that hold the tool. If the matrix is not positive definite, returns false and writes nothing.
 bool ToolEquilibrium::solve_program(const PoseSprings& springs, const EnergyModel& model, const Mat6& hessian,
                                     Vec6& z) noexcept {
   const Eigen::LLT<Mat6> factor(hessian / springs.stiffness);
   if (factor.info() != Eigen::Success) return false;
-  // In y = L^T z the model is K/2 |y - t|^2. The rows are scaled to length 1.
+  // With y = L^T z, the model is K/2 |y - t|^2. Scale the rows to length 1.
   const auto L = factor.matrixL();
   const Vec6 wanted = -L.solve(model.gradient / springs.stiffness);
   double largest = wanted.cwiseAbs().maxCoeff();
@@ -191,8 +192,8 @@ double ToolEquilibrium::residual_of(const PoseSprings& springs, const EnergyMode
                    model.handle_gradient.norm() / reach_, complementarity, springs.stiffness * deepest_});
 }
 
-/// Returns the second derivatives with which a pass models energy and constraints, and whether the pose is a minimum as
-/// far as they show it for the points that hold the tool.
+/// Returns the second derivatives with which a pass models energy and constraints. `is_minimum` is true if these
+/// derivatives show no descent along the motions that the holding points allow.
 ToolEquilibrium::SecondOrder ToolEquilibrium::second_order(const PoseSprings& springs, const EnergyModel& model,
                                                            const CoupledPose& pose) noexcept {
   SecondOrder second{model.hessian, Vec6::Zero(), true};
@@ -200,10 +201,10 @@ ToolEquilibrium::SecondOrder ToolEquilibrium::second_order(const PoseSprings& sp
   const auto is_positive = [](const Mat6& m) { return Eigen::LLT<Mat6>(m).info() == Eigen::Success; };
   second.hessian += curvature(pose);
   if (is_positive(second.hessian)) return second;
-  // In y = L^T z, where the springs alone have the second derivatives K, keep the second derivatives along the moves
-  // that keep the holding points in touch, and take those of the springs across. What is still not positive is a
-  // descent of the energy along the constraints. Points may hold the tool by normals that differ by 1e-3 rad, as in a
-  // shallow notch, so that no finite stiffness across would tell.
+  // With y = L^T z, the second derivatives of the springs are K times the identity. Along motions that keep the holding
+  // points in contact, use the second derivatives of energy and constraints; in all other directions, use K. A negative
+  // eigenvalue of the result is then a descent of the energy along the constraints. A finite stiffness in the other
+  // directions could not decide this: in a shallow notch, the normals of the holding points differ by only 1e-3 rad.
   const double K = springs.stiffness;
   const Mat6 L = Eigen::LLT<Mat6>(model.hessian / K).matrixL();
   const Mat6 inverse = L.inverse();
@@ -216,7 +217,7 @@ ToolEquilibrium::SecondOrder ToolEquilibrium::second_order(const PoseSprings& sp
   const Mat6 across = blocked.projector(), along = Mat6::Identity() - across;
   const Mat6 scaled = along * (inverse * second.hessian * inverse.transpose()) * along + K * across;
   const Eigen::SelfAdjointEigenSolver<Mat6> axes(scaled);
-  // Make a descent stiff by as much as it descends, so that a pass moves away from a saddle and not towards it.
+  // Replace each negative eigenvalue by its absolute value, so that a pass moves away from a saddle and not towards it.
   const Mat6 back = L * axes.eigenvectors();
   second.hessian = back * axes.eigenvalues().cwiseAbs().cwiseMax(kFlat * K).asDiagonal() * back.transpose();
   second.is_minimum = axes.eigenvalues()[0] > 0.0;
@@ -224,7 +225,8 @@ ToolEquilibrium::SecondOrder ToolEquilibrium::second_order(const PoseSprings& sp
   return second;
 }
 
-/// Returns the fraction of the move z after which a point that does not hold the tool would be inside.
+/// Returns the fraction of the motion z after which a point that does not hold the tool would enter it; infinite if no
+/// point would enter.
 double ToolEquilibrium::room(const Vec6& z) const noexcept {
   double fraction = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
@@ -236,12 +238,13 @@ double ToolEquilibrium::room(const Vec6& z) const noexcept {
   return fraction;
 }
 
-/// Returns the n-th move off a saddle, n >= 0. Both ways descend alike, but other points may be near: the first move
-/// goes the way with more room, the next one the other way, and then twice as far.
+/// Returns the n-th move off a saddle, n >= 0. The energy decreases equally in both directions, but other points may
+/// block one of them. The first move takes the direction with more room, the second the opposite direction. Each
+/// further pair of moves is twice as long.
 Vec6 ToolEquilibrium::nudge(const Vec6& descent, int n) const noexcept {
   const double first = kNudge * margin_;
   Vec6 z = first / displacement(descent) * descent;
-  // Neither the way nor its sign may depend on rounding where both have room.
+  // If both directions have room, the choice of sign must not depend on rounding.
   Eigen::Index largest = 0;
   z.cwiseAbs().maxCoeff(&largest);
   if (z[largest] < 0.0) z = -z;
@@ -265,7 +268,7 @@ ToolEquilibrium::Outcome ToolEquilibrium::solve(const PoseSprings& springs, Coup
     }
     out.feasible = feasible_;
     out.residual = residual_of(springs, model);
-    // A pass that balances all forces is the last, unless the energy descends from there.
+    // A pass that balances all forces is the last pass, unless the pose is a saddle of the energy.
     if (feasible_ && out.residual <= kSolved) {
       const SecondOrder here = second_order(springs, model, pose);
       out.solved = here.is_minimum;
@@ -277,7 +280,7 @@ ToolEquilibrium::Outcome ToolEquilibrium::solve(const PoseSprings& springs, Coup
     if (length > margin_) z *= margin_ / length;
     out.moved += std::min(length, margin_);
     move(pose, model, z);
-    // Leaving points takes many steps, so one pass in each step is enough.
+    // Points leave the tool over many steps, so one pass in each step is enough.
     if (std::isfinite(recovery_) && (!feasible_ || leaving_)) return out;
   }
 }

@@ -14,37 +14,38 @@
 
 namespace hapbench::six_dof {
 
-/// Largest residual [N] of the conditions of optimality at which a pose counts as an equilibrium. Rounding leaves
-/// about 1e-13 N: forces of some newtons, and 20 000 N/m times positions of 10 mm.
+/// Largest residual of the optimality conditions at which a pose counts as an equilibrium [N]. The rounding error is
+/// about 1e-13 N, for forces of some newtons and 20 000 N/m times positions of 10 mm.
 inline constexpr double kSolved = 1e-9;
 
 /// The pose of a tool with the smallest energy of its springs (PoseSprings) among the poses in which no shell point is
-/// inside the tool,
+/// inside the tool:
 ///
 ///   minimise E(x, theta)   subject to   g_i(x, theta) >= 0 for all points,
 ///
-/// with g_i the signed distance [m] of point i to the tool. Finds the local minimum that a descent from a given pose
-/// reaches, by sequential quadratic programs: in each pass, the constraints near the tool are linearised,
+/// with the signed distance g_i [m] of point i to the tool. The search starts at a given pose and descends to a local
+/// minimum by sequential quadratic programs. Each pass linearises the constraints near the tool,
 ///
-///   -g_i + <m_i, dx> + <r_i x m_i, dtheta> <= 0,   m_i: outward normal of the tool at the point nearest to point i,
-///                                                  r_i: from the force point to point i,
+///   -g_i + <m_i, dx> + <r_i x m_i, dtheta> <= 0,
+///   m_i: outward normal of the tool at the point nearest to point i,   r_i: from the force point to point i,
 ///
-/// and the second derivatives of the constraints that hold the tool are added to those of the energy, which makes the
-/// passes converge quadratically. A pass moves no point of the tool by more than a margin. A stationary pose whose
-/// second derivatives show a descent, such as a cylinder balanced on one row of points, is left along this descent. A
-/// search that does not leave it is not solved.
-/// Unlike the proxy that translates, the constraints are those of the points alone: an edge of the tool may sink in
-/// between points, by 2.5 um for a radius of 0.5 mm and points 0.1 mm apart.
+/// and adds the second derivatives of the constraints that hold the tool to the second derivatives of the energy, so
+/// that the passes converge quadratically. A pass moves no point of the tool by more than a margin. If the second
+/// derivatives at a stationary pose show a descent, such as for a cylinder balanced on one row of points, the search
+/// leaves the pose along this descent. If it cannot leave the pose, the search is not solved.
+///
+/// Unlike the translating proxy, the constraints are the points alone, without patches between them. An edge of the
+/// tool may therefore sink in between points, by 2.5 um for a radius of 0.5 mm and points 0.1 mm apart.
 ///
 /// Allocates in the constructor only.
 class ToolEquilibrium {
  public:
-  /// `force_point`: distance [m] from the tip centre back along the axis. Shell and tool must outlive the object.
+  /// `force_point`: distance [m] from the tip centre to the force point, backwards along the axis. Shell and tool must
+  /// outlive the object.
   ToolEquilibrium(const PointShell& shell, const ToolShape& tool, double force_point, Skips skips);
 
-  /// How a search ended. The residual is the largest of the force that the contacts do not balance, the moment that
-  /// they do not balance over the reach of the tool, and K times the violation of a constraint and lambda_i |g_i| over
-  /// the margin, in N.
+  /// Result of a search. `residual` [N] is the largest of these values: the unbalanced force; the unbalanced moment
+  /// divided by the reach of the tool; K times the violation of a constraint; and lambda_i |g_i| divided by the margin.
   struct Outcome {
     bool solved = false;    ///< the residual is at most kSolved, and the second derivatives show a minimum
     bool feasible = false;  ///< the constraints of the last pass do not contradict each other
@@ -52,11 +53,11 @@ class ToolEquilibrium {
     double moved = 0.0;     ///< bound of the displacement of all points of the tool [m]
     int passes = 0;
   };
-  /// Moves `pose` to the equilibrium. Without an outcome `solved`, the pose is that of the last pass.
-  /// `max_passes`: a search that has not converged after them ends.
+  /// Moves `pose` to the equilibrium. If the outcome is not `solved`, `pose` is the pose of the last pass.
+  /// `max_passes`: maximum number of passes.
   Outcome solve(const PoseSprings& springs, CoupledPose& pose, int max_passes) noexcept;
 
-  /// A point that holds the tool, with the force of magnitude `load` [N] along -normal on the tool.
+  /// A point that holds the tool: it exerts a force of magnitude `load` [N] on the tool, along -normal.
   struct Holding {
     std::uint32_t index;
     Vec3 point, surface_normal;
@@ -64,17 +65,18 @@ class ToolEquilibrium {
     double depth, load;  ///< -g_i [m], lambda_i [N]
     Vec6 row;            ///< (m_i, r_i x m_i)
   };
-  /// The points that hold the tool after the last pass, at most six.
+  /// Returns the points that hold the tool after the last pass; at most six.
   std::span<const Holding> holding() const noexcept { return {holding_.data(), holding_count_}; }
-  /// Tip centre, axis and roll of a tool in this pose; the roll is 0 for a solid of revolution.
+  /// Returns tip centre, axis and roll of a tool with this force point [m] and orientation; the roll is 0 for a solid
+  /// of revolution.
   ToolPose tool_pose(const Vec3& position, const Eigen::Quaterniond& orientation) const noexcept;
-  /// Distance [m] that the tool may move in a pass.
+  /// Returns the largest motion of a point of the tool in one pass [m].
   double margin() const noexcept { return margin_; }
   std::size_t capacity() const noexcept { return near_->capacity(); }
-  /// Largest depth of a point inside the tool at the pose of the last pass [m]; 0 without.
+  /// Returns the largest depth of a point inside the tool at the pose of the last pass [m]; 0 if no point is inside.
   double deepest() const noexcept { return deepest_; }
-  /// Depths of points inside the tool are reduced to this value [m], so that the tool leaves them slowly, and a search
-  /// with points inside or without room takes one pass. Infinite by default.
+  /// Sets the depth [m] to which depths of points inside the tool are reduced, so that they leave slowly. A search with
+  /// points inside the tool, or without room for the tool, then takes one pass. Infinite by default.
   void set_recovery(double depth) noexcept { recovery_ = depth; }
   void reset() noexcept;
   const SearchWork& work() const noexcept { return near_->work(); }

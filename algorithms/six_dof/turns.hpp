@@ -6,8 +6,8 @@
 #include "sim/core/math.hpp"
 #include "sim/core/types.hpp"
 
-/// Rotations in space and their rotation vectors [rad], in the world frame. A rotation R that turns on by the rotation
-/// vector w becomes turn_by(w) R.
+/// Rotations in space and their rotation vectors [rad], in the world frame. After a further rotation by the rotation
+/// vector w, a rotation R becomes turn_by(w) R.
 namespace hapbench::six_dof {
 
 /// Returns the matrix [v] with [v] w = v x w.
@@ -28,25 +28,26 @@ inline Eigen::Quaterniond turn_by(const Vec3& w) noexcept {
   return q;
 }
 
-/// Returns the rotation vector of the turn from one rotation to another (Log), with an angle of at most pi.
+/// Returns the rotation vector of the rotation from `from` to `to` (Log), with an angle of at most pi.
 inline Vec3 turn_between(const Eigen::Quaterniond& from, const Eigen::Quaterniond& to) noexcept {
   Eigen::Quaterniond q = to * from.conjugate();
   if (q.w() < 0.0) q.coeffs() = -q.coeffs();
-  const double sine = q.vec().norm();  // of half the angle
+  const double sine = q.vec().norm();  // sine of half the angle
   return sine > 0.0 ? Vec3(q.vec() * (2.0 * math::atan2(sine, q.w()) / sine)) : Vec3::Zero();
 }
 
-/// Returns the rotation after a turn by w, of norm 1.
+/// Returns the rotation after a further rotation by w, as a unit quaternion.
 inline Eigen::Quaterniond turned(const Eigen::Quaterniond& rotation, const Vec3& w) noexcept {
   return (turn_by(w) * rotation).normalized();
 }
 
-/// Returns the derivative of the rotation vector v by a turn w that follows: Log(Exp(w) Exp(v)) = v + D w + O(w^2),
-/// the inverse of the left Jacobian of SO(3). Its transpose is the derivative by a turn that comes first. D v = v.
+/// Returns the derivative D of the rotation vector v with respect to a rotation w that is applied after it: Log(Exp(w)
+/// Exp(v)) = v + D w + O(w^2). D is the inverse of the left Jacobian of SO(3). Its transpose is the derivative with
+/// respect to a rotation that is applied before v. D v = v.
 inline Mat3 rotation_vector_derivative(const Vec3& v) noexcept {
   const double angle = v.norm();
-  // (1 - (angle / 2) cot(angle / 2)) / angle^2 = 1/12 + angle^2 / 720 + O(angle^4); at 1e-2 rad the rest is 1e-13 of
-  // it, and the closed form loses 12 digits of 16.
+  // (1 - (angle / 2) cot(angle / 2)) / angle^2 = 1/12 + angle^2 / 720 + O(angle^4). At 1e-2 rad, the relative error of
+  // the series is 1e-13, while the closed form loses 12 of 16 digits.
   double second = 1.0 / 12.0 + angle * angle / 720.0;
   if (angle > 1e-2) {
     const auto [sine, cosine] = math::sine_cosine(0.5 * angle);

@@ -195,7 +195,7 @@ void PassivityController::reset() noexcept {
 void PassivityController::compute(const ToolState& tool, ContactBuffer& contacts, RenderedForce& out) noexcept {
   algorithm_->compute(tool, contacts, out);
   if (row_ == nullptr || last_row_ == *row_) {
-    // A state within a step is not observed and keeps the scale and the damping of the step.
+    // For a state within a step, do not update the observed energy, and use the scale and the damping of the step.
     if (acts(contacts, out)) render(tool, out);
     return;
   }

@@ -64,7 +64,7 @@ class EnergyTank final : public ForceStage {
 /// a force f would return the energy <f, v> dt. If this is more than the observed energy E, damping must dissipate
 /// the excess <f, v> dt - E: first damping along the force, which relieves the actuators, then damping at right
 /// angles to the force for the remainder. This prioritised dissipation follows the abstract of Porcini and Frisoli;
-/// the formulas are ours (kActuatorLimitedPassivityInfo).
+/// the formulas were derived for this project (kActuatorLimitedPassivityInfo).
 ///
 /// Each of the two dampings is the smallest that dissipates the remaining excess. It is at most `max_damping`, beyond
 /// which a step would reverse the velocity, and at most the damping that keeps the force within the actuators' limits

@@ -65,7 +65,7 @@ class Tremor {
 /// A hand that pushes with a scripted force, independent of the handle's motion.
 class ForceHand final : public Hand {
  public:
-  /// `force`: components x, y, z in the world frame [N] over time. Empty profiles: nobody holds the handle.
+  /// `force`: components x, y, z in the world frame [N] over time. Empty profiles: no hand holds the handle.
   explicit ForceHand(std::array<Profile, 3> force = {}) : force_(std::move(force)) {}
 
   Vec3 force(double t, const HandView&) noexcept override { return {force_[0](t), force_[1](t), force_[2](t)}; }

@@ -11,8 +11,8 @@
 namespace hapbench {
 
 /// Parameters of a simulated subject of the man-machine experiments (thesis appendix D). The thesis did not measure
-/// its subjects, so all values are ours. The defaults are within the ranges that the motor-control literature
-/// reports for a hand with a pen.
+/// its subjects, so all values were chosen for this project. The defaults are within the ranges that the motor-control
+/// literature reports for a hand with a pen.
 struct Subject {
   double reaction_delay = 0.2;     ///< time from a change on the display to the hand's response [s]
   double bandwidth = 0.6;          ///< bandwidth f_v of following the target on the display [Hz]

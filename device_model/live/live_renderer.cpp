@@ -302,7 +302,7 @@ void LiveRenderer::report_set_point(const Measurement& now, const HapbenchInput&
   if (output.limited != 0 && output.status == HAPBENCH_ON) output.status = HAPBENCH_CLAMPED;
 }
 
-/// Begins anew: the renderer waits for a small force. Keeps mount and clutch.
+/// Restarts: the renderer waits for a small force. Keeps mount and clutch.
 void LiveRenderer::restart() noexcept {
   loop_.reset();
   gain_ = 0.0;

@@ -218,14 +218,13 @@ void ForceFidelityObserver::report(Section& s) const {
       "the coefficient that minimises the rendered "
       "tangential error, sweep rendering.dry_friction.mu",
       drag_ / loads_);
-  limited(
-      s.metric(
-          "force_artefact_share", "1",
-          "root mean square of the component of f (fx_N, fy_N, fz_N of trajectory.csv) across f_m (all of f where f_m is "
-          "zero), divided by the root mean "
-          "square of ||f||: fraction of the rendered force that points in a wrong direction",
-          rms(across_) / rms(rendered_), Better::less),
-      1.0 / rms(rendered_));
+  limited(s.metric(
+              "force_artefact_share", "1",
+              "root mean square of the component of f (fx_N, fy_N, fz_N of trajectory.csv) across f_m (all of f where "
+              "f_m is zero), divided by the root mean square of ||f||: fraction of the rendered force that points in a "
+              "wrong direction",
+              rms(across_) / rms(rendered_), Better::less),
+          1.0 / rms(rendered_));
   s.metric("direction_rows", "1", "number of steps in which ||f|| and ||f_m|| are both above 0.1 N", direction_rows_);
   limited(s.metric("force_direction_error_rad", "rad",
                    "mean angle between f and f_m over the steps in which both are above 0.1 N; no value without such a "

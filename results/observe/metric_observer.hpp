@@ -56,7 +56,7 @@ class MetricObserver : public Observer {
  public:
   /// Called before the first step of each trial. Differences between the last step of a trial and the first step of
   /// the next must not count. An observer whose numbers are meaningful over several trials continues its sums; any
-  /// other observer starts anew.
+  /// other observer resets them.
   virtual void begin(const TrialParts& trial) = 0;
   /// Reports all metrics. Called after the run, or without any run for documentation.
   virtual void report(Section& section) const = 0;

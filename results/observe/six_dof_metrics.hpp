@@ -8,28 +8,28 @@
 
 namespace hapbench {
 
-/// One step of the comparison of a device that renders a force (3-DOF) with a device that renders force and torque
-/// (6-DOF, the reference), both in equilibrium with the same hand.
+/// One step of the comparison of a 3-DOF device, which renders a force, with a 6-DOF device, which renders force and
+/// torque and is the reference. Both are in equilibrium with the same hand.
 struct SixDofRow {
-  /// Equilibrium of the reference.
+  /// Equilibrium of the 6-DOF device.
   struct Reference {
-    Vec3 force = Vec3::Zero();        ///< on the handle [N]
-    Vec3 torque = Vec3::Zero();       ///< on the handle about the force point [N m]
+    Vec3 force = Vec3::Zero();        ///< force on the handle [N]
+    Vec3 torque = Vec3::Zero();       ///< torque on the handle about the force point [N m]
     Vec3 position = Vec3::Zero();     ///< force point of the handle [m]
     Vec3 tip = Vec3::Zero();          ///< tip centre of the tool [m]
     Vec3 axis = Vec3::Zero();         ///< axis of the tool
-    Vec3 handle_turn = Vec3::Zero();  ///< turn from the intent to the handle [rad]
+    Vec3 handle_turn = Vec3::Zero();  ///< rotation vector from the intent to the handle [rad]
   };
-  /// Equilibrium of the device that renders the force of a law.
+  /// Equilibrium of the 3-DOF device, which renders the force of a law.
   struct Law {
-    Vec3 force = Vec3::Zero();     ///< on the handle [N]
+    Vec3 force = Vec3::Zero();     ///< force on the handle [N]
     Vec3 position = Vec3::Zero();  ///< force point of the handle [m]
-    double turn = 0.0;             ///< angle between this handle and that of the reference [rad]
+    double turn = 0.0;             ///< angle between this handle and the handle of the reference [rad]
   };
   std::optional<Reference> reference;  ///< empty: no equilibrium found
-  std::optional<Law> law;              ///< empty: no equilibrium found; `turn` is valid with a reference only
-  double residual = 0.0;               ///< of the reference [N]
-  bool jumped = false;                 ///< of the reference
+  std::optional<Law> law;              ///< empty: no equilibrium found; `turn` is only valid if there is a reference
+  double residual = 0.0;               ///< largest residual of the reference [N]; see ToolEquilibrium::Outcome
+  bool jumped = false;                 ///< true if the reference jumped to another equilibrium
 };
 
 /// Metrics of the comparison (section six_dof of the summary).
@@ -39,7 +39,7 @@ class SixDofMetrics {
   void report(Section& section) const;
 
  private:
-  /// Sum of squares over the steps with a value, and largest value.
+  /// Root mean square and maximum of a value over the steps in which it exists.
   struct Size {
     double squares = 0.0, largest = 0.0;
     std::uint64_t count = 0;
@@ -48,7 +48,7 @@ class SixDofMetrics {
     double rms() const;
     std::optional<double> max() const;
   };
-  /// Work of a force on a point, by the trapezoidal rule between consecutive equilibria.
+  /// Work of a force on a point by the trapezoidal rule over consecutive equilibria [J].
   struct Work {
     double sum = 0.0;
     std::optional<std::pair<Vec3, Vec3>> last;  ///< force [N] and position [m]

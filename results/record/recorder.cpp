@@ -268,8 +268,8 @@ const ResultTable kForceReferenceTable = {
      {"force_error_z_N", "N", "z of f - f_m"}}};
 const ResultTable kSixDofTable = {
     "six_dof.csv",
-    "with record.six_dof: a 6-DOF device and the law on a 3-DOF device, one line per recorded time step; cells are empty "
-    "where there is no equilibrium",
+    "with record.six_dof: a 6-DOF device and the law on a 3-DOF device, one line per recorded time step; cells are "
+    "empty where there is no equilibrium",
     {kStepColumn,
      kTimeColumn,
      {"reference_x_N", "N", "x of the force of the 6-DOF device on its handle"},

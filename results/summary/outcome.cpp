@@ -8,8 +8,8 @@ namespace hapbench {
 namespace {
 
 constexpr const char* kLeftForGood =
-    "in the first step in which a freely moving tool is that far away and moves on, if the hand is none or pushes with a "
-    "constant force that does not point back; any other hand may bring the tool back";
+    "in the first step in which a freely moving tool is that far away and moves on, if the hand is none or pushes "
+    "with a constant force that does not point back; any other hand may bring the tool back";
 
 constexpr OutcomeInfo kOutcomes[] = {
     {"completes", "all steps were computed, or the hand finished its task"},

@@ -41,7 +41,7 @@ class Cases {
   std::size_t place(std::size_t i, std::size_t axis) const {
     return sampling_ ? axes_[axis].index_at(unit_[axis][i]) : i / strides_[axis] % axes_[axis].size();
   }
-  /// Returns the value of each axis in case i. Computed anew at each call.
+  /// Returns the value of each axis in case i. Computed again at each call.
   std::vector<std::string> values(std::size_t i) const;
   /// Returns the values of case i as "path=value", followed by the overrides of Axis::along.
   std::vector<std::string> changes(std::size_t i) const;

@@ -14,7 +14,7 @@ namespace hapbench {
 /// Cases to run, checked before the first run.
 struct SweepPlan {
   Cases cases;
-  RunLength length = RunLength::full;      ///< of all runs
+  RunLength length = RunLength::full;      ///< whether runs end at a failure
   std::vector<std::string> warnings = {};  ///< warnings of the checked runs, without duplicates
   std::vector<std::string> metrics = {};   ///< metrics that at least one checked run has
   std::vector<std::string> bounded = {};   ///< metrics that have an error bound (tolerance)
@@ -38,9 +38,9 @@ std::vector<std::size_t> runs_to_check(const Cases& cases);
 /// InputError of the run with the lowest number, and Stopped.
 SweepPlan plan_sweep(Cases cases, const JobOptions& jobs, RunLength length = RunLength::full);
 
-/// Returns true if the field "expect" makes demands on a run of a batch: the scenario has the field and no override
-/// changes the run, or an override sets the field. The overrides of all other runs make their outcome a result of the
-/// batch (load_scenario()).
+/// Returns true if the field "expect" applies to a run of a batch: the scenario has the field and no override changes
+/// the run, or an override sets the field. In all other runs, any outcome is a result of the batch and not an error
+/// (load_scenario()).
 bool states_expectations(const Cases& cases, std::size_t run);
 
 }  // namespace hapbench

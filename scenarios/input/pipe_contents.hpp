@@ -12,7 +12,7 @@ namespace hapbench {
 /// bytes only once, but a command may need them several times: to check, to run and to hash. Thread-safe.
 class PipeContents {
  public:
-  /// Returns the contents of a pipe that was read before and that nobody has written to since. Returns nothing for
+  /// Returns the contents of a pipe that was read before, if it has not been written to since. Returns nothing for
   /// every other file.
   std::optional<std::string> find(const std::filesystem::path& file) const;
   /// Keeps the contents if the file is a pipe. Called after it was read to its end.

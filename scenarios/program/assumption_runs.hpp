@@ -14,7 +14,8 @@
 namespace hapbench {
 
 /// Judges the claims under the assumption sets of a file, and reports for each set the claims that its assumptions can
-/// change: verdict, number, the same on record, and what moved. Uses `scratch` for results of runs and removes it.
+/// change: verdict and number, the stored verdict and number, and the change. Uses `scratch` for results of runs and
+/// removes it.
 void report_assumption_sets(const std::vector<Claim>& claims, const std::filesystem::path& file,
                             const std::filesystem::path& scratch, const CommonOptions& options, Report& report,
                             ProgramContext& context);

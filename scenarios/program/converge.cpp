@@ -407,9 +407,9 @@ void add_converge(CommandLine& line) {
       "Run time against error: --over compares each setting with the converged solution, which another integrator "
       "computes with a step at least 16 times smaller. Errors are rms differences of the tip's position and of the "
       "force over the run. Each law has a solution of its own. Files: convergence.csv (errors) and "
-      "convergence_timing.csv. In a scene with a reference_force (hapbench new fidelity), it compares the laws with this "
-      "force instead: direction and size of the error, and median and 99.9th percentile of the time of a step. Files: "
-      "convergence_model.csv and convergence_model_timing.csv.\n\n"
+      "convergence_timing.csv. In a scene with a reference_force (hapbench new fidelity), it compares the laws with "
+      "this force instead: direction and size of the error, and median and 99.9th percentile of the time of a step. "
+      "Files: convergence_model.csv and convergence_model_timing.csv.\n\n"
       "Time: with the default levels of the time step, about 31 times one run.");
 }
 

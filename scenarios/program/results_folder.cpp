@@ -34,7 +34,7 @@ FolderLock locked_results(ProgramContext& context, const std::filesystem::path& 
 }
 
 /// Throws IoError if `directory` is thesis/SCENARIO in a folder to which `reproduce` writes. Other folders beside
-/// thesis, such as those of studies, are not its own.
+/// thesis, such as the folders of studies, are allowed.
 static void require_not_of_reproduce(const std::filesystem::path& directory) {
   std::error_code ignored;
   const std::filesystem::path parent = std::filesystem::weakly_canonical(directory, ignored).parent_path();
@@ -43,7 +43,7 @@ static void require_not_of_reproduce(const std::filesystem::path& directory) {
 }
 
 FolderLock locked_run(ProgramContext& context, const std::filesystem::path& directory) {
-  constexpr int kCompareLevels = 3;  // SCENARIO/ALGORITHM/seed_K
+  constexpr int kCompareLevels = 3;  // levels of folders: SCENARIO/ALGORITHM/seed_K
   FolderLock lock = locked_results(context, directory, kRunFiles, "run");
   require_unlocked_parents(directory, kCompareFiles, kCompareLevels);
   require_not_of_reproduce(directory);

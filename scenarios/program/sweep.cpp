@@ -262,7 +262,7 @@ void print_sweep(const SweepCommand& command, const SweepTable& table, ProgramCo
 /// Cost of a run of a sweep.
 struct TimedRun {
   std::size_t index;
-  std::vector<std::string> values;  ///< of the varied fields
+  std::vector<std::string> values;  ///< values of the varied fields
   RunCost cost;
 };
 
@@ -358,7 +358,7 @@ int sweep(const SweepCommand& command, ProgramContext& context) {
   const SweepReport report = run_sweep(plan, options);
   const SweepTable table = read_sweep(options.table(), command.where);
   std::error_code ignored_error;
-  fs::remove(options.directory / kTimesFile, ignored_error);  // of an earlier sweep
+  fs::remove(options.directory / kTimesFile, ignored_error);  // removes the times of an earlier sweep
   const bool is_timed = command.time && !report.failed;
   const std::vector<RunCost> costs =
       is_timed ? timed_runs(plan.cases, options.directory, job_options(command, "timing", context))
@@ -443,8 +443,9 @@ void add_sweep(CommandLine& line) {
       "another --out.\n\n"
       "Failed runs: a run that goes through the surface, diverges or leaves for good ends at this moment "
       "(hapbench describe \"early end\"). Such runs are counted; the exit status is still 0.\n\n"
-      "Exit status: 0 success, 1 a run could not be computed, 2 bad input, 3 a run did not meet the field expect of its "
-      "scenario (an override that changes the run lifts it), 130 stopped by Ctrl-C; running runs are finished first.");
+      "Exit status: 0 success, 1 a run could not be computed, 2 bad input, 3 a run did not meet the field expect of "
+      "its scenario (an override that changes the run lifts it), 130 stopped by Ctrl-C; running runs are finished "
+      "first.");
 }
 
 }  // namespace hapbench

@@ -165,9 +165,9 @@ struct ModelError {
   std::string problem;  ///< values of the fields of --over
   std::string outcome;
   std::optional<double> direction = {}, force = {}, relative = {}, displacement = {};  ///< [rad], [N], [1], [m]
-  double reference_error = 0.0;                                                        ///< of the reference force [N]
+  double reference_error = 0.0;   ///< error of the reference force [N]
   bool shares_reference = false;  ///< renders by the constraints of the reference force
-  StepLatency steps = {};         ///< of the fastest repetition
+  StepLatency steps = {};         ///< times of the steps in the fastest repetition
 };
 
 double seconds(std::uint64_t nanoseconds) {

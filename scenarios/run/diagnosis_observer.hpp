@@ -27,7 +27,7 @@ struct RunObservations {
   double longest_step = 0.0;         ///< longest displacement of the tip in a step, as defined at
                                      ///< OutcomeObserver::longest_step() [m]
   Vec3 last_force = Vec3::Zero();    ///< rendered force in the last step [N]
-  std::optional<ContactState> last_contact;  ///< at the last step in contact of any trial
+  std::optional<ContactState> last_contact;  ///< state at the last step in contact, over all trials
   struct Quarter {
     std::uint64_t rows = 0;
     bool always_in_contact = true;                     ///< true if every step of the quarter is in contact

@@ -212,7 +212,8 @@ std::optional<ContactAtRest> contact_at_rest(const Scenario& scenario, const Nam
   RestingTool tool(linear, files, shell, near);
   if (!tool.touches()) return std::nullopt;
   const bool is_equilibrium = tool.find_equilibrium();
-  // The search ends without an equilibrium where the force jumps. The derivatives there are those of the jump.
+  // If the force jumps, the search ends without an equilibrium, and the derivatives at its end would belong to the
+  // jump. Use the derivatives at the pose of the run instead.
   LinearContact contact = is_equilibrium ? tool.linearised() : RestingTool(linear, files, shell, near).linearised();
   if (!contact.rendered.stiffness.allFinite() || !contact.rendered.damping.allFinite()) return std::nullopt;
   // A hand that is attached to the handle moves with it between the samples: it is part of the device.
@@ -239,12 +240,13 @@ LinearContact scaled(LinearContact contact, const RenderingConfig& from, const R
 
 std::optional<double> linear_stiffness_limit(const CheckedScenario& scenario,
                                              const std::shared_ptr<const PointShell>& shell, const ContactState& near) {
-  constexpr double kStep = 1.1, kMax = 2.0, kMin = 1e-9;  // of the search, in units of the scenario's K
+  constexpr double kStep = 1.1, kMax = 2.0,
+                   kMin = 1e-9;  // factor of a search step, and ends of the search relative to the scenario's K
   const double K = scenario.scenario().rendering.stiffness;
   if (!(K > 0.0) || !has_linear_loop(scenario.scenario())) return std::nullopt;
   const auto at_K = contact_at_rest(scenario.scenario(), scenario.files(), shell, near);
   if (!at_K) return std::nullopt;
-  LinearContact known = at_K->contact;  // the last contact that was found, with stiffness and damping of `rendering`
+  LinearContact known = at_K->contact;  // latest contact found, with stiffness and damping of `rendering`
   RenderingConfig rendering = scenario.scenario().rendering;
   bool has_equilibrium = at_K->is_equilibrium;
   Scenario at = scenario.scenario();

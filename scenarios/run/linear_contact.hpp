@@ -13,7 +13,7 @@ namespace hapbench {
 
 /// A state of a run in contact, from which linear_contact() searches the equilibrium.
 struct ContactState {
-  ToolPose pose;      ///< of the tool; true position of the handle if the handle moves the tool
+  ToolPose pose;      ///< pose of the tool; true position of the handle if the handle moves the tool
   double time = 0.0;  ///< [s]
 };
 
@@ -42,15 +42,15 @@ struct ContactAtRest {
 std::optional<ContactAtRest> linear_contact(const CheckedScenario& scenario,
                                             const std::shared_ptr<const PointShell>& shell, const ContactState& near);
 
-/// Returns a contact that was linearised with the stiffness and damping of `from`, as it is with those of `to`:
-/// stiffness in proportion to K, damping in proportion to B.
+/// Converts a contact that was linearised with the stiffness K and damping B of `from` to the K and B of `to`: its
+/// stiffness is proportional to K, and its damping to B.
 LinearContact scaled(LinearContact contact, const RenderingConfig& from, const RenderingConfig& to);
 
-/// Returns the largest stiffness K [N/m] at which the loop of hand, device and contact is stable, searched from the
-/// scenario's K in steps of 10 %, up to twice this K and down to a billionth of it. Infinite if the loop is stable up
-/// to twice K; 0 if no K is stable. At each K, the contact is the equilibrium of the tool near `near`; a K without an
-/// equilibrium has the last contact that was found, scaled(). Empty without has_linear_loop(), and if the tool touches
-/// nothing at `near`.
+/// Returns the largest stiffness K [N/m] at which the loop of hand, device and contact is stable. The search starts at
+/// the scenario's K and uses steps of 10 %, up to twice this K and down to a billionth of it. Returns infinity if the
+/// loop is stable up to twice K, and 0 if no K is stable. At each K, the contact is linearised at the equilibrium of
+/// the tool near `near`. If there is no equilibrium at a K, the latest contact found is used, scaled(). Empty without
+/// has_linear_loop(), and if the tool touches nothing at `near`.
 std::optional<double> linear_stiffness_limit(const CheckedScenario& scenario,
                                              const std::shared_ptr<const PointShell>& shell, const ContactState& near);
 

@@ -29,8 +29,8 @@ namespace fs = std::filesystem;
 // Largest accepted size of a library [bytes].
 constexpr std::size_t kMaxModuleBytes = std::size_t{1} << 28;
 
-/// Flags for dlopen(). RTLD_DEEPBIND gives the library's own symbols precedence over ours. Sanitizers do not
-/// allow it, because they replace functions in all libraries.
+/// Flags for dlopen(). RTLD_DEEPBIND gives the library's own symbols precedence over the program's symbols. Sanitizers
+/// do not allow it, because they replace functions in all libraries.
 #ifdef HAPBENCH_SANITIZED
 constexpr int kDlopenFlags = RTLD_NOW | RTLD_LOCAL;
 #else

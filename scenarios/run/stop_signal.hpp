@@ -44,7 +44,7 @@ void stop_work(int signal) noexcept;
 /// Throws Stopped if a signal has been received.
 void throw_if_stopped();
 
-/// Number of steps between two checks for a signal. This takes a few milliseconds in the slowest simulations.
+/// Number of steps between two checks for a signal. In the slowest simulations, these steps take a few milliseconds.
 inline constexpr std::uint64_t kStepsPerStopCheck = 512;
 
 /// Runs a simulation to its end by calls of `advance()`. Each call must do at most kStepsPerStopCheck steps and return

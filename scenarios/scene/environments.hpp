@@ -19,7 +19,7 @@ void describe(Fields& f, Environment& environment);
 /// with equal environments share the shell (SharedCache). `files` are the scenario's files. Throws InputError if
 /// the environment's file cannot be used.
 std::shared_ptr<const PointShell> make_shell(const Scenario& scenario, const NamedFiles& files);
-/// Returns the environment's point shell. Reads the scenario's files anew.
+/// Returns the environment's point shell. Reads the scenario's files again.
 inline std::shared_ptr<const PointShell> make_shell(const Scenario& scenario) {
   return make_shell(scenario, NamedFiles(scenario));
 }

@@ -141,7 +141,7 @@ inline bool position_is_free(const MotionFields& motion) {
   return std::holds_alternative<FreePosition>(motion.position);
 }
 
-/// Nobody holds the handle.
+/// No hand holds the handle.
 struct NoHandFields {};
 struct ForceHandFields {
   std::array<Profile, 3> force;  ///< [N]
@@ -234,7 +234,9 @@ bool records_rows(const RecordFields& record);
 struct GivenForceFields {
   std::array<Profile, 3> force;  ///< [N]
 };
-/// K (x' - x) of frictionless contact with the rigid triangles of the mesh (scenarios/run/rigid_contact_force.hpp).
+/// The reference force is K (x' - x) of frictionless contact with the rigid triangles of the mesh: x is the prescribed
+/// position of the tool or the target of its hand, and x' the free position at which a tool that is pulled towards x
+/// rests (scenarios/run/rigid_contact_force.hpp).
 struct RigidContactFields {};
 using ReferenceForceFields = std::variant<GivenForceFields, RigidContactFields>;
 
@@ -304,7 +306,8 @@ double trial_count(const HandFields& hand);
 /// search.
 bool has_external_contacts(const Scenario& scenario);
 
-/// Returns true if a slower loop finds the contacts, so that the contact is not part of a loop at the period of a step.
+/// Returns true if contacts are found at a lower rate than the steps, so that the contact is not part of a loop at the
+/// period of a step.
 inline bool has_multi_rate_contacts(const Scenario& scenario) {
   return scenario.rendering.late && scenario.rendering.late->any();
 }

@@ -16,8 +16,8 @@ RenderingConfig rendering_of(const Scenario& scenario, const six_dof::HandAndCou
   return config;
 }
 
-/// Returns the intent of the scripted pose. Turns move the tip about the pivot; the script adds its own motion of the
-/// tip.
+/// Returns the intent of the scripted pose. Rotations move the tip about the pivot; the scripted motion of the tip is
+/// added.
 six_dof::Intent intent_of(const SixDofFields& fields, const ToolPose& pose, const Vec3& first_axis) noexcept {
   six_dof::Intent intent;
   intent.orientation = Eigen::Quaterniond(pose.rotation()).normalized();
@@ -47,7 +47,7 @@ void SixDofObserver::begin(const TrialParts& trial) {
 void SixDofObserver::on_step(const StepRecord& record) noexcept {
   const six_dof::Intent intent = intent_of(*scenario_->six_dof, record.tool.pose, first_axis_);
   row_ = {};
-  // The 6-DOF device.
+  // Find the equilibrium of the 6-DOF device.
   const auto step = reference_->follow(intent);
   const six_dof::Handle& with_torque = reference_->handle();
   row_.jumped = step.jumped;
@@ -61,7 +61,7 @@ void SixDofObserver::on_step(const StepRecord& record) noexcept {
                       .axis = tool.axis,
                       .handle_turn = six_dof::turn_between(intent.orientation, with_torque.orientation)};
   }
-  // The 3-DOF device.
+  // Find the equilibrium of the 3-DOF device.
   if (device_->follow(intent) <= six_dof::kBalanced) {
     const six_dof::Handle& handle = device_->handle();
     row_.law = {.force = handle.force,

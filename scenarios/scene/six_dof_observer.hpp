@@ -29,7 +29,7 @@ class SixDofObserver final : public MetricObserver {
   const Scenario* scenario_ = nullptr;  ///< null: only lists the metrics
   std::optional<six_dof::SixDofDevice> reference_;
   std::optional<six_dof::ThreeDofDevice> device_;
-  Vec3 first_axis_ = Vec3::Zero();  ///< of the intent at t = 0
+  Vec3 first_axis_ = Vec3::Zero();  ///< axis of the intent at t = 0
   SixDofRow row_;
   SixDofMetrics metrics_;
 };

@@ -57,7 +57,7 @@ struct Assumption {
 /// All recorded assumptions.
 class Assumptions {
  public:
-  /// Reads the file. Throws InputError with the JSON pointer of a assumption that lacks a key or has a wrong type.
+  /// Reads the file. Throws InputError with the JSON pointer of an assumption that lacks a key or has a wrong type.
   explicit Assumptions(const std::filesystem::path& file);
 
   const std::vector<Assumption>& all() const { return all_; }
@@ -68,7 +68,7 @@ class Assumptions {
   std::vector<std::string> recorded_values() const;
 
   /// Returns the overrides for load_scenario that apply `values`, one for each assumption, to a scenario. Assumptions
-  /// that set the same field are applied in order. Throws InputError if a assumption's path is not a field of a
+  /// that set the same field are applied in order. Throws InputError if an assumption's path is not a field of a
   /// scenario that the assumption names, or if a field to multiply is not a number.
   std::vector<std::string> overrides(const Scenario& scenario, std::span<const std::string> values) const;
 

@@ -113,7 +113,7 @@ Finding judge_felt_stiffness(const MeasuredCase& m, const PublishedNumbers& p) {
 // where the reaction decreases, the reaction does not exceed the limit.
 
 MeasuredValues measure_saturated_motion(const Evidence& e) {
-  // The hand pushes with more than the input limit of 2 N during one rotation of the drill to and fro.
+  // The hand pushes with more than the input limit of 2 N while the drill rotates once back and forth.
   const LoadedScenario loaded =
       e.load("task2_rotate_signed_distance",
              {R"(hand.force_N={"type":"sine","mean":3.5,"amplitude":1.4,"period_s":1.7})", "time.duration_s=6"});

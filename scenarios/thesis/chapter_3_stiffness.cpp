@@ -127,7 +127,8 @@ double smallest_after_one_update(int parallel) {
   return least;
 }
 
-/// Judges the range of the ratios after some updates: of the extremes in each step, or of their averages.
+/// Judges the range of the stiffness ratios after `updates` updates: the averages over the tasks if `averaged`,
+/// otherwise the fraction of the steps whose ratios are all in the published range.
 Finding judge_range(const Measured& measured, const PublishedNumbers& p, double updates, bool averaged) {
   const PublishedNumber& once = p["R1.once"];
   const double inside = smallest(measured, after("inside", updates));

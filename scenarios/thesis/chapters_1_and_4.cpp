@@ -336,8 +336,8 @@ Finding judge_over_reduction(const MeasuredCase& m, const PublishedNumbers& p) {
                     : "more than one point is left"};
 }
 
-// ---- C2, C7: a hand holds a tool in place and turns it into a wall. Compared are the damping of the thesis, which
-// ignores the angular velocity, and a damping that includes it; at the scene's speed (C2) and at a low speed (C7).
+// ---- C2, C7: a hand holds a tool in place and rotates it into a wall, at the scene's speed (C2) and at a low speed
+// (C7). The damping of the thesis, which ignores the angular velocity, is compared with a damping that includes it.
 
 Measured measure_turn_into_wall(const Evidence& e, const std::vector<std::string>& overrides) {
   return {vibration("as in the thesis", e.run("turned_into_wall", overrides)),

@@ -113,8 +113,8 @@ std::string abstract_table(const Json& ledger) {
           if (figure.empty()) figure = text_at(claim, "figure");
           seconds += claim.at("seconds").get<double>();
         }
-    if (claims.empty()) continue;          // --only
-    constexpr std::size_t kMostNames = 2;  // the page of the claim has them all
+    if (claims.empty()) continue;          // a run with --only may not have judged the claim
+    constexpr std::size_t kMostNames = 2;  // the page of the claim names all assumptions
     const auto deciders = [](const Json& claim) { return decided_by(claim, kMostNames); };
     const auto member = [](const char* key) { return [key](const Json& claim) { return text_at(claim, key); }; };
     text += fmt::format("| {} | {} | {} | {} | {} | {} | `hapbench reproduce --only {}` ({:.0f} s) |\n",

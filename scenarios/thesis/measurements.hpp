@@ -37,9 +37,9 @@ void for_each_row(const CheckedScenario& checked, const std::function<void(const
 inline const Cylinder kDrill;
 inline const ToolPose kUpright{Vec3::Zero(), {0.0, 0.0, -1.0}};
 
-/// Returns one contact of the upright drill with a wall point at x = `beyond` [m] and normal +x. Its depth is that of
-/// the depth model with the name `depth_model`. For beyond > 0 the tool's axis lies inside the wall, so the point is
-/// on the far side of the axis.
+/// Returns one contact of the upright drill with a wall point at x = `beyond` [m] and normal +x. Its depth is
+/// computed by the depth model with the name `depth_model`. For beyond > 0 the tool's axis lies inside the wall, so the
+/// point is on the far side of the axis.
 ContactBuffer wall_point(double beyond, const char* depth_model);
 
 /// Number of repetitions of a timing measurement.

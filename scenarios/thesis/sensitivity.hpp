@@ -12,8 +12,8 @@
 #include "scenarios/thesis/judging.hpp"
 
 /// Sensitivity of the verdicts, one assumption at a time: each claim is judged with each plausible value of each
-/// assumption that can change it, all other assumptions as recorded and calibrated inputs calibrated anew. The record
-/// is results/reference/sensitivity.json.
+/// assumption that can change it, while all other assumptions keep their recorded values and calibrated inputs are
+/// calibrated again. The record is results/reference/sensitivity.json.
 namespace hapbench {
 
 /// Returns a member that is a text. Throws Json::exception.

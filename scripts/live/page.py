@@ -1,4 +1,4 @@
-"""Puts the live page together: page.py ENGINE.wasm OUT.html. scripts/live/make calls it."""
+"""Assembles the live page: page.py ENGINE.wasm OUT.html. scripts/live/make calls this file."""
 import base64
 import gzip
 import json
@@ -21,12 +21,12 @@ REPLAY = (
 
 
 def packed_files(scenes):
-    """The bundled scenarios, and the files that those of the page name, by their paths in the page."""
+    """Returns the bundled scenarios and the files that the page's scenarios name, keyed by their path in the page."""
     bundled = {
         file.stem: file
         for file in sorted(SCENARIOS.glob("*/*.json"))
         if file.parent.name not in ("studies", "presets")
-    }  # by name
+    }  # scenario files by name
     place = lambda file: f"/scenarios/{file.relative_to(SCENARIOS).as_posix()}"
     files = {place(file): file.read_text(encoding="utf-8") for file in bundled.values()}
     for scene in scenes:
@@ -57,7 +57,7 @@ def first_value(schema, name, key):
 
 
 def choices(schema):
-    """Laws, devices and stages, as the schema has them."""
+    """Returns the names of laws, devices and stages in the schema."""
     stages = [
         kind["const"] for kind in values_of(first_value(schema, "force_stage", "anyOf"), "type")
     ]
@@ -91,7 +91,7 @@ def choices(schema):
 
 
 def pressed(content):
-    """Text for the page; the same for the same content."""
+    """Returns the content compressed and encoded as text for the page. The same content gives the same text."""
     return base64.b64encode(gzip.compress(content, mtime=0)).decode()
 
 

@@ -1,5 +1,5 @@
-"""Shared by the commands written in Python: error messages, hints at names, writing of files, and a
-notice while work takes long."""
+"""Functions shared by the commands written in Python: error messages, suggested names, writing of files, and a progress
+notice for long work."""
 import argparse
 import atexit
 import difflib
@@ -22,25 +22,26 @@ from pathlib import Path
 
 from hapbench.errors import InputError
 
-# The help of an option that means the same in every command.
+# Help text of an option that has the same meaning in every command.
 SHARED = 'shared options; "hapbench --help" explains them'
 SUCCESS, FAILED, BAD_INPUT, DIFFERENT, INTERRUPTED = 0, 1, 2, 3, 130
-MOST_FAULTS = 20  # reported at once
-SILENCE = 2.0  # before a notice [s]
+MOST_FAULTS = 20  # largest number of faults in one error message
+SILENCE = 2.0  # time before the first progress notice [s]
 SCHEMA = Path(__file__).resolve().parents[2] / "scenarios" / "library" / "scenario.schema.json"
 
-_unfinished = set()  # scratch files of write(), which an end by Ctrl-C removes
+_unfinished = set()  # temporary files of write(), which are removed after Ctrl-C
 _written = []  # files that write() completed
 
 
 def say_error(text):
-    """One line on standard error, as the program writes it: control characters of names from outside are replaced."""
+    """Prints one line on standard error, in the form of the program. Control characters, such as in file names, are
+    replaced by "?"."""
     line = "".join("?" if c < " " or c == "\x7f" else c for c in str(text))
     print(f"hapbench: error: {line}", file=sys.stderr)
 
 
 class Arguments(argparse.ArgumentParser):
-    """A parser whose errors are one line, without the usage before it."""
+    """A parser that prints errors in one line, without the usage."""
 
     def error(self, message):
         say_error(f"{message}; {self.prog} --help shows what there is")
@@ -48,7 +49,7 @@ class Arguments(argparse.ArgumentParser):
 
 
 class CommandLine(Arguments):
-    """The words behind the name of a command of the program: help and errors are as those of the other commands.
+    """The arguments after the name of a command of the program. Help and errors have the form of the other commands.
     `notes`: paragraphs below the options. `examples`: command lines. `manual`: page and section."""
 
     def __init__(self, name, summary, notes, examples, manual):
@@ -63,11 +64,11 @@ class CommandLine(Arguments):
         self.add_argument("-h", "--help", action="help", help=SHARED)
 
     def text(self, name, metavar, meaning, **more):
-        """`metavar`: the placeholder of the value in the help, such as "<file>"."""
+        """Adds an option with a value. `metavar`: the placeholder of the value in the help, such as "<file>"."""
         self.add_argument(name, metavar=metavar, help=meaning, **more)
 
     def texts(self, name, metavar, meaning):
-        """Several values in one word, separated by commas."""
+        """Adds an option with several values in one argument, separated by commas."""
         self.text(
             name,
             metavar,
@@ -96,8 +97,8 @@ class CommandLine(Arguments):
             self.flag(name, SHARED)
 
     def parse(self, words):
-        """An option takes the word behind it as its value, also one that begins with "-"; arguments
-        may stand anywhere."""
+        """Parses the arguments. The argument after an option is its value, even if it begins with "-". Positional
+        arguments may stand before, between and after options."""
         if not {"-h", "--help"}.isdisjoint(words):
             self.print_help()
             self.exit()
@@ -139,12 +140,8 @@ class CommandLine(Arguments):
             for action in actions:
                 if action.help == SHARED:
                     continue
-                word = action.metavar
-                if named:
-                    value = f" {action.metavar}" if action.nargs != 0 else ""
-                    word = ",".join(action.option_strings) + value
-                else:
-                    word += "..." if action.nargs in ("+", "*") else ""
+                word = word_of(action)
+                if not named:
                     usage += f" {word}" if action.required else f" [{word}]"
                 parts.append(entry(word, action.help, width))
             if shared and named:
@@ -160,8 +157,16 @@ class CommandLine(Arguments):
 WHOLE_WORDS = {"break_long_words": False, "break_on_hyphens": False}
 
 
+def word_of(action):
+    """Returns an option with its placeholder, or the placeholder of an argument, as the help prints it."""
+    if action.option_strings:
+        value = f" {action.metavar}" if action.nargs != 0 else ""
+        return ",".join(action.option_strings) + value
+    return action.metavar + ("..." if action.nargs in ("+", "*") else "")
+
+
 def entry(word, meaning, width):
-    """A word with its meaning beside it, or below where the word is too long."""
+    """Returns a word with its meaning beside it, or below it if the word is too long."""
     column = 28
     text = textwrap.fill(
         meaning, width, initial_indent=" " * column, subsequent_indent=" " * column, **WHOLE_WORDS
@@ -208,7 +213,8 @@ def stop_on_ctrl_c(name):
         for scratch in list(_unfinished):
             with suppress(OSError):
                 os.unlink(scratch)
-        end_of_line = "\r\033[K" if sys.stderr.isatty() else ""  # of notice()
+        # Line end of notice(): erases the status line on a terminal.
+        end_of_line = "\r\033[K" if sys.stderr.isatty() else ""
         with suppress(OSError):
             os.write(2, f"{end_of_line}hapbench: {name} {stopped()}\n".encode())
         _end(INTERRUPTED)
@@ -220,7 +226,7 @@ def stop_on_ctrl_c(name):
             say_error(error if isinstance(error, InputError) else internal_error(name, error))
 
     sys.excepthook = fail_in_one_line
-    # A shell starts background jobs with Ctrl-C ignored. That stays.
+    # A shell starts background jobs with Ctrl-C ignored. Keep it ignored.
     if signal.getsignal(signal.SIGINT) is not signal.SIG_IGN:
         signal.signal(signal.SIGINT, stop)
     signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
@@ -241,14 +247,14 @@ def leave(status):
 
 
 def _end(status):
-    """Calls what was registered to be called at the end (matplotlib removes a folder) and ends the process."""
+    """Calls the functions registered with atexit (matplotlib removes a folder) and ends the process."""
     with suppress(BaseException):
         atexit._run_exitfuncs()
     os._exit(status)
 
 
 def internal_error(name, error):
-    """One line about an exception that no reader of the command expected, with the line of the source."""
+    """Prints one line about an unexpected exception, with the source line."""
     frames = traceback.extract_tb(error.__traceback__)
     place = f" ({Path(frames[-1].filename).name}, line {frames[-1].lineno})" if frames else ""
     if isinstance(error, MemoryError):
@@ -258,8 +264,8 @@ def internal_error(name, error):
 
 
 def exit_status(name, doing, work):
-    """Does the work of a command, with a notice that says what it is `doing`, unless that is empty.
-    Returns the exit status; what is refused is printed, each fault in a line, and so is any other failure.
+    """Runs `work` of a command and returns the exit status. A notice about what it is `doing` appears unless `doing` is
+    empty. Rejected input is printed with one line for each fault; any other failure is printed in one line.
     """
     try:
         with notice(doing):
@@ -271,7 +277,7 @@ def exit_status(name, doing, work):
             say_error(fault)
         return BAD_INPUT
     except BrokenPipeError:
-        # The reader of a pipe, such as `head`, has seen enough.
+        # The reader of the pipe, such as `head`, has closed it.
         sys.stderr.close()
         return SUCCESS
     except OSError as error:
@@ -285,7 +291,7 @@ def exit_status(name, doing, work):
 
 
 def answer(options, text, data):
-    """Prints what a command answers: its warnings, then the text, or JSON, or nothing."""
+    """Prints the answer of a command: its warnings, then the text, the JSON, or nothing."""
     for warning in data["warnings"] if isinstance(data, dict) else []:
         print(f"hapbench: warning: {warning}", file=sys.stderr)
     if not options.quiet:
@@ -297,8 +303,8 @@ def shell_line(*words):
 
 
 def table_text(headings, rows, wide, numbers=False):
-    """Columns below their headings, the first of them texts; a last column that the terminal has no
-    room for is wrapped."""
+    """Returns columns below their headings. The first columns are texts. If the terminal is too narrow, the last column
+    is wrapped."""
     widths = [max(map(len, column)) for column in zip(headings, *rows)]
     if sys.stdout.isatty() and not wide:
         widths[-1] = min(
@@ -320,9 +326,10 @@ def table_text(headings, rows, wide, numbers=False):
 
 
 def nearest(name, names):
-    """The end of a message about an unknown name, in the words of the program; empty when no name is near."""
+    """Returns the end of an error message about an unknown name: the most similar valid names, in the words of the
+    program; empty if no name is similar."""
     lower = {candidate.lower(): candidate for candidate in reversed(names)}
-    # Half a name before one that merely looks alike.
+    # Prefer names that begin with the given name to names that are only similar.
     longer = sorted((n for n in lower if n.startswith(name.lower())), key=len) or [
         n for n in lower if name.lower() in n
     ]
@@ -331,7 +338,7 @@ def nearest(name, names):
 
 
 class Faults(InputError):
-    """A list of (place, problem)."""
+    """Several faults: a list of (place, problem)."""
 
     def __init__(self, faults):
         super().__init__(faults)
@@ -356,7 +363,8 @@ def require_name(got, name, valid):
 
 
 def finite_number(word):
-    """The whole word (bytes) as a finite number, or NaN. Stricter than float(), which accepts "1_0" and " 1"."""
+    """Converts the whole word (bytes) to a finite number, or NaN. Stricter than float(), which accepts "1_0" and "
+    1"."""
     value = (
         float(word) if re.fullmatch(rb"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?", word) else math.nan
     )
@@ -364,13 +372,13 @@ def finite_number(word):
 
 
 def shown(value):
-    """A JSON value as a message shows it: on one line, cut when long."""
+    """Formats a JSON value for a message: in one line, truncated if long."""
     text = json.dumps(value, separators=(",", ":")).replace("\x7f", "\\u007f")
     return text if len(text) <= 80 else text[:80] + "..."
 
 
 def quoted(word):
-    """A word (bytes or text) as a message shows it."""
+    """Quotes a word (bytes or text) for a message."""
     data = word if isinstance(word, bytes) else word.encode("utf-8", "surrogateescape")
     return shown(data[:60].decode("utf-8", "replace"))
 
@@ -380,13 +388,13 @@ def plain(number):
 
 
 def refuse_source(out, source, what):
-    """Refuses to write over the file that is read."""
+    """Raises an error if the output file is the input file."""
     if os.path.exists(out) and os.path.exists(source) and os.path.samefile(out, source):
         fail(f"--out {out}: is the {what} itself; allowed: another file")
 
 
 def write(file, data):
-    """Makes or replaces a file, complete or not at all. `data`: text or bytes. Raises OSError with the file's name."""
+    """Creates or replaces a file atomically. `data`: text or bytes. Raises OSError with the file's name."""
     try:
         file.parent.mkdir(parents=True, exist_ok=True)
         scratch = file.with_name(f".{file.name}.{os.getpid()}.tmp")
@@ -405,11 +413,11 @@ def write(file, data):
 
 
 def unwritable(error):
-    """Says why write() failed. Exit status: bad input where no file can be, a fault where the disk
+    """Prints why write() failed and returns the exit status: BAD_INPUT if the path cannot be a file, FAILED if the disk
     is full or broken."""
     if error.filename is None:
         with suppress(OSError, ValueError):
-            os.dup2(os.open(os.devnull, os.O_WRONLY), 1)  # what is left to print cannot be printed
+            os.dup2(os.open(os.devnull, os.O_WRONLY), 1)  # the remaining output cannot be printed
         say_error(f"cannot write to standard output: {error.strerror or error}")
         return FAILED
     if error.errno in (errno.ENOSPC, errno.EDQUOT, errno.EIO):
@@ -421,8 +429,8 @@ def unwritable(error):
 
 @contextmanager
 def notice(text):
-    """A line with the seconds, for work that takes longer than two; lines after 2, 4, 8 s and so on
-    where standard error is no terminal; silent without a text."""
+    """Prints elapsed seconds while work takes longer than 2 s: one updated line on a terminal, else lines after 2, 4, 8
+    s and so on. Prints nothing if the text is empty."""
     ended = threading.Event()
     thread = threading.Thread(target=show_seconds, args=(text, ended), daemon=True)
     if text:

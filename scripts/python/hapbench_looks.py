@@ -1,11 +1,11 @@
-"""The palette of figures and pages: one colour, line and marker for each algorithm everywhere, for
-each class of runs, and for what is neither.
+"""The palette of figures and pages: one colour, line style and marker for each algorithm everywhere, for each class of
+runs, and for other elements.
 
-Every colour has a contrast of at least 4.5 to the ground it is drawn on (WCAG 2.1, AA), so that names can be written in
-it: `colour` on white, `dark` on the dark page. For readers with deuteranopia, protanopia or tritanopia the colours of
-ALGORITHMS differ by at least 6 (CIEDE2000), those of SERIES by at least 12; a test simulates their vision. Dashes and
-markers are a second code. An algorithm without an entry gets a look by its name, or another one where it would be
-taken for another algorithm of the same picture (tell_apart).
+Every colour has a contrast of at least 4.5 to its ground (WCAG 2.1, AA), so that names can be printed in it: `colour`
+on white, `dark` on the dark page. For readers with deuteranopia, protanopia or tritanopia the colours of ALGORITHMS
+differ by at least 6 (CIEDE2000), and the colours of SERIES by at least 12; a test simulates their vision. Dashes and
+markers also distinguish curves. An algorithm without an entry gets a look that depends on its name, or another look if
+two algorithms of a picture would look alike (tell_apart).
 """
 import colorsys
 import zlib
@@ -19,12 +19,12 @@ class Look:
     label: str
     colour: str
     dark: str
-    dash: tuple  # lengths drawn and left out in turn, in widths of the line; empty: a solid line
-    marker: str  # of matplotlib
+    dash: tuple  # lengths of dashes and gaps in turn, in line widths; empty: a solid line
+    marker: str  # marker of matplotlib
 
     @property
     def line(self):
-        """The line's style as matplotlib has it."""
+        """Returns the line style for matplotlib."""
         return (0, self.dash) if self.dash else "-"
 
 
@@ -47,10 +47,11 @@ ALGORITHMS = {
     "merged_shaping": Look("merged shaping (ours)", "#961356", "#FF64D1", (4, 1, 1, 1), "p"),
     "proxy": Look("proxy (ours)", "#005701", "#49CF56", (8, 1), ">"),
 }
-# Numbers of the thesis, in a colour that no algorithm has; hollow diamonds and dotted lines in figures.
+# Colour of the thesis's numbers, which no algorithm has. Figures draw these numbers as hollow diamonds and dotted
+# lines.
 PUBLISHED, PUBLISHED_DARK = "#C2261C", "#FF8A75"
 
-# For curves that are of no algorithm, or all of one.
+# For curves that do not belong to an algorithm, or that all belong to the same algorithm.
 SERIES = (
     Look("", "#1F5FD6", "#63A7B5", (), "o"),
     Look("", "#945200", "#E1A902", (4, 1.2), "s"),
@@ -60,14 +61,14 @@ SERIES = (
     Look("", "#14794E", "#8EE288", (6, 2), "x"),
 )
 
-# Class of a run -> its name, colour and hatching; light to dark, so that they can be told apart in grey.
+# Name, colour and hatching by class of a run. Brightness decreases, so that the classes differ in grey, too.
 CLASSES = {
     "stable": ("stable", "#CFE6F5", ""),
     "decaying": ("decaying", "#E9F3FA", "/////"),
     "vibrating": ("vibrating", "#E0A030", ""),
     "thrown_out": ("thrown out", "#B05A1E", ""),
     "diverged": ("diverged", "#7A2E00", ""),
-    # Classes of runs that tell nothing of stability, and outcomes of a sweep's runs.
+    # Classes of runs without information about stability, and outcomes of a sweep's runs.
     "went_through": ("passed through", "#8E7CC3", "xxxxx"),
     "stuck": ("stuck", "#5B7F95", "....."),
     "lost_contact": ("lost contact", "#B05A1E", "\\\\\\\\\\"),
@@ -83,7 +84,7 @@ def look_of_class(name):
 
 
 def by_class(names):
-    """Names of classes in the order of the table."""
+    """Returns names of classes in the order of the table."""
     order = list(CLASSES)
     return sorted(
         set(names), key=lambda name: (order.index(name) if name in order else len(order), name)
@@ -93,15 +94,16 @@ def by_class(names):
 # For algorithms without an entry.
 FURTHER_DASHES = ((2, 2), (6, 1, 1, 1), (4, 2), (1, 2))
 FURTHER_MARKERS = ("8", "H", "3", "4", "+", "x", ".")
-# The largest and the least relative luminance that keep a contrast of 4.5 to the light and to the dark ground; and one
-# that is further from the ground.
+# Largest and smallest relative luminance with a contrast of 4.5 to the light and to the dark ground, each with a second
+# limit at a larger contrast.
 LUMINANCES = ((0.14, 0.30), (0.05, 0.60))
 HUES = 24
-# Distance in OKLab from which two colours are told apart between lines of a figure: about 6 by CIEDE2000.
+# Distance in OKLab from which colours of lines in a figure can be distinguished: about 6 in CIEDE2000.
 APART = 0.08
-CHOSEN = {}  # name -> look, of the picture that is being drawn
+CHOSEN = {}  # look by name, for the current picture
 
-# Linear RGB as the eye sees it: Machado, Oliveira and Fernandes (IEEE TVCG 15, 2009), severity 1.
+# Matrices of linear RGB that simulate types of colour vision: Machado, Oliveira and Fernandes (IEEE TVCG 15, 2009),
+# severity 1.
 VISIONS = {
     "usual": np.eye(3),
     "protanopia": np.array(
@@ -126,7 +128,7 @@ VISIONS = {
         ]
     ),
 }
-# Linear RGB to the responses of the cones, and their cube roots to OKLab (Ottosson, 2020).
+# Matrices from linear RGB to cone responses, and from their cube roots to OKLab (Ottosson, 2020).
 TO_CONES = np.array(
     [
         [0.4122214708, 0.5363325363, 0.0514459929],
@@ -144,12 +146,13 @@ TO_OKLAB = np.array(
 
 
 def law_name(algorithm):
-    """The name of a law in pictures and pages of own runs: the words of the program's tables."""
+    """Returns the name of a law in pictures and pages of the user's runs: the words of the program's tables."""
     return algorithm.replace("_", " ")
 
 
 def look(algorithm):
-    """The look of any algorithm. Without an entry above, its name decides, unless tell_apart chose another one."""
+    """Returns the look of an algorithm. Without an entry above, it follows from the name, unless tell_apart chose
+    another look."""
     return ALGORITHMS.get(algorithm) or CHOSEN.get(algorithm) or by_name(algorithm)
 
 
@@ -166,15 +169,15 @@ def by_name(algorithm):
 
 
 def tell_apart(algorithms):
-    """Chooses the looks of the algorithms of one picture that have no entry: the look by the name, or where it is too
-    close to another one in the picture for some kind of colour vision, the most distant colour of all hues.
+    """Chooses the looks of the algorithms of one picture that have no entry: the look that follows from the name, or,
+    if it is too close to another look for some type of colour vision, the most distant colour of all hues.
     """
     CHOSEN.clear()
     names = sorted(set(algorithms))
     looks = [Look("", PUBLISHED, PUBLISHED_DARK, (), "")]
     looks += [ALGORITHMS[name] for name in names if name in ALGORITHMS]
     hues = [in_hue(i / HUES, of) for of in LUMINANCES for i in range(HUES)]
-    late = []  # names whose own colour is too close to another one
+    late = []  # names whose default colour is too close to another colour
     for name in (name for name in names if name not in ALGORITHMS):
         own = by_name(name)
         if distance((own.colour, own.dark), looks) < APART:
@@ -194,8 +197,8 @@ def free_marker(own, looks):
 
 
 def distance(pair, looks):
-    """The smallest distance in OKLab of a colour on light ground and one on dark ground to those of looks, over all
-    kinds of colour vision."""
+    """Returns the smallest distance in OKLab between a pair of colours (on light and on dark ground) and the colours of
+    `looks`, over all types of colour vision."""
     return min(
         (
             np.linalg.norm(
@@ -209,15 +212,15 @@ def distance(pair, looks):
 
 
 def oklab(colour):
-    """A row for each of VISIONS."""
+    """Returns the OKLab coordinates of a colour, with a row for each of VISIONS."""
     rgb = np.array([int(colour[i : i + 2], 16) / 255 for i in (1, 3, 5)])
     seen = np.array([matrix @ linear(rgb) for matrix in VISIONS.values()])
     return np.cbrt(np.clip(seen, 0, 1) @ TO_CONES.T) @ TO_OKLAB.T
 
 
 def in_hue(hue, luminances=LUMINANCES[0]):
-    """The most vivid colours of a hue, 0 to 1, no lighter than the first relative luminance and no darker than the
-    second: for the light and for the dark ground."""
+    """Returns the most vivid colours of a hue (0 to 1): one no lighter than the first relative luminance for the light
+    ground, and one no darker than the second for the dark ground."""
     shades = [colorsys.hls_to_rgb(hue, percent / 100, 0.65) for percent in range(101)]
     light = max((s for s in shades if luminance(s) <= luminances[0]), key=luminance)
     dark = min((s for s in shades if luminance(s) >= luminances[1]), key=luminance)
@@ -225,11 +228,11 @@ def in_hue(hue, luminances=LUMINANCES[0]):
 
 
 def linear(rgb):
-    """Linear RGB of sRGB; parts from 0 to 1."""
+    """Converts sRGB to linear RGB; components from 0 to 1."""
     rgb = np.asarray(rgb)
     return np.where(rgb <= 0.04045, rgb / 12.92, ((rgb + 0.055) / 1.055) ** 2.4)
 
 
 def luminance(rgb):
-    """Relative luminance of WCAG 2.1; parts from 0 to 1."""
+    """Returns the relative luminance of WCAG 2.1; components from 0 to 1."""
     return float(linear(rgb) @ (0.2126, 0.7152, 0.0722))

@@ -1,5 +1,5 @@
-"""The command hapbench of an environment into which pip installed it: becomes the program in the package. It does without
-the package itself, whose import takes longer than most commands."""
+"""The command hapbench of an environment into which pip installed it. This process is replaced by the program in the
+package. The package itself is not imported, because its import takes longer than most commands."""
 import os
 import signal
 import sys
@@ -9,8 +9,9 @@ PROGRAM = Path(__file__).parent / "hapbench" / "bin" / "hapbench"
 
 
 def main():
-    os.environ.setdefault("HAPBENCH_PYTHON", sys.executable)  # of plot, report, import and audit
+    # Python for plot, report, import and audit
+    os.environ.setdefault("HAPBENCH_PYTHON", sys.executable)
     signal.signal(
         signal.SIGPIPE, signal.SIG_DFL
-    )  # which Python ignores, and a pipe into head needs
+    )  # Python ignores SIGPIPE; the program needs its default action for a pipe into head
     os.execv(PROGRAM, [str(PROGRAM), *sys.argv[1:]])

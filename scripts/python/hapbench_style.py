@@ -1,6 +1,5 @@
-"""The base of every picture: one look (sizes, colours; the palette is hapbench_looks), fewer rows
-for curves that cannot show all of theirs, equal curves that show each other, and how a figure
-becomes the bytes of a file."""
+"""The base of every picture: sizes and colours (the palette is in hapbench_looks), fewer rows for curves with more rows
+than can be shown, stripes for coinciding curves, and the conversion of a figure to a file."""
 import io
 import re
 import sys
@@ -16,47 +15,49 @@ from hapbench_looks import (
 )  # noqa: F401  (style.look is how figures name it)
 from hapbench_looks import PUBLISHED as PUBLISHED_COLOUR
 
-if "matplotlib.pyplot" not in sys.modules:  # a notebook keeps its own backend
+if "matplotlib.pyplot" not in sys.modules:  # a notebook keeps its backend
     matplotlib.use("agg")
 from matplotlib import pyplot as plt  # noqa: E402  (the backend comes first)
 from matplotlib.text import Text  # noqa: E402
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter  # noqa: E402
 from matplotlib.transforms import Bbox  # noqa: E402
 
-WIDTH = 7.0  # of a page's text [inch]
-DPI = 300  # of a PNG, and of points in a PDF that are drawn as pixels; journals ask for at least so many
-SCREEN_DPI = 150  # of a picture in a notebook, and of such points in an SVG
+WIDTH = 7.0  # text width of a page [inch]
+# Resolution of a PNG, and of rasterised points in a PDF; journals require at least this value.
+DPI = 300
+SCREEN_DPI = 150  # resolution of a picture in a notebook, and of rasterised points in an SVG
 MM = 1 / 25.4  # [inch]
 
 
 @dataclass(frozen=True)
 class Sheet:
-    """Room for a picture. Its fonts of 7 to 9 pt are meant for this size."""
+    """Size of a picture. Its fonts of 7 to 9 pt are for this size."""
 
     width: float  # [inch]
     columns: int  # largest number of panels side by side
-    height: float | None = None  # of every picture [inch]; None: as high as its panels need
-    tallest: float | None = None  # panel of a picture [inch]
+    height: float | None = None  # height of every picture [inch]; None: as high as its panels need
+    tallest: float | None = None  # largest height of a panel [inch]
 
     def panel(self, height):
-        """The height of a row of panels [inch]: so much, but no more than `tallest`."""
+        """Returns the height of a row of panels [inch]: `height`, but at most `tallest`."""
         return min(height, self.tallest or height)
 
     def grid(self, count):
-        """Rows and columns for so many panels, with few empty cells."""
+        """Returns the numbers of rows and columns for `count` panels, with few empty cells."""
         columns = min(
             range(1, min(count, self.columns) + 1), key=lambda n: (-(-count // n), -count % n)
         )
         return -(-count // columns), columns
 
     def panels(self, rows, columns, height, **keywords):
-        """Figure with a grid of axes, always a 2-D array; `height` [inch] unless the sheet sets it."""
+        """Returns a figure with a grid of axes, always a 2-D array. `height`: height of a row [inch], unless the sheet
+        sets the height of the picture."""
         return plt.subplots(
             rows, columns, figsize=(self.width, self.height or height), squeeze=False, **keywords
         )
 
 
-# A column and a page of a journal, and a slide of 160 mm x 90 mm, the size of a 16:9 slide in LaTeX (beamer).
+# One and two columns of a journal, and a slide of 160 mm x 90 mm, the size of a 16:9 slide in LaTeX (beamer).
 SHEETS = {
     "single": Sheet(89 * MM, 1, tallest=45 * MM),
     "double": Sheet(183 * MM, 3),
@@ -64,9 +65,9 @@ SHEETS = {
 }
 SHEET, PAGE = SHEETS["double"], Sheet(WIDTH, 3)
 
-# Lines and texts have a contrast of at least 4.5 to white. These colours are for readings, forces and contacts, not for
-# algorithms. Amber and petrol differ for every kind of colour vision; a third colour comes with a
-# line style or marker of its own. Red is for the thesis's numbers.
+# Lines and texts have a contrast of at least 4.5 to white. These colours are for measured quantities, forces and
+# contacts, not for algorithms. Amber and petrol can be distinguished with every type of colour vision; a third colour
+# has an additional line style or marker. Red is for the thesis's numbers.
 BLACK, GREY, AMBER, PETROL, PLUM, RED = (
     "#000000",
     "#5F5F5F",
@@ -75,9 +76,9 @@ BLACK, GREY, AMBER, PETROL, PLUM, RED = (
     "#8A3B75",
     PUBLISHED_COLOUR,
 )
-SAND, SOIL = "#EFE8DC", "#8C7A58"  # an area, and its border
+SAND, SOIL = "#EFE8DC", "#8C7A58"  # colour of an area, and of its border
 
-# Numbers of the thesis are hollow diamonds everywhere.
+# Numbers of the thesis are hollow diamonds in every figure.
 PUBLISHED = {
     "marker": "D",
     "mfc": "white",
@@ -93,10 +94,10 @@ PUBLISHED = {
 }
 PUBLISHED_LINE = {"color": RED, "lw": 1, "ls": (0, (1, 1.5))}
 
-# Behind a label that may stand on a line.
+# Background of a label that may lie on a line.
 PLATE = {"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 0.8}
 
-# Of matplotlib, by their groups.
+# Settings of matplotlib by group.
 SETTINGS = {
     f"{group}.{name}": value
     for group, settings in {
@@ -125,13 +126,12 @@ SETTINGS = {
 
 
 def panels(rows, columns, height, **keywords):
-    """Figure of the page's width with a grid of axes, always a 2-D array."""
+    """Returns a figure of the page's width with a grid of axes, always a 2-D array."""
     return plt.subplots(rows, columns, figsize=(WIDTH, height), squeeze=False, **keywords)
 
 
 def number_ticks(axis, subs=()):
-    """Further numbers along a logarithmic axis that shows too few powers of ten, or at these
-    multiples of each power."""
+    """Adds tick labels to a logarithmic axis with too few powers of ten, or at the multiples `subs` of each power."""
     low, high = axis.get_view_interval()
     if axis.get_scale() == "log" and (subs or high / low < 60):
         axis.set_major_locator(LogLocator(subs=subs or ((1, 2, 5) if high / low < 20 else (1, 3))))
@@ -142,23 +142,24 @@ def number_ticks(axis, subs=()):
 LINE = 0.17  # height of a line of a legend [inch]
 
 
-LETTER = 0.062  # usual width of a letter of a legend or label [inch]
+LETTER = 0.062  # mean width of a letter of a legend or label [inch]
 
 
 def legend_columns(labels, width, most=4):
-    """The number of columns of a legend with these labels that fit into so many inches."""
+    """Returns the number of columns in which a legend with these labels fits into `width` [inch]."""
     return max(
         1, min(most, len(labels), int((width - 0.1) / (0.6 + LETTER * max(map(len, labels)))))
     )
 
 
 def legend_height(labels, width):
-    """Of a legend above panels, as wide as the figure [inch]."""
+    """Returns the height of a legend above panels, as wide as the figure [inch]."""
     return 0.08 + LINE * -(-len(labels) // legend_columns(labels, width, 6))
 
 
 def legend_above(figure, handles, labels, columns=4):
-    """A legend over all panels, with room for it; none without labels. `columns`: None for as many as fit."""
+    """Adds a legend over all panels and reserves room for it; does nothing without labels. `columns`: None for as many
+    columns as fit."""
     if not labels:
         return
     columns = columns or legend_columns(labels, figure.get_figwidth(), 6)
@@ -170,34 +171,35 @@ def legend_above(figure, handles, labels, columns=4):
 
 
 def lettered(figure, axes):
-    """The figure with (a), (b), … before the titles of the axes."""
+    """Writes (a), (b), … before the titles of the axes and returns the figure."""
     for i, ax in enumerate(axes):
         ax.set_title(f"({chr(ord('a') + i)}) {ax.get_title(loc='left')}", loc="left")
     return figure
 
 
 def note(ax, x, y, text, colour=BLACK, ha="left", va="top"):
-    """A label inside the axes, at fractions of their sides, legible over lines."""
+    """Writes a label inside the axes, at fractions of their width and height, on a background that makes it legible
+    over lines."""
     ax.text(x, y, text, transform=ax.transAxes, color=colour, fontsize=7, bbox=PLATE, ha=ha, va=va)
 
 
 def fix_layout(figure):
-    """Finds the layout now and for good: matplotlib would find it again for every format. Its last
-    digits differ from run to run, with what lies where in memory, and would show in the identifiers
-    of an SVG."""
+    """Computes the layout once: matplotlib would compute it again for every file format. The last digits of the layout
+    differ between runs, because they depend on memory addresses, and would change the identifiers in an SVG.
+    """
     engine = figure.get_layout_engine()
     if engine is None:
         return
     engine.execute(figure)
     for axes in figure.axes:
         axes.set_position(Bbox(axes.get_position(original=True).get_points().round(12)))
-    # None at all: with any, matplotlib would go through the figure once more before it draws.
+    # No layout engine: with one, matplotlib would traverse the figure again before drawing.
     with matplotlib.rc_context({"figure.constrained_layout.use": False}):
         figure.set_layout_engine(None)
 
 
 def show_dollars(figure):
-    """Makes names that hold "$" texts, not formulas. Only the ticks of logarithmic axes have formulas."""
+    """Makes names that contain "$" texts instead of formulas. Only the ticks of logarithmic axes have formulas."""
     formulas = {
         label
         for axes in figure.axes
@@ -210,13 +212,14 @@ def show_dollars(figure):
             text.set_parse_math(False)
 
 
-# Texts of an SVG stay texts. A PDF embeds TrueType fonts (Type 42), since journals refuse those of Type 3.
+# Texts in an SVG stay texts. A PDF embeds TrueType fonts (Type 42), because journals refuse fonts of Type 3.
 FILES = {"svg.fonttype": "none", "pdf.fonttype": 42, "ps.fonttype": 42}
 
 
 def picture(figure, kind, salt="hapbench", dpi=DPI):
-    """The bytes of the figure as "svg", "pdf" or "png". Same figure, same bytes: no dates, and
-    identifiers in an SVG that follow from `salt`. `dpi`: pixels per inch of a PNG and in a PDF."""
+    """Returns the bytes of the figure as "svg", "pdf" or "png". Equal figures give equal bytes: there are no dates, and
+    identifiers in an SVG follow from `salt`. `dpi`: pixels per inch of a PNG and of rasterised parts of a PDF.
+    """
     show_dollars(figure)
     fix_layout(figure)
     drawn = io.BytesIO()
@@ -229,9 +232,9 @@ def picture(figure, kind, salt="hapbench", dpi=DPI):
     return compact(drawn.getvalue().decode()).encode() if kind == "svg" else drawn.getvalue()
 
 
-PLACES = re.compile(r'( (?:d|x|y)=")([^"]*)')  # attributes of an SVG that hold places
+PLACES = re.compile(r'( (?:d|x|y)=")([^"]*)')  # attributes of an SVG that contain coordinates
 DISC = re.compile(r'<path id="(\w+)" d="M 0 ([\d.]+) \nC[^"]*z\n"')
-# Matplotlib gives the style to the group or, from some version on, to each disc.
+# Matplotlib gives the style to the group or, in newer versions, to each disc.
 DISCS = re.compile(
     r'<g( clip-path="[^"]*")?(?: style="([^"]*)")?>\s*'
     r'((?:<use xlink:href="#(\w+)" x="[^"]*" y="[^"]*"(?: style="([^"]*)")?/>\s*)+)</g>'
@@ -239,7 +242,7 @@ DISCS = re.compile(
 
 
 def as_dots(svg):
-    """Discs drawn in a row as one path of dots with round ends."""
+    """Replaces consecutive discs by one path of dots with round ends."""
     radii = dict(DISC.findall(svg))
 
     def dots(group):
@@ -265,8 +268,8 @@ def as_dots(svg):
 
 
 def compact(svg):
-    """The same drawing in half the bytes: places to a tenth of a point, styles that repeat as
-    classes, short identifiers, and nothing that only a reader of the source would see."""
+    """Returns the same drawing with half the bytes: coordinates rounded to a tenth of a point, repeated styles as
+    classes, short identifiers, and no parts that are visible only in the source."""
     svg = as_dots(re.sub(r"<!--.*?-->|<metadata>.*?</metadata>|<g[^>]*/>", "", svg, flags=re.S))
     svg = PLACES.sub(
         lambda place: place[1]
@@ -289,7 +292,7 @@ def compact(svg):
     rules = "".join(f".{name}{{{style}}}" for style, name in often.items())
     svg = re.sub(r"(<defs>\s*<style[^>]*>)", lambda d: d[1] + rules, svg, count=1)
     svg, inner = re.sub(r">\s+<", "><", svg), re.compile(r"<g>((?:<(?!/?g[ >])[^>]*>[^<]*)*)</g>")
-    while inner.search(svg):  # groups that say nothing of what is in them
+    while inner.search(svg):  # groups that have no effect on their contents
         svg = inner.sub(r"\1", svg)
     svg = re.sub(
         r' d="([^"]*)"',
@@ -298,14 +301,14 @@ def compact(svg):
     )
     svg = re.sub(
         r"(?<=\d)L(-?[\d.]+ -?[\d.]+)(?=[Lz\"])", r" \1", svg
-    )  # what follows a place is a line
+    )  # the command after a coordinate is a line
     return re.sub(r"((?:[^>]*>){12,}?)(?=<(?:path|g|use|rect)[ >])", "\\1\n", svg).strip() + "\n"
 
 
 def reduced(time, low, high, spans):
-    """The least of `low` and the greatest of `high` in each of so many equal spans of time that hold a row, and where
-    the span begins; the rows themselves if they are no more. NaN only where a span has nothing else.
-    """
+    """Returns the smallest of `low` and the largest of `high` in each of `spans` equal time spans that contain a row,
+    and the start of the span. Returns the rows unchanged if there are not more rows than values. A value is NaN only if
+    its span has no other values."""
     if len(time) <= 2 * spans:
         return time, low, high
     length = (time[-1] - time[0]) or 1.0
@@ -315,23 +318,24 @@ def reduced(time, low, high, spans):
 
 
 def curve(time, low, high, spans):
-    """The same as one line: down and up within each span."""
+    """Returns the result of reduced() as one line that goes down and up within each span."""
     t, least, most = reduced(time, low, high, spans)
     if len(t) == len(time):
         return time, low
     return np.repeat(t, 2), np.column_stack([least, most]).ravel()
 
 
-STRIPE = 6  # points
+STRIPE = 6  # [points]
 
 
 def equal_curves(curves):
-    """For each curve (arrays) its place among those that are equal to it, and how many these are."""
+    """Returns for each curve (arrays) its index among the curves that are equal to it, and the number of these
+    curves."""
     keys = [b"".join(np.ascontiguousarray(part).tobytes() for part in curve) for curve in curves]
     return [(keys[:i].count(key), keys.count(key)) for i, key in enumerate(keys)]
 
 
 def striped(ls, place, count):
-    """The line style of one of `count` equal curves: stripes in turn, so that each one shows; the
-    given style for a single one."""
+    """Returns the line style of one of `count` coinciding curves: stripes that alternate, so that each curve is
+    visible. A single curve keeps the given style."""
     return ls if count == 1 else (place * STRIPE, (STRIPE, STRIPE * (count - 1)))

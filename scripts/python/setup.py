@@ -1,12 +1,13 @@
 """pip install ./scripts/python: compiles the program and the module with CMake, and installs them with the package.
 
-The wheel is the package with what `cmake --install --component program` installs: the module, the program in hapbench/bin and
-the files that come with it in hapbench/share, where they find each other. The command hapbench of the environment calls the
-program. All of it is in folders of its own, so that pip uninstall leaves nothing. The wheel is for this machine and this
-Python: it uses the processor's instructions and the system's libraries.
+The wheel contains the package and the files that `cmake --install --component program` installs: the module, the
+program in hapbench/bin, and the files of the program in hapbench/share, where the program finds them. The command
+hapbench of the environment calls the program. All files are in folders of the package, so that pip uninstall leaves
+nothing. The wheel is for this machine and this Python: it uses the processor's instructions and the system's libraries.
 
-HAPBENCH_BUILD_DIR names the folder of the build (default: build/pip of the source tree). A folder that CMake has configured
-is built as it is, so that a build of scripts/build --python (build/release) is not compiled again."""
+HAPBENCH_BUILD_DIR names the build folder (default: build/pip of the source tree). A folder that CMake has already
+configured keeps its configuration, so that a build of scripts/build --python (build/release) is not compiled again.
+"""
 import os
 import re
 import shutil
@@ -21,13 +22,13 @@ from setuptools.command.build_ext import build_ext
 HERE = Path(__file__).resolve().parent
 SOURCE = HERE.parents[1]
 BUILD = Path(os.environ.get("HAPBENCH_BUILD_DIR") or SOURCE / "build" / "pip").absolute()
-FILES = BUILD / "pip"  # of setuptools, which else writes into the source tree
-CPU_SECONDS = 420  # that a build from nothing takes, divided among the processors
+FILES = BUILD / "pip"  # output of setuptools, which would otherwise write into the source tree
+CPU_SECONDS = 420  # processor time of a build from scratch [s], divided among the processors
 OPTIONS = ("HAPBENCH_BUILD_TESTS=OFF", "HAPBENCH_BUILD_RENDERER=OFF", "HAPBENCH_BUILD_PYTHON=ON")
 
 
 def say(text):
-    """A line that pip shows: it keeps the output of a build to itself, but not the terminal."""
+    """Prints a line on the terminal. pip shows no output of a build, but leaves the terminal accessible."""
     print(f"hapbench: {text}", file=sys.stderr, flush=True)
     if sys.stderr.isatty():
         return
@@ -63,7 +64,7 @@ def compile_program():
 
 
 class Compiled(build_ext):
-    """The extension of the package, and the files beside it, are CMake's."""
+    """Replaces the build of the extension by CMake, which also installs the files beside it."""
 
     def run(self):
         stage = compile_program()
@@ -94,7 +95,7 @@ if not (SOURCE / "CMakeLists.txt").is_file():
     sys.exit(
         f"hapbench: error: {SOURCE} is not hapbench's source tree; allowed: pip install SOURCE/scripts/python"
     )
-shutil.rmtree(FILES, ignore_errors=True)  # modules of an older version
+shutil.rmtree(FILES, ignore_errors=True)  # removes modules of an older version
 FILES.mkdir(parents=True)
 os.chdir(HERE)
 setup(

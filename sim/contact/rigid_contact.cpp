@@ -21,7 +21,7 @@ constexpr std::size_t kMaxWorking = 24;
 /// Two points of two segments or of a segment and a triangle, as fractions and positions.
 struct Pair {
   Vec3 on_tool, on_triangle;
-  double fraction;  ///< of the point on the tool's segment: 0 at the tip centre, 1 at the far end
+  double fraction;  ///< position of the point on the tool's segment: 0 at the tip centre, 1 at the far end
 };
 
 /// Returns the closest points of the segments p q and a b (C. Ericson, Real-Time Collision Detection, 2005, 5.1.9).

@@ -82,8 +82,8 @@ struct Shape {
   /// The threshold is larger than the rounding error, so that two sheets back to back, which enclose no volume, are
   /// not inside out.
   bool is_inside_out() const { return volume < -1e-12 * size() * size() * size(); }
-  /// The threshold is a thickness of a millionth of the size. Coordinates with six or seven digits let the two sides of
-  /// a plane quadrilateral, divided along different diagonals, enclose so much.
+  /// The threshold is a thickness of a millionth of the size. The two sides of a plane quadrilateral, divided along
+  /// different diagonals, can enclose this volume if coordinates have six or seven digits.
   bool encloses_nothing() const { return std::abs(volume) <= 1e-6 * size() * area; }
 };
 
@@ -259,8 +259,8 @@ std::vector<Triangle> welded_triangles(const TriangleSoup& soup) {
 
 /// Triangles that have the same corners as an earlier triangle.
 struct Copies {
-  std::vector<bool> is_copy;       ///< for each triangle; empty if there are no copies
-  std::vector<bool> has_opposite;  ///< for each triangle: a copy with the opposite winding exists
+  std::vector<bool> is_copy;       ///< true for triangles that are copies; empty if there are no copies
+  std::vector<bool> has_opposite;  ///< true for triangles that have a copy with the opposite winding
 };
 
 /// Finds triangles with the same corners, and counts them in the findings.

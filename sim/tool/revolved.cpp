@@ -265,8 +265,8 @@ void Revolved::mark_near(const ToolPose& pose, double margin, const PointArrays&
 Box Revolved::box_near(const ToolPose& pose, double margin, const Box& bounds) const noexcept {
   const AxisInterval whole{meridian_.low - margin, std::max(meridian_.high, meridian_.ball) + margin};
   const AxisInterval part = axis_interval_near(whole, pose, meridian_.widest + margin, bounds);
-  // Points in `bounds` have their s in the interval, and points of the body near them have their s within the
-  // margin of it.
+  // Points in `bounds` have axial coordinates s in the interval `part`. Points of the body near them have axial
+  // coordinates within `margin` of this interval.
   double widest = part.high + margin >= 0.0 ? meridian_.ball : 0.0;
   for (std::size_t i = 0; i + 1 < meridian_.profile.size(); ++i) {
     const auto [a, b] = std::pair(meridian_.profile[i], meridian_.profile[i + 1]);

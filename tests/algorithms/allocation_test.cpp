@@ -144,7 +144,7 @@ class ContactCounter final : public Observer {
   int rows_with_contact = 0;
 };
 
-/// Returns the number of allocations of a run, a reset and the same run again, from the first step on.
+/// Returns the number of allocations in a run, a reset and a second run, counted from the first step on.
 std::uint64_t allocations_of_two_runs(Simulation& simulation) {
   const AllocationCount count;
   simulation.run();

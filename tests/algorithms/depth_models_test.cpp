@@ -48,7 +48,7 @@ TEST(ShortestDistance, AnUndefinedDirectionFallsBackToTheInwardNormal) {
   const auto on_axis = evaluate(flat, kPose, at(-8, 0), normal);
   EXPECT_EQ(on_axis.depth, kUnit);
   EXPECT_EQ(on_axis.gradient, Vec3(-normal));
-  // The same case at the centre of the round tip: in the cylinder (s = 0) and just inside the ball.
+  // The same case at the centre of the round tip: first in the cylinder (s = 0), then just inside the ball.
   const Cylinder round{kUnit, 16 * kUnit, Tip::round};
   EXPECT_EQ(evaluate(round, kPose, at(0, 0), normal).gradient, Vec3(-normal));
   EXPECT_EQ(evaluate(round, kOrigin, 1e-13 * kUnit * kAxis, normal).gradient, Vec3(-normal));

@@ -70,9 +70,9 @@ TEST(Registry, EveryForceBoundHoldsForASingleSpring) {
   }
 }
 
-/// Stiffness in a wedge, in units of K, along two axes of the tensor. The half angle between each face and the middle
-/// plane of the wedge is w [rad], 0 < w < pi/2. +y points out of the wedge, x from face to face. The contact gradients
-/// (+-cos w, -sin w, 0) have the inner product -cos 2w.
+/// Stiffness in a wedge, in units of K, along two axes of the tensor. w is the angle between each face and the middle
+/// plane of the wedge [rad], 0 < w < pi/2. +y points out of the wedge, and x points from one face to the other. The
+/// contact gradients (+-cos w, -sin w, 0) have the inner product -cos 2w.
 struct WedgeStiffness {
   double along;   ///< stiffness along the direction out of the wedge
   double across;  ///< stiffness from face to face

@@ -10,7 +10,7 @@ namespace {
 
 bool refuted = false;
 
-/// Removes our option --full from the arguments and returns true if it was there.
+/// Removes the option --full of this program from the arguments. Returns true if it was present.
 bool take_full(int& argc, char** argv) {
   char** const end =
       std::remove_if(argv + 1, argv + argc, [](const char* a) { return std::string_view(a) == "--full"; });

@@ -161,7 +161,7 @@ void search_among(benchmark::State& state, const std::string& search, std::size_
   time_search(state, {search, shell_of(points), task_scene("T2"), 1024});
 }
 
-/// Returns poses of all tasks. In T1 the tool comes down from free air, where building a list takes longest.
+/// Returns poses of all tasks. T1 includes the descent from free air, during which building a list takes longest.
 std::vector<ToolPose> some_poses() {
   constexpr std::size_t kEvery = 64;
   std::vector<ToolPose> poses;

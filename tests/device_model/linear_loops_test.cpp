@@ -96,7 +96,8 @@ double first_crossing(SampledLoop loop) {
   for (int i = 1; i <= 2000; ++i) {
     const double high = 1e-3 + (std::numbers::pi - 1e-3) * i / 2000;
     const std::complex<double> at = stiffness_at(high);
-    if (before.imag() * at.imag() <= 0.0 && std::abs(before - at) < std::abs(at)) {  // no pole in between
+    // There is no pole between the two angles.
+    if (before.imag() * at.imag() <= 0.0 && std::abs(before - at) < std::abs(at)) {
       double a = low, b = high;
       while (b - a > 1e-13) {
         const double theta = 0.5 * (a + b);
@@ -155,7 +156,8 @@ TEST(SampledLoop, IsTheMapOfTheDeviceWithFiltersOfAnyOrder) {
         // Rounding of the closed form above, a few ulp of a / b^2, and of up to eight modes that are some ten times
         // larger than the input.
         ASSERT_NEAR(device.handle().position.x(), state[0], 1e-9 * scale) << order << " " << k;
-        // Before the first sample, the device rests at zero; in the map, all modes are zero.
+        // Before the first sample, the handle rests at zero. Therefore all modes of the filters in the map are zero,
+        // too.
         device.drive(-loop.stiffness * tool.position - loop.wall_damping * tool.velocity, Vec3::Zero());
         state = A * state;
       }

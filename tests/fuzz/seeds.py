@@ -1,16 +1,17 @@
-"""Writes what a target of libFuzzer starts from: seeds.py TARGET FOLDER. The bundled files and those of tests/data."""
+"""Writes the seed inputs of a libFuzzer target: seeds.py TARGET FOLDER. Seeds are the bundled files and the files of
+tests/data."""
 import json
 import sys
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-LARGEST = 20_000  # bytes; scripts/fuzz makes none that is larger
+LARGEST = 20_000  # [bytes]; scripts/fuzz does not generate larger inputs
 PATTERNS = {"scenario": "*.json", "run": "*.json", "device": "*.json", "module": "module"}
 
 
 def without_prose(target, text):
-    """A scene, or its device, in the fewest bytes: what is changed in a blank or a description
-    finds nothing. None for other files."""
+    """Returns a scene, or its device, in the smallest number of bytes, because mutations of blanks and descriptions
+    find no errors. Returns None for other files."""
     scene = json.loads(text)
     if not isinstance(scene, dict) or not {"environment", "extends"} & scene.keys():
         return None
@@ -23,7 +24,7 @@ def without_prose(target, text):
 
 
 def tables(text):
-    """The first rows of a table in the other notations that the readers accept."""
+    """Yields the first rows of a table in the other notations that the readers accept."""
     lines = text.splitlines()[:5]
     rows = b"\n".join(lines) + b"\n"
     semicolons = rows.replace(b",", b";")

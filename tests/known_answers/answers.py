@@ -1,6 +1,6 @@
-"""Known answers: rows that compare what hapbench prints with a closed form or with a computation
-that shares no code with it, and with what a naive reading of the field's meaning would print, which
-must be refused. Scenes yield their rows from few runs."""
+"""Known answers: rows that compare a printed number with a closed form, or with a computation that shares no code with
+hapbench. Each row also has the number that a naive reading of the field's meaning gives; the comparison must refuse it.
+A scene yields its rows from few runs."""
 import csv
 import json
 import math
@@ -17,8 +17,7 @@ SCENES = {}
 
 @dataclass(frozen=True)
 class Within:
-    """A tolerance with its derivation; the relative part is of the largest known value of a
-    series."""
+    """A tolerance with its derivation. The relative part refers to the largest known value of a series."""
 
     why: str
     relative: float = 0.0
@@ -41,7 +40,7 @@ class Answer:
     within: Within
     known: object
     printed: object
-    naive: tuple = None  # what it says, and the value
+    naive: tuple = None  # naive meaning, and its value
 
     def faults(self):
         if not same(self.printed, self.known, self.within):
@@ -77,11 +76,11 @@ def same(value, known, within):
     )
     return value.shape == known.shape and np.allclose(
         value, known, rtol=0.0, atol=allowed, equal_nan=True
-    )  # NaN: empty cells
+    )  # NaN for empty cells
 
 
 class Table:
-    """A CSV file; columns as arrays of numbers (NaN for empty cells) or lists of texts."""
+    """A CSV file. Columns are arrays of numbers (NaN for empty cells) or lists of texts."""
 
     def __init__(self, file):
         self.name = Path(file).name
@@ -116,7 +115,7 @@ class Run:
 
 
 class Bench:
-    """Where a scene works: its folder, the program, and the answers it has found."""
+    """Workspace of a scene: its folder, the program, and the answers found so far."""
 
     def __init__(self, scene, folder):
         self.scene, self.folder, self.answers, self.printed = scene, folder, [], []
@@ -162,7 +161,8 @@ class Bench:
         self.answers.append(Answer(self.scene, field, known_by, within, known, printed, naive))
 
     def proven(self, field, file, test, said, refused):
-        """A row that a test in C++ is: it holds both texts, what is known and what is refused."""
+        """Adds a row that is proven by a test in C++. The test contains both texts: the known answer and the refused
+        answer."""
         suite, name = test.split(".")
         body = re.search(
             rf"TEST(_F)?\({suite}, {name}\) {{(.*?)\n}}",
@@ -180,8 +180,8 @@ class Bench:
         )
 
     def metrics(self, run, table):
-        """Rows (metric, known value, how it is known, tolerance, naive answer, its value); the last
-        two may be left out."""
+        """Adds rows (metric, known value, source of the known value, tolerance, naive meaning, naive value); the last
+        two are optional."""
         for name, known, known_by, within, *naive in table:
             self.add(
                 re.sub(r"^targets\.\d+", "targets.PLACE", name),
@@ -193,7 +193,7 @@ class Bench:
             )
 
     def tolerance(self, run, metric, known, known_by, within, naive, exact):
-        """The row of a metric's tolerance, and one that the metric keeps it."""
+        """Adds the row of a metric's tolerance, and a row which states that the metric is within it."""
         printed = run.summary["tolerances"][metric]
         self.add(f"run --json: tolerances.{metric}", printed, known, known_by, within, naive)
         self.add(
@@ -205,7 +205,7 @@ class Bench:
         )
 
     def columns(self, table, rows):
-        """The same for the columns of a table, whose known values are series."""
+        """Adds rows like metrics(), for the columns of a table, whose known values are series."""
         for name, known, known_by, within, *naive in rows:
             known = (
                 np.broadcast_to(known, len(table.rows))
@@ -219,13 +219,13 @@ class Bench:
 
 
 def scene(function):
-    """A function of a Bench that adds answers; its documentation says what is known about it."""
+    """Registers a function that adds answers to a Bench. Its docstring describes the known answers."""
     SCENES[function.__name__] = function
     return function
 
 
 def profile(given, t):
-    """A profile of a scenario at the times t, by its definition."""
+    """Returns the values of a scenario's profile at the times t, by the definition of the profile."""
     if not isinstance(given, dict):
         return np.full_like(t, float(given))
     if given["type"] == "ramp":

@@ -1,5 +1,5 @@
-"""Every printed field, of which the program has the list, has a known answer:
-tests/known_answers/README.md."""
+"""Tests that every printed field has a known answer: tests/known_answers/README.md. The program provides the list of
+printed fields."""
 import json
 import re
 import unittest
@@ -12,13 +12,13 @@ from fixture import PROGRAM, must, scratch_folder
 for scenes in sorted(Path(__file__).parent.glob("of_*.py")):
     import_module(scenes.stem)
 
-FOUND = {}  # the bench of each scene
+FOUND = {}  # Bench of each scene
 ANSWERS = []
 NO_TABLES = {"run", "import"}  # commands whose JSON does not repeat a table
 NO_WORDS = {"file of the results"}
 TOLERANCES = "tolerances"
 DIAGNOSIS = "diagnosis"
-# Members of JSON that say where and how, not what.
+# JSON members that describe the origin of a result and contain no results.
 NO_ANSWERS = {"provenance", "name", "algorithm", "scenario"}
 
 
@@ -27,7 +27,7 @@ def described(what):
 
 
 def keys_of(data):
-    """Each key with whether its value, an object or a list of objects, only groups others."""
+    """Yields each key, and True if its value is an object or a list of objects that only groups other keys."""
     for part in data if isinstance(data, list) else ():
         yield from keys_of(part)
     if not isinstance(data, dict):
@@ -39,14 +39,14 @@ def keys_of(data):
     }
     members.update(
         {f"{TOLERANCES}.{name}": value for name, value in data.get(TOLERANCES, {}).items()}
-    )  # beside the metrics' own
+    )  # in addition to the columns of the metrics
     members.update(
         {
             f"{DIAGNOSIS}.{name}": value
             for finding in data.get(DIAGNOSIS, [])
             for name, value in finding.items()
         }
-    )  # words of other keys
+    )  # words that are values of other keys
     for key, value in members.items():
         grouping = (
             isinstance(value, dict)
@@ -59,7 +59,7 @@ def keys_of(data):
 
 
 def printed_fields():
-    """Metrics, columns as FILE:COLUMN, words as "WORD (KIND)", and keys of JSON that are neither as
+    """Returns all printed fields: metrics, columns as FILE:COLUMN, words as "WORD (KIND)", and other keys of JSON as
     "COMMAND --json: KEY"."""
     metrics = [metric["name"] for metric in described("metrics")[0]["metrics"]]
     parts = {part for name in metrics for part in name.split(".")}
@@ -79,7 +79,7 @@ def printed_fields():
         for word in described("words")["words"]
         if word["kind"] not in NO_WORDS
     ]
-    # Runs of compare are those of run.
+    # The runs of compare have the same files as run.
     printed = [
         (command, *key)
         for bench in FOUND.values()

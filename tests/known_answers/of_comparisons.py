@@ -1,4 +1,4 @@
-"""Scenes behind the tables of compare, recomputed from the summaries of single runs."""
+"""Scenes for the tables of compare, recomputed from the summaries of single runs."""
 import math
 from itertools import product
 
@@ -12,10 +12,83 @@ BY = ["force_step_p99_N", "velocity_total_variation_m_per_s", "contact_share"]
 SEEDS = 14
 
 
+def ranks_of(means, bad):
+    """Returns the rank by law. Laws without failures are ranked by their means; means within 0.1 % share a rank. Laws
+    with failures follow, ranked by their number of failures `bad`. Empty if all ranks would be equal.
+    """
+    alike = lambda a, b: abs(means[a] - means[b]) <= 1e-3 * max(abs(means[a]), abs(means[b]))
+    order = sorted((name for name in means if bad[name] == 0), key=means.get)
+    leader, rank = {}, {}
+    for i, name in enumerate(order):
+        leader[i] = leader[i - 1] if i and alike(order[leader[i - 1]], name) else i
+        rank[name] = 1 + leader[i]
+    rank.update(
+        {name: 1 + sum(bad[other] < bad[name] for other in LAWS) for name in LAWS if bad[name]}
+    )
+    return rank if len(set(rank.values())) > 1 else {}
+
+
+def rows_of_ranking(scenes, runs):
+    """Returns the known rows of ranking.csv, the rows that a naive reading gives, and the ranks of each law over scenes
+    and metrics. `runs`: Run by scene, law and seed."""
+    known, naive, ranks = [], [], {law: [] for law in LAWS}
+    number = lambda x: math.nan if x is None else float(x)
+    outcomes = {
+        (s, law): [runs[s, law, k].summary["outcome"] for k in range(SEEDS)]
+        for s in scenes
+        for law in LAWS
+    }
+    for s, law, metric in product(scenes, LAWS, BY):
+        bad = {name: SEEDS - outcomes[s, name].count("completes") for name in LAWS}
+        some = [name for name in LAWS if bad[name] < SEEDS]
+        common = [
+            k for k in range(SEEDS) if all(outcomes[s, name][k] == "completes" for name in some)
+        ]
+        values = {name: [runs[s, name, k].metric(metric) for k in common] for name in some}
+        means = {name: np.mean(v) for name, v in values.items() if None not in v}
+        ranked = metric != "contact_share"
+        rank = ranks_of(means, bad)
+        of_law = outcomes[s, law]
+        counts = [f"{name} {of_law.count(name)}" for name in dict.fromkeys(of_law)]
+        known.append(
+            {
+                "scenario": s,
+                "algorithm": law,
+                "metric": metric,
+                "seeds": SEEDS,
+                "failed": bad[law],
+                "common_seeds": len(common),
+                "outcome": of_law[0] if len(counts) == 1 else "; ".join(counts),
+                "mean": number(means.get(law)),
+                "better": "less" if ranked else "",
+                "spread": number(np.std(values[law], ddof=1) if law in means else None),
+                "rank": number(rank.get(law) if ranked else None),
+            }
+        )
+        own = [
+            math.nan if runs[s, law, k].metric(metric) is None else runs[s, law, k].metric(metric)
+            for k in range(SEEDS)
+        ]
+        naive.append(
+            {
+                "failed": 0,
+                "mean": float(np.nanmean([*own, 0.0])),
+                "spread": number(np.std(values[law]) if law in means else None),
+                "rank": 1 + LAWS.index(law),
+                "common_seeds": SEEDS - bad[law],
+                "seeds": SEEDS - bad[law],
+            }
+        )
+        if ranked and law in rank:
+            ranks[law].append(rank[law])
+    return known, naive, ranks
+
+
 @scene
 def league(bench):
-    """A mass on two parallel springs, soft, and so stiff that leapfrog amplifies every step: some
-    starts leave the bounds in time. The league by the book: means over common seeds, and ranks."""
+    """A mass on two parallel springs. One is soft; the other is so stiff that leapfrog amplifies every step, and some
+    starts leave the bounds. Computes the ranking by its definition: means over common seeds, and ranks.
+    """
     start = {"position_m": [1e-4, -1e-3, 0]}
     bench.scenario(
         "held",
@@ -57,67 +130,7 @@ def league(bench):
         for k in range(SEEDS)
     }
     table = Table(out / "ranking.csv")
-    known, naive, ranks = [], [], {law: [] for law in LAWS}
-    number = lambda x: math.nan if x is None else float(x)
-    outcomes = {
-        (s, law): [runs[s, law, k].summary["outcome"] for k in range(SEEDS)]
-        for s in scenes
-        for law in LAWS
-    }
-    for s, law, metric in product(scenes, LAWS, BY):
-        bad = {name: SEEDS - outcomes[s, name].count("completes") for name in LAWS}
-        some = [name for name in LAWS if bad[name] < SEEDS]
-        common = [
-            k for k in range(SEEDS) if all(outcomes[s, name][k] == "completes" for name in some)
-        ]
-        values = {name: [runs[s, name, k].metric(metric) for k in common] for name in some}
-        means = {name: np.mean(v) for name, v in values.items() if None not in v}
-        sure = [name for name in means if bad[name] == 0]
-        ranked = metric != "contact_share"
-        alike = lambda a, b: abs(means[a] - means[b]) <= 1e-3 * max(abs(means[a]), abs(means[b]))
-        order = sorted(sure, key=means.get)
-        leader, rank = {}, {}
-        for i, name in enumerate(order):
-            leader[i] = leader[i - 1] if i and alike(order[leader[i - 1]], name) else i
-            rank[name] = 1 + leader[i]
-        rank.update(
-            {name: 1 + sum(bad[other] < bad[name] for other in LAWS) for name in LAWS if bad[name]}
-        )
-        if len(set(rank.values())) < 2:
-            rank = {}  # all would be equal
-        of_law = outcomes[s, law]
-        counts = [f"{name} {of_law.count(name)}" for name in dict.fromkeys(of_law)]
-        known.append(
-            {
-                "scenario": s,
-                "algorithm": law,
-                "metric": metric,
-                "seeds": SEEDS,
-                "failed": bad[law],
-                "common_seeds": len(common),
-                "outcome": of_law[0] if len(counts) == 1 else "; ".join(counts),
-                "mean": number(means.get(law)),
-                "better": "less" if ranked else "",
-                "spread": number(np.std(values[law], ddof=1) if law in means else None),
-                "rank": number(rank.get(law) if ranked else None),
-            }
-        )
-        own = [
-            math.nan if runs[s, law, k].metric(metric) is None else runs[s, law, k].metric(metric)
-            for k in range(SEEDS)
-        ]
-        naive.append(
-            {
-                "failed": 0,
-                "mean": float(np.nanmean([*own, 0.0])),
-                "spread": number(np.std(values[law]) if law in means else None),
-                "rank": 1 + LAWS.index(law),
-                "common_seeds": SEEDS - bad[law],
-                "seeds": SEEDS - bad[law],
-            }
-        )
-        if ranked and law in rank:
-            ranks[law].append(rank[law])
+    known, naive, ranks = rows_of_ranking(scenes, runs)
     says = {
         "failed": "of runs that diverge",
         "mean": "over all seeds",
@@ -143,8 +156,8 @@ def league(bench):
             wrong,
         )
     order = [law["algorithm"] for law in printed["laws"]]
-    # The other laws are stiffer than 4 M / dt^2 = 4e5 N/m, of which virtual coupling has two
-    # thirds.
+    # The stiffness of the other laws exceeds 4 M / dt^2 = 4e5 N/m; the stiffness of virtual coupling is two thirds of
+    # it.
     for key, values, wrong in (
         ("mean_rank", [np.mean(ranks[law]) for law in order], ("place in the order", [1, 2, 3, 4])),
         (
@@ -169,8 +182,8 @@ def league(bench):
 
 @scene
 def compared(bench):
-    """comparison.csv is the runs' summaries, one of each law; a shell is what the file of a point
-    shell says."""
+    """comparison.csv contains the summaries of the runs, one for each law. A shell is described by the contents of the
+    point shell's file."""
     base = bench.scenario(
         "compared",
         time={"step_s": 0.001, "steps": 400},

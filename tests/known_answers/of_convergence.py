@@ -1,4 +1,4 @@
-"""Scenes behind the tables of converge: recurrences of one spring against their limits."""
+"""Scenes for the tables of converge: recurrences of one spring and their limits."""
 import math
 
 import numpy as np
@@ -10,8 +10,8 @@ from physics import PLAIN, SPRING, UP, Phases, nearest_rank, step_matrix
 
 @scene
 def sampled_finer(bench):
-    """Laws on a plane at half and a quarter of the step and of the distance of its points: single
-    runs, measured at the same times."""
+    """Laws on a plane at half and a quarter of the step and of the point spacing: single runs, measured at the same
+    times."""
     laws, by, scene_name = (
         ["summation", "proxy", "shaped_stiffness", "highest_depth"],
         ["force_step_p99_N", "force_max_N"],
@@ -60,8 +60,8 @@ def sampled_finer(bench):
     }
     for m, row in enumerate(said):
         for part in ("spacing", "step"):
-            # No less than the runs are apart; where an order is seen, 1.25 |f - f*| takes its
-            # place. Bins of p99 are 1.6 % wide.
+            # The error is at least the distance of the runs. If an order is observed, it is 1.25 |f - f*| instead. Bins
+            # of p99 are 1.6 % wide.
             far = [max(abs(own[law][m] - runs[m]) for runs in finer[law][part]) for law in laws]
             least = [
                 n[f"error_of_{part}"] is None
@@ -119,8 +119,8 @@ def sampled_finer(bench):
 
 
 def verdict_on(f):
-    """Order, Richardson's value and its error of three results at steps that are halved, with
-    Roache's factor."""
+    """Returns the order, Richardson's value and its error (with Roache's factor) of three results at steps that are
+    halved each time."""
     p = math.log2((f[-3] - f[-2]) / (f[-2] - f[-1]))
     limit = f[-1] + (f[-1] - f[-2]) / (2**p - 1)
     return p, limit, 1.25 * np.abs(f - limit)
@@ -128,9 +128,8 @@ def verdict_on(f):
 
 @scene
 def convergence_in_thirds(bench):
-    """Leapfrog on one damped spring at steps that are divided by r = 3: with the differences d of
-    successive levels the order is p = log(d_1 / d_2) / log r, and Richardson's value is
-    f + (f - f_before) / (r^p - 1)."""
+    """Leapfrog on one damped spring with steps divided by r = 3. With the differences d of successive levels, the order
+    is p = log(d_1 / d_2) / log r, and Richardson's value is f + (f - f_before) / (r^p - 1)."""
     K, M, dt, n, r = 1500.0, 0.1, 0.002, 40, 3
     B = 2 * 0.2 * math.sqrt(K * M)
     base = bench.scenario(
@@ -176,8 +175,8 @@ def convergence_in_thirds(bench):
 
 @scene
 def convergence(bench):
-    """Leapfrog on one damped spring at five steps, where it is after the same time: orders and
-    limit by hand of a recurrence."""
+    """Leapfrog on one damped spring with five steps, evaluated at the same time: orders and limit follow from a
+    recurrence."""
     K, M, dt, n = 1500.0, 0.1, 0.002, 40
     B = 2 * 0.2 * math.sqrt(K * M)
     base = bench.scenario(
@@ -206,7 +205,7 @@ def convergence(bench):
     orders = [math.nan] * 2 + [verdict_on(f[i - 2 : i + 1])[0] for i in range(2, 5)]
     ratio = (
         abs((f[-3] - f[-4]) / f[-3]) / abs((f[-2] - f[-3]) / f[-2]) / 2**p
-    )  # of the three before the last, the more severe
+    )  # of the three levels before the last; the larger error
     near = Within(
         "positions of 1e-4 m known to 1e-18 m after 640 steps, over differences of 1e-6 m",
         relative=1e-9,
@@ -276,7 +275,7 @@ def convergence(bench):
 
 
 def error_of_step(bench, base, f, fine, metric, printed):
-    """The error that compare gives a number: that of the coarsest of three levels."""
+    """Checks the error that compare assigns to a number: the error of the coarsest of three levels."""
     error = verdict_on(f[:3])[2][0]
     (said,) = bench.json(
         "compare",

@@ -1,4 +1,4 @@
-"""Scenes behind the comparison of devices by limit: the motion of linear recurrences."""
+"""Scenes for the comparison of devices by limit: the motion of linear recurrences."""
 import math
 
 import numpy as np
@@ -9,8 +9,8 @@ from physics import PLAIN, bisected, class_of, edge_of, held_loop, high_pass, mo
 
 @scene
 def devices(bench):
-    """The stiffness of two springs, and of a wall that only pushes, on a handle: by the held loop's
-    motion behind scipy's filter."""
+    """The stiffness of two springs, and of a unilateral wall, on a handle, from the motion of the sampled loop with
+    scipy's filter."""
     m, b, T, B, n, resolution, most = 0.1, 0.5, 0.001, 2.0, 2000, 1e-3, 1e-3
     (bench.folder / "mine.json").write_text(
         '{"type":"impedance","handle_mass_kg":0.1,"viscous_N_s_per_m":0.5}', encoding="utf-8"
@@ -182,7 +182,7 @@ def devices(bench):
 
 
 def linear_limit_of_device(bench, B, T, b, cell, m, number, printed, theory):
-    """The linear edge with the hand, by the eigenvalues of the held loop."""
+    """The linear limit with the hand, from the eigenvalues of the sampled loop."""
     pushed = ("mine", "pushes", "summation")
     linear = edge_of(lambda K: held_loop(m + 0.2, b + 2, T, K, B, spring=300), 100.0, 1e6)
     close = Within("an edge by eigenvalues, bisected to 1e-9 or better", relative=1e-8)
@@ -206,7 +206,7 @@ def linear_limit_of_device(bench, B, T, b, cell, m, number, printed, theory):
 
 
 def names_of_devices(bench, number, runs, table):
-    """Which device, scene and law a row is of, and what its maker publishes."""
+    """Device, scene and law of each row, and the limit published by the device's manufacturer."""
     order = [
         (d, s, a)
         for d in ("mine", "omega.3")
@@ -242,10 +242,10 @@ def names_of_devices(bench, number, runs, table):
 
 
 def limits_of_both_ends(bench, fine, how, most, resolution, vibration):
-    """Both ends of what nobody published of a preset: mass over and times 1.3, viscous friction
-    from 0.5 to 5 N s/m."""
-    # What is ours of an omega.3 is its mass and viscous friction once dry friction, encoder and
-    # saturation are gone.
+    """The limits at both ends of a preset's unpublished parameters: mass divided and multiplied by 1.3, viscous
+    friction from 0.5 to 5 N s/m."""
+    # Without dry friction, encoder and saturation, the only estimated parameters of an omega.3 are its mass and viscous
+    # friction.
     bare = [
         word
         for field in ("coulomb_N=0", "encoder_step_m=0", "force_max_N=null")

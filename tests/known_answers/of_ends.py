@@ -1,4 +1,4 @@
-"""Scenes behind the words: how runs end, and the classes of motion that limits are found by."""
+"""Scenes for words: outcomes of runs, and the classes of motion by which limits are found."""
 import math
 
 from answers import EXACT, ROUNDING, Table, Within, scene
@@ -10,8 +10,8 @@ BALL = {"type": "bur", "family": "ball", "diameter_m": 0.004}
 
 @scene
 def ends(bench):
-    """Runs whose end is known by physics, with the word for it and the one that a glance would
-    give."""
+    """Runs whose outcome follows from physics, with the word for this outcome and the word that a superficial look
+    would give."""
     time = {"step_s": 0.0005, "steps": 1000}
     free = {"rendering": {**PLAIN, "algorithm": "summation"}}
     pressed = {
@@ -52,7 +52,8 @@ def ends(bench):
     }
     grips = {"type": "waypoints", "points": [[0, 0.1], [1.0, 0.1], [1.1, 9.0], [4, 9.0]]}
     scenes = [
-        # At 4 M / dt^2 = 1.6e6 N/m an undamped spring is bounded below and not above.
+        # At 4 M / dt^2 = 1.6e6 N/m, the motion on an undamped spring is bounded below this stiffness and unbounded
+        # above it.
         (
             "completes",
             dict(
@@ -75,7 +76,7 @@ def ends(bench):
             "completes",
             None,
         ),
-        # y_k = -1 mm + k 0.05 mm is above 0 first at k = 21; it is 0 to rounding at 20.
+        # y_k = -1 mm + k 0.05 mm first exceeds 0 at k = 21; at k = 20 it is 0 up to rounding.
         (
             "leaves_hole",
             dict(
@@ -87,7 +88,7 @@ def ends(bench):
             "completes",
             22,
         ),
-        # 0.1 + 5 t reaches pi / 2 first at k = 589 (0.2945 s).
+        # 0.1 + 5 t first reaches pi / 2 at k = 589 (0.2945 s).
         (
             "tool_horizontal",
             dict(
@@ -117,14 +118,14 @@ def ends(bench):
             "completes",
             1000,
         ),
-        # The deepest contact of a ball is at most its radius deep: K r = 2 N hold no 3 N.
+        # The depth of a ball's contact is at most its radius: K r = 2 N cannot hold 3 N.
         (
             "went_through",
             dict(pressed, hand={"type": "force", "z_N": -3.0}, rendering=highest),
             "completes",
             1000,
         ),
-        # Friction of 300 N s/m against a hand of 1 N/m: a time constant of 300 s, for a way of 4 s.
+        # Friction of 300 N s/m against a hand of 1 N/m: a time constant of 300 s, for a path of 4 s.
         (
             "not_dragged",
             dict(
@@ -135,7 +136,7 @@ def ends(bench):
             "completes",
             8000,
         ),
-        # Friction rises from 20 to 1355 N s/m against 40 N/m: time constants of 0.5 and 34 s.
+        # Friction increases from 20 to 1355 N s/m against 40 N/m: time constants of 0.5 and 34 s.
         (
             "stuck",
             dict(
@@ -197,7 +198,7 @@ def ends(bench):
 
 
 def classes(bench):
-    """Of the same scenes: runs whose tool does not vibrate and that are no answer all the same."""
+    """Runs on the same scenes whose tool does not vibrate but which are not valid answers."""
     ask = ("--vary", "rendering.stiffness_N_per_m", "--between")
     row = bench.json(
         "limit",
@@ -232,8 +233,8 @@ def classes(bench):
         EXACT,
         ("a tool at rest in free fall is stable", "stable"),
     )
-    # Two patches of points, the tool dragged off the first: it sinks by 1 N over 50 N s/m, and is
-    # within its reach of their box in the end.
+    # Two patches of points. The tool is dragged off the first patch: it sinks by 1 N over 50 N s/m, and in the end it
+    # is within its reach of the bounding box of the points.
     bench.write(
         "gap.csv",
         "x_m,y_m,z_m,nx,ny,nz",
@@ -316,7 +317,7 @@ def divergence(bench, run):
         EXACT,
         ("the first thing checked", "force"),
     )
-    # Leapfrog without damping is stable up to K = 4 M / dt^2, the edge of which K is `share` times.
+    # Leapfrog without damping is stable up to K = 4 M / dt^2. `share` is K divided by this limit.
     findings, share = run.summary["diagnosis"], K * dt**2 / (4 * M)
     edge = next(finding for finding in findings if finding["rule"] == "edge")
     cells = [
@@ -363,8 +364,8 @@ def divergence(bench, run):
 
 @scene
 def limit_of_spring(bench):
-    """The stiffness of one damped spring: runs are judged as the recurrence says, theory is
-    4 - 2 B dt / M - K dt^2 / M = 0."""
+    """The stability limit of the stiffness of one damped spring. The recurrence determines the class of a run. The
+    linear limit satisfies 4 - 2 B dt / M - K dt^2 / M = 0."""
     M, dt, n, zeta, resolution = 0.1, 0.0005, 400, 0.02, 1e-4
     base = bench.scenario(
         "limit_of_spring",
@@ -427,8 +428,8 @@ def limit_of_spring(bench):
             EXACT,
             ("by the eigenvalues", [coarse[i] if word != coarse[i] else "" for i in at]),
         )
-    # A motion dies out when it loses a tenth from quarter to quarter: the edge of that lies below
-    # theory.
+    # A motion decays if it loses a tenth from quarter to quarter. The limit of this condition is below the linear
+    # limit.
     rests = lambda K: judged(K) in ("stable", "decaying")
     stable = [K for K, name in zip(values, classes) if name in ("stable", "decaying")]
     limit, beyond, edge = (
@@ -489,8 +490,10 @@ def limit_of_spring(bench):
 
 
 def limit_under_bound(bench, base, field, strip):
-    """The force is largest at the start, K 1 mm, as long as damping takes more than it adds."""
-    # The force is largest at the start, K 1 mm, as long as damping takes more than it adds.
+    """Limit of the stiffness under a bound on the force. The force is largest at the start, where it is K times 1 mm,
+    as long as damping removes more energy than the integrator adds."""
+    # The force is largest at the start, where it is K times 1 mm, as long as damping removes more energy than the
+    # integrator adds.
     ask = (
         "limit",
         base,
@@ -525,7 +528,7 @@ def limit_under_bound(bench, base, field, strip):
 
 
 def words_of_limit(bench, base, printed, resolution, row):
-    """What is told as it was asked, and that a field without an effect has none."""
+    """Words of limit: the answer repeats the question, and a field without an effect has no limit."""
     for key, known, naive in (
         ("from", 1e3, 1.0),
         ("to", 1e7, 1e6),
@@ -564,8 +567,7 @@ def words_of_limit(bench, base, printed, resolution, row):
 
 
 def digits(bench, base, field):
-    """The table prints a limit down to the leading digit of the width within which the edge
-    lies."""
+    """The table prints a limit down to the leading digit of the width of the interval that contains it."""
     for resolution in (0.1, 1e-3, 1e-5):
         ask = (
             "limit",

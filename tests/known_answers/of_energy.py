@@ -1,4 +1,4 @@
-"""Scenes behind the energies of a run: recurrences and trapezoidal rules along paths."""
+"""Scenes for the energies of a run: recurrences and trapezoidal rules along paths."""
 import math
 
 import numpy as np
@@ -9,8 +9,8 @@ from physics import FILTERED, SPRING, STEPPED, SUMMED, high_pass
 
 @scene
 def mean_of_two(bench):
-    """A tool led onto two springs, whose force `mean` halves, aside from one of them, and away from
-    the other: energy is made."""
+    """A tool moves onto two springs, whose force `mean` halves, then sideways off one spring, then away from the other.
+    This cycle creates energy."""
     K, dt, n = 1000.0, 0.001, 400
     U = np.array([[0, 0, -1.0], [0.8, 0, -0.6]])
     path = {
@@ -169,7 +169,7 @@ def mean_of_two(bench):
 def rows_of_two(
     bench, K, by, created, d, dt, f, held, kinetic, n, onto, rect, run, script, spring, stored, t
 ):
-    """energy.csv: the sums of the work along the path, row by row."""
+    """Rows of energy.csv: the accumulated work along the path."""
     rows = [
         ("step", np.arange(n), "0, 1, ...", EXACT, "from 1", np.arange(n) + 1),
         ("time_s", t, "k dt", EXACT, "after the step", t + dt),
@@ -205,10 +205,10 @@ def rows_of_two(
 
 
 def events_of_two(bench, by, count, created, d, run, t):
-    """The rows that create most energy, and the touches and leaves in them."""
+    """The rows that create the most energy, and the touches and releases in these rows."""
     events = [
         event for event in run.summary["energy"]["events"] if event["created_J"] > 1e-12
-    ]  # the others are rounding
+    ]  # the other amounts are rounding errors
     most = 1 + np.argsort(-created)[: len(events)]
     changes = np.diff((d > 0).astype(int), axis=0, prepend=0)
     pairs = [x for k in most for x in (count[k - 1], count[k])]
@@ -243,8 +243,8 @@ def events_of_two(bench, by, count, created, d, run, t):
 
 @scene
 def limited_hand(bench):
-    """A free mass on a damped spring, pushed by a ramp of a hand whose force the device limits: a
-    linear recurrence."""
+    """A free mass on a damped spring, pushed by a hand whose force is a ramp that the device limits: a linear
+    recurrence."""
     K, M, dt, n, limit = 2000.0, 0.2, 0.001, 300, 0.6
     B = 2 * 0.1 * math.sqrt(K * M)
     run = bench.run(
@@ -270,7 +270,7 @@ def limited_hand(bench):
         "a recurrence of 300 steps, each rounded in another order", relative=1e-11, absolute=1e-17
     )
     total = lambda w: np.r_[0, np.cumsum(w)]
-    mean_way = 0.5 * (v[1:] + v[:-1]) * dt  # what the held force works along
+    mean_way = 0.5 * (v[1:] + v[:-1]) * dt  # displacement along which the held force does work
     along = lambda force: total(force[:-1] * mean_way)
     way = np.diff(x)
     spring = -K * x
@@ -384,8 +384,8 @@ def limited_hand(bench):
 
 @scene
 def handle_on_spring(bench):
-    """The handle of an impedance device on a spring, the force held and a sample late: exact by the
-    matrix exponential."""
+    """The handle of an impedance device on a spring whose force is held and delayed by a sample: exact by the matrix
+    exponential."""
     m, b, K, dt, n, push = 0.3, 2.0, 800.0, 0.002, 400, 0.5
     run = bench.run(
         bench.scenario(
@@ -409,7 +409,7 @@ def handle_on_spring(bench):
     x[0] = 1e-3
     for k in range(n - 1):
         motors[k] = 0 if k == 0 else -K * x[k - 1]
-        end = (motors[k] + push) / b  # speed it tends to
+        end = (motors[k] + push) / b  # terminal velocity
         v[k + 1] = end + (v[k] - end) * decay
         x[k + 1] = x[k] + end * dt + (v[k] - end) * (1 - decay) * m / b
     held = Within(

@@ -1,4 +1,4 @@
-"""Scenes behind runs that fail: when they ended, and the rules of the diagnosis."""
+"""Scenes for runs that fail: their end, and the rules of the diagnosis."""
 import json
 import re
 
@@ -10,12 +10,13 @@ STEP, SPEED, BOUND = (
     1e-3,
     1.0,
     0.0105,
-)  # a mass that moves 1 mm in a step passes the bound in step 11
+)  # a mass that moves 1 mm per step exceeds the bound in step 11
 
 
 @scene
 def early_end(bench):
-    """A free mass on a spring that is too soft to be noticed leaves the bound of its position: it diverges."""
+    """A free mass on a spring that is too soft to have an effect exceeds the bound of its position: the run
+    diverges."""
     base = bench.scenario(
         "early_end",
         time={"step_s": STEP, "steps": 40},
@@ -73,7 +74,7 @@ def early_end(bench):
 
 @scene
 def rules_of_the_diagnosis(bench):
-    """Each rule is tested on a scene with its fault and on a scene without it, by a test in C++."""
+    """A test in C++ tests each rule on a scene with its fault and on a scene without it."""
     text = (SOURCE / "tests/scenarios/run/outcome_test.cpp").read_text(encoding="utf-8")
     table = re.search(r"std::vector<Pair> pairs\(\) {(.*?)\n}", text, re.S)[1]
     test = re.search(

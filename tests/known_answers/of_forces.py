@@ -1,4 +1,4 @@
-"""Scenes behind the comparison with a reference force, exact or measured."""
+"""Scenes for the comparison with an exact or measured reference force."""
 import math
 
 import numpy as np
@@ -7,7 +7,7 @@ from answers import EXACT, ROUNDING, Table, Within, norms, profile, rms, scene
 from physics import BELOW, STEPPED, SUMMED
 
 
-# Not periodic: one lag alone fits.
+# The motion is not periodic, so that only one lag fits.
 STEPS = [
     [0, 0],
     [0.1, -1e-3],
@@ -23,7 +23,7 @@ STEPS = [
 
 @scene
 def late_force(bench):
-    """A force that follows the reference by 30 ms, with a part across it."""
+    """A force that lags the reference by 30 ms, with a perpendicular component."""
     K, dt, n, late = 1000.0, 0.0005, 2000, 0.03
     reference = {
         "z_N": {"type": "waypoints", "points": [[max(0, s - late), -K * z] for s, z in STEPS[1:]]},
@@ -212,7 +212,7 @@ def late_force(bench):
 
 @scene
 def periodic_force(bench):
-    """A force in phase with a reference of 20 Hz: of many lags the nearest, and their spacing."""
+    """A force in phase with a reference of 20 Hz: the smallest of many possible lags, and their spacing."""
     run = bench.run(
         bench.scenario(
             "periodic_force",
@@ -236,7 +236,7 @@ def periodic_force(bench):
             },
         )
     )
-    # -z follows by 0.4 rad.
+    # -z lags by 0.4 rad.
     lag = Within(
         "a parabola through three rows of a cosine finds its top to (omega dt)^2 / 24 of a row",
         absolute=1e-6,
@@ -259,8 +259,8 @@ def periodic_force(bench):
 
 @scene
 def recorded_force(bench):
-    """A stroke with a force measured in its middle: between samples both are linear, and rows
-    beyond the measurement have no reference."""
+    """A stroke with a force that was measured in its middle. Between samples, motion and force are linear; rows outside
+    of the measurement have no reference."""
     K, dt, n = 500.0, 0.001, 1000
     t = np.array([0.1, 0.25, 0.45, 0.7])
     place, force = np.array([0, -1e-3, -3e-3, -2e-3]), np.array(
@@ -336,7 +336,7 @@ def recorded_force(bench):
 
 @scene
 def imported(bench):
-    """A recording whose places come in steps of 10, 20 and 5 um: what import says of it."""
+    """A recording whose positions have resolutions of 10, 20 and 5 um: the report of import."""
     t = np.arange(400) * 0.002
     p = np.column_stack(
         [

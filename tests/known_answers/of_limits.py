@@ -1,4 +1,4 @@
-"""Scenes behind the tables of limit and stress: the eigenvalues and the motion of linear recurrences."""
+"""Scenes for the tables of limit and stress: the eigenvalues and the motion of linear recurrences."""
 import math
 
 import numpy as np
@@ -9,7 +9,7 @@ from physics import PLAIN, SPRING, SUMMED, bisected, class_of, edge_of, held_loo
 
 @scene
 def limits_of_springs(bench):
-    """The limits of two springs side by side under leapfrog (thesis A.3), and under rk4."""
+    """The limits of two parallel springs with leapfrog (thesis A.3) and with rk4."""
     M, dt, zeta, lam, K = 0.1, 0.0005, 0.7, 2.0, 20000.0
     base = bench.scenario(
         "limits_of_springs",
@@ -94,8 +94,8 @@ def limits_of_springs(bench):
 
 @scene
 def smallest_mass(bench):
-    """The smallest mass of one damped spring under leapfrog, from 4 - 2 B dt / M - K dt^2 / M = 0
-    with B = 2 zeta sqrt(K M): M = K (dt / s)^2 with s = 2 (sqrt(1 + zeta^2) - zeta)."""
+    """The smallest stable mass on one damped spring with leapfrog. From 4 - 2 B dt / M - K dt^2 / M = 0 with B = 2 zeta
+    sqrt(K M): M = K (dt / s)^2 with s = 2 (sqrt(1 + zeta^2) - zeta)."""
     K, dt, zeta = 20000.0, 0.0005, 0.7
     base = bench.scenario(
         "smallest_mass",
@@ -145,8 +145,7 @@ def smallest_mass(bench):
 
 @scene
 def smallest_stiffness(bench):
-    """The smallest stiffness that holds a force F at rest within x of the spring's free end:
-    K = F / x."""
+    """The smallest stiffness that holds a force F at rest within a distance x of the spring's free end: K = F / x."""
     F, x = 1.0, 5e-5
     base = bench.scenario(
         "smallest_stiffness",
@@ -186,8 +185,8 @@ HANDS = [(0, 0), *((m, k) for m in (0.1, 0.2, 0.5) for k in (100, 300, 1000))]
 
 @scene
 def over_another_field(bench):
-    """K over B, delay and hand of a handle at a wall on both sides: each class by the linear
-    recurrence, each edge by its eigenvalues."""
+    """Limit of K over B, delay and hand of a handle at a bilateral wall: each class from the linear recurrence, each
+    limit from its eigenvalues."""
     ask = (
         "limit",
         "wall_on_handle",
@@ -277,7 +276,7 @@ def over_another_field(bench):
 
 
 def limits_over_delay_and_hand(bench, ask, close, given, handle):
-    """K over a delay and over the stiffness of the hand, by the eigenvalues of the held loop."""
+    """Limit of K over a delay and over the stiffness of the hand, from the eigenvalues of the sampled loop."""
     hand = (
         '{"type":"mass_spring_damper","mass_kg":0.2,"stiffness_N_per_m":100,'
         '"damping_N_s_per_m":2,"target":{"x_m":0,"y_m":0,"z_m":0}}'
@@ -326,8 +325,7 @@ def limits_over_delay_and_hand(bench, ask, close, given, handle):
 
 
 def limits_over_encoder(bench, ask, damping, given):
-    """K over the encoder's step q with dry friction c: min(2 b / T, 2 c / q) of Abbott and
-    Okamura."""
+    """Limit of K over the encoder step q with dry friction c: min(2 b / T, 2 c / q) of Abbott and Okamura."""
     q = np.geomspace(1e-6, 1e-3, 4)
     told = bench.json(
         *ask,
@@ -423,8 +421,8 @@ def stressed(bench):
         ("some twice", len(table.rows) - 1),
     )
     reached = Within("sums of up to 137 equal springs, rounded", relative=1e-13)
-    # Parallel springs of one depth are among the sets: as stiff as one, and under the rule
-    # of 10 / N as ten.
+    # The sets include parallel springs of equal depth: their stiffness is the stiffness of one spring, and with the
+    # rule 10 / N of ten springs.
     bench.add(
         "stress.csv:largest_force_per_K_d",
         table["largest_force_per_K_d"][rows],

@@ -1,4 +1,4 @@
-"""The scene behind the comparison of laws with a reference force by converge --over."""
+"""Scene for the comparison of laws with a reference force by converge --over."""
 import math
 
 import numpy as np
@@ -11,7 +11,8 @@ K, PRESSED, DEADLINE = 1000.0, 1e-3, 0.5e-3
 
 @scene
 def laws_against_a_force(bench):
-    """A prescribed tool presses two parallel springs: summation gives 2 K x, mean K x. The reference force leans by 0.1."""
+    """A prescribed tool presses two parallel springs: summation gives the force 2 K x, mean gives K x. The reference
+    force is tilted by 0.1 rad."""
     reference = (-1.5, 0.15, 0.0)
     base = bench.scenario(
         "model",

@@ -1,4 +1,4 @@
-"""Scenes whose answers are places: the ideal trajectory of a hole, and depth below a surface."""
+"""Scenes whose answers are positions: the ideal trajectory in a hole, and depth below a surface."""
 import math
 
 import numpy as np
@@ -9,27 +9,28 @@ R, r, H = 1e-3, 0.5e-3, 5e-3  # radii of hole and tool, depth of the hole [m]
 
 
 def depth_in_block(q):
-    """Distance of points to the surface of a half space z < 0 with a hole, 0 outside of it."""
+    """Returns the depth of points below the surface of a half space z < 0 with a hole; 0 outside of the half space."""
     out, below = np.hypot(q[..., 0], q[..., 1]) - R, -H - q[..., 2]
     hole = np.where((out > 0) & (below > 0), np.hypot(out, below), np.maximum(out, below))
     return np.minimum(hole, -q[..., 2])
 
 
 def interpenetration(tip, tilt):
-    """The deepest point of the tool's solid, by ever finer grids about the deepest points of a
-    coarse one."""
+    """Returns the largest depth of the tool's solid, by successively finer grids around the deepest points of a coarse
+    grid."""
     axis, e1, e2 = (
         -np.array([math.sin(tilt), 0, math.cos(tilt)]),
         np.array([math.cos(tilt), 0, -math.sin(tilt)]),
         np.array([0, 1.0, 0]),
     )
 
-    def depth(angle, up):  # of points of the side: inside the tip's flat none is deepest
+    # Depth of points on the side; points inside the flat tip are never deepest.
+    def depth(angle, up):
         turned = np.cos(angle)[..., None] * e1 + np.sin(angle)[..., None] * e2
         return depth_in_block(tip + r * turned - np.clip(up, 0, 0.01)[..., None] * axis)
 
     def zoomed(angle, up, wide, long):
-        for _ in range(14):  # the grid about the deepest point is a fifth as wide each time
+        for _ in range(14):  # each grid is a fifth as wide as the previous grid
             grid = np.meshgrid(
                 np.linspace(angle - wide, angle + wide, 41), np.linspace(up - long, up + long, 41)
             )
@@ -48,8 +49,8 @@ def interpenetration(tip, tilt):
 
 @scene
 def beside_the_ideal(bench):
-    """A drill led beside 3.6's ideal trajectory by offsets that are chosen, half of the rows with a
-    gentle hand, some without an ideal."""
+    """A drill follows the ideal trajectory of thesis 3.6 with given offsets. Half of the rows have a gentle hand; in
+    some rows the ideal trajectory does not exist."""
     n, dt = 24, 0.001
     tilt = np.r_[
         np.linspace(0.35, 0.95, 20), 1.10, 1.15, 1.2, 1.25
@@ -239,8 +240,8 @@ def beside_the_ideal(bench):
 
 @scene
 def pressed_ball(bench):
-    """A ball of 1 mm pressed 3 mm into a plane: its depth is radius less height, whatever its
-    width; a contact's ends at the radius."""
+    """A ball of 1 mm is pressed 3 mm into a plane. Its depth is the radius minus the height, independent of the plane's
+    width; the depth of a contact is at most the radius."""
     n, dt, a = 600, 0.001, 0.5e-3
     height = {
         "type": "waypoints",
@@ -354,8 +355,8 @@ def pressed_ball(bench):
 
 @scene
 def counted(bench):
-    """A ball that comes down on a plane of 81 x 81 points for seven rows and goes: the work of it
-    with and without skips, and the tool."""
+    """A ball touches a plane of 81 x 81 points for seven rows: the work counters with and without skips, and the
+    tool."""
     fields = dict(
         time={"step_s": 0.001, "steps": 600},
         environment={"type": "plane", "size_m": 0.008, "spacing_m": 0.0001},
@@ -373,7 +374,7 @@ def counted(bench):
     skipping = bench.run(bench.scenario("counted", **fields))
     full = bench.run(bench.scenario("counted", **fields), "--no-skip", out="full")
     work, least = full.summary["work"], skipping.summary["work"]
-    rows = 2 * math.floor(0.0001 / 0.000032) + 1  # 0.032 mm a row, contact below 0.5 mm
+    rows = 2 * math.floor(0.0001 / 0.000032) + 1  # 0.032 mm per row; in contact below 0.5 mm
     for key, known, naive in (
         ("queries", 600, 600 * 81),
         ("points_tested", 600 * 81 * 81, least["points_tested"]),

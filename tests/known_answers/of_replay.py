@@ -12,7 +12,7 @@ GAP, FAULT, REARM = (
     30,
     34,
 )  # the call after a gap of 20 ms, the call with NaN, and the call that ends the fault
-WAITS = 4  # calls below engage_force
+WAITS = 4  # number of calls below engage_force
 WAITING, ON, CLAMPED, STALE, IS_FAULT = 0, 2, 3, 4, 5
 NOT_FINITE, MAX_FORCE = 1, 1
 
@@ -25,7 +25,7 @@ NAMES = (
 
 
 def statuses():
-    """The status of each call: without a ramp, the force is on or off."""
+    """Returns the status of each call. Without a ramp, the force is either on or off."""
     found, below = [], 0
     for call in range(CALLS):
         if call == GAP:
@@ -44,7 +44,7 @@ def statuses():
 
 @scene
 def replay_of_a_log(bench):
-    """The force of a spring is -K x where the renderer is on, at most LIMIT."""
+    """The force of the spring is -K x while the renderer is on, and at most LIMIT."""
     scenario = bench.scenario(
         "replay",
         time={"step_s": PERIOD, "steps": CALLS},
@@ -59,12 +59,13 @@ def replay_of_a_log(bench):
     force = np.clip(spring, -LIMIT, LIMIT)
     status[np.abs(spring) > LIMIT] = CLAMPED
     time_ns = 1_000_000 * (calls + np.where(calls >= GAP, 20, 0))
-    # Zeros keep the signs of products: -K times 0 across the spring, and 0 times the last force after a fall to 0.
+    # Zeros keep the signs of their products: -K times 0 perpendicular to the spring, and 0 times the last force after a
+    # fall to 0.
     recorded = force.copy()
     fallen = np.isin(status, (STALE, IS_FAULT))
     recorded[GAP] *= np.sign(force[GAP - 1])
     recorded[FAULT:REARM] *= np.sign(force[FAULT - 1])
-    recorded[10] += 0.25  # one call of the record has another force
+    recorded[10] += 0.25  # one recorded call has a different force
     setup = {
         "version": 1,
         "scenario": "another",

@@ -1,4 +1,4 @@
-"""Scenes behind the metrics of summary.json: rubbed masses, bundled scenes anew from the rows of their
+"""Scenes for the metrics of summary.json: masses with friction, bundled scenes recomputed from the rows of their
 tables, and runs that are too coarse for a metric."""
 import math
 
@@ -11,8 +11,8 @@ from physics import BELOW, BINNED, FILTERED, Phases, nearest_rank, settled_high_
 
 @scene
 def rubbed(bench):
-    """A free mass pushed against a spring and along it: friction stronger than what leapfrog steps
-    stably, from some row on."""
+    """A free mass is pushed against a spring and along it. From some row on, the friction exceeds the stability limit
+    of leapfrog."""
     K, M, dt, n, mu_s, mu_f = 5000.0, 0.1, 0.001, 120, 2.0, 20.0
     B = 2 * 0.3 * math.sqrt(K * M)
     push = {"type": "ramp", "start": 0.0, "rate_per_s": -150.0}
@@ -98,8 +98,8 @@ def rubbed(bench):
 
 @scene
 def from_rows(bench):
-    """Bundled scenes on a mesh, in a hole, with devices of both kinds: metrics anew from the rows
-    of trajectory.csv, by their definitions."""
+    """Bundled scenes on a mesh, in a hole, and with both kinds of devices: metrics recomputed from the rows of
+    trajectory.csv by their definitions."""
     for name in (
         "drag_molar",
         "peg_in_hole_2d_original_averaging",
@@ -189,8 +189,8 @@ def from_rows(bench):
 
 @scene
 def too_coarse(bench):
-    """A step of 20 ms, at which nothing above 30 Hz is sampled, and a contact of one row: no number
-    instead of 0."""
+    """A step of 20 ms, which contains no frequencies above 30 Hz, and a contact of one row: the metrics are empty, not
+    0."""
     run = bench.run(
         bench.scenario(
             "too_coarse",

@@ -1,4 +1,4 @@
-"""Scenes behind the comparison with a 6-DOF device: a drill that is pressed against one point."""
+"""Scenes for the comparison with a 6-DOF device: a drill pressed against one point."""
 import numpy as np
 
 from answers import EXACT, Within, rms, scene
@@ -7,12 +7,13 @@ from physics import SUMMED
 
 @scene
 def pressed_on_one_point(bench):
-    """Springs in series: a press D against one point at the lever l of the force point, with the grip there, gives
-    D / (1/K' + l^2 / K_r') with torque and D K' without; K' = K_t K_h / (K_t + K_h), K_r' = K_r K_phi / (K_r + K_phi).
-    """
+    """Springs in series. The hand presses by D against one point with the lever l about the force point, and the grip
+    is at the force point. The force is D / (1/K' + l^2 / K_r') with torque and D K' without torque, with K' = K_t K_h /
+    (K_t + K_h) and K_r' = K_r K_phi / (K_r + K_phi)."""
     K, hand, turning, coupling = 2000.0, 500.0, 0.2, 0.4
     r, a, height, n, step, dt = 0.5e-3, 0.03, 2e-3, 101, 1e-8, 0.01
-    normal = np.array([0.8, 0.6, 0.0])  # of the surface; the point lies on the other side
+    # Normal of the surface; the point lies on the other side of the tool.
+    normal = np.array([0.8, 0.6, 0.0])
     bench.write("one.csv", "x_m,y_m,z_m,nx,ny,nz", [(*(-r * normal + [0, 0, height]), *normal)])
     rate = -step / dt * normal
     run = bench.run(
@@ -47,14 +48,14 @@ def pressed_on_one_point(bench):
     size = press / (1 / series + lever**2 / rotation)
     of_law = series * press
     force = size[:, None] * normal
-    # Force times the arm from the force point down to the contact, and what it turns.
+    # Torque: the force times the arm from the force point down to the contact. The torque rotates tool and handle.
     torque = np.cross([0, 0, -lever], force)
     handle_turn = torque / turning
     position = -press[:, None] * normal + force / K + force / hand
     tool_turn = torque / rotation
     axis = np.array([0, 0, -1.0]) + np.cross(tool_turn, [0, 0, -1.0])
     tip = position + [0, 0, a] + a * axis
-    # Turns of up to 1e-4 rad change arms and normals by this fraction.
+    # Rotations of up to 1e-4 rad change arms and normals by this fraction.
     linear = Within(
         "turns of 1e-4 rad; Newton steps of the law end at 1e-11 N", relative=2e-4, absolute=2e-11
     )

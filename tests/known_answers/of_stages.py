@@ -1,4 +1,4 @@
-"""Scenes behind the stages of a force (friction, energy tank), and forces of contacts that come late."""
+"""Scenes for the stages of a force (friction, energy tank), and for forces of delayed contacts."""
 import math
 
 import numpy as np
@@ -9,7 +9,7 @@ from physics import BELOW, SPRING, STEPPED, SUMMED, nearest_rank
 
 @scene
 def bristle(bench):
-    """A tool rubbed to and fro under dry friction, pressed ever deeper into one spring."""
+    """A tool moves back and forth under dry friction while it is pressed deeper into one spring."""
     K, M, dt, n, mu, kt, zeta = 1000.0, 0.01, 0.0005, 2000, 0.4, 2000.0, 0.5
     path = {
         "x_m": {"type": "sine", "mean": 0, "amplitude": 1e-3, "period_s": 0.25, "phase_rad": 0.3},
@@ -80,8 +80,8 @@ def bristle(bench):
 
 @scene
 def tank(bench):
-    """A mass on one spring whose energy tank holds a tenth of what the spring does: the stage's
-    formula, row by row."""
+    """A mass on one spring, with an energy tank whose capacity is a tenth of the spring's energy: the stage's formula,
+    row by row."""
     K, B, M, dt, n, capacity = 2000.0, 2.0, 0.1, 0.0005, 400, 1e-4
     run = bench.run(
         bench.scenario(
@@ -145,8 +145,7 @@ def tank(bench):
 
 @scene
 def late(bench):
-    """A mass on one spring whose contacts are asked for every fourth row, serve three rows later
-    and are often lost."""
+    """A mass on one spring. Its contacts are requested every fourth row, used three rows later, and often lost."""
     K, dt, n = 2000.0, 0.0005, 400
     run = bench.run(
         bench.scenario(
@@ -171,7 +170,7 @@ def late(bench):
     ]
     assert (
         max(abs(pull[k] + K * place[q]) for k, q in zip(range(3, n), used)) < 1e-12
-    )  # no other place gives this force
+    )  # no other position gives this force
     age, lost = dt * (np.arange(3, n) - used), len(asked) - len(set(used))
     how = "the place that the spring force is of"
     bench.metrics(

@@ -1,4 +1,4 @@
-"""Scenes behind the targets of subjects: when a target is reached, and means over subjects."""
+"""Scenes for the targets of subjects: the time at which a target is reached, and means over subjects."""
 import math
 
 import numpy as np
@@ -8,8 +8,8 @@ from answers import EXACT, ROUNDING, norms, scene
 
 @scene
 def subjects(bench):
-    """Subjects on targets: means and their standard errors are over subjects, each by the mean of
-    its own targets."""
+    """Subjects on targets. Means and standard errors are over subjects; each subject contributes the mean of its
+    targets."""
     run = bench.run(
         "vertical_peg_in_hole_shaped_stiffness",
         "--set",
@@ -75,8 +75,9 @@ def subjects(bench):
 
 @scene
 def one_subject(bench):
-    """A subject's targets by the rule: held for 1 s without a break within 0.2 mm while the force
-    that the hand meets, rendered in the row before, is 1 N, until 1.5 s have passed."""
+    """The targets of one subject, by the rule: a target is reached if the tool stays within 0.2 mm for 1 s without
+    interruption while the force on the hand is 1 N, until 1.5 s have passed. The force on the hand is the force
+    rendered in the previous row."""
     run = bench.run(
         "vertical_peg_in_hole_shaped_stiffness",
         "--set",
@@ -96,7 +97,7 @@ def one_subject(bench):
     )
     table, rows = run.table("targets.csv"), run.table()
     place = np.array([[0, 0], [0.00052, 0]])
-    order = table["place"].astype(int)  # drawn
+    order = table["place"].astype(int)  # order in which the targets were drawn
     dt, tip, f = 1 / 2048, rows.vectors("px_m", "py_m"), rows.vectors("fx_N", "fy_N", "fz_N")
     found, active, shown, held, on = [], False, 0, 0, []
 
@@ -106,7 +107,7 @@ def one_subject(bench):
     for k in range(len(tip)):
         if len(found) == len(order):
             break
-        pressed = k > 0 and f[k - 1, 2] >= 1  # the hand meets the force of the row before
+        pressed = k > 0 and f[k - 1, 2] >= 1  # the force of the previous row acts on the hand
         if pressed and not active:
             active, shown = True, 0
         shown, held = shown + 1, held + 1 if pressed and near(k) else 0

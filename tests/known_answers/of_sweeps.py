@@ -1,4 +1,4 @@
-"""Scenes behind the table of sweep, recomputed from the summaries of single runs."""
+"""Scenes for the table of sweep, recomputed from the summaries of single runs."""
 import math
 
 from answers import EXACT, Table, scene
@@ -7,7 +7,7 @@ from physics import PLAIN, UP
 
 @scene
 def swept(bench):
-    """A sweep is its single runs."""
+    """The rows of a sweep equal its single runs."""
     base = bench.scenario(
         "swept",
         time={"step_s": 0.001, "steps": 300},

@@ -1,4 +1,4 @@
-"""Scenes behind the tables of run time: compare --time, and run time against error by converge --over."""
+"""Scenes for the tables of run time: compare --time, and run time against error by converge --over."""
 import math
 
 import numpy as np
@@ -8,7 +8,8 @@ from physics import PLAIN, SPRING
 
 K, M, X, STEP, STEPS = 1000.0, 0.1, 1e-3, 1e-3, 64
 DEADLINE = 0.5e-3
-FASTEST, SLOWEST = 1e-8, 1e-3  # a step takes more than ten nanoseconds, and less than a millisecond
+# A step takes more than ten nanoseconds and less than a millisecond [s].
+FASTEST, SLOWEST = 1e-8, 1e-3
 
 
 def oscillator(bench, name):
@@ -29,7 +30,7 @@ def oscillator(bench, name):
 
 
 def add_times(bench, table, times, steps, deadline=DEADLINE):
-    """The columns that the tables of times have."""
+    """Adds the columns that all tables of times have."""
     each, spread = times["seconds_per_step"], times["spread_s"]
     for name, found, wrong in (
         ("seconds_per_step", (each > FASTEST) & (each < SLOWEST), 640 * each < SLOWEST / 1e3),
@@ -59,7 +60,7 @@ def add_times(bench, table, times, steps, deadline=DEADLINE):
 
 @scene
 def times_of_laws(bench):
-    """Two laws on the same spring, which is in contact in every step."""
+    """Two laws on the same spring, in contact in every step."""
     base = oscillator(bench, "times_of_laws")
     bench.hapbench(
         "compare", base, "--algorithms", "summation,mean", "--time", "--out", "times", "--quiet"
@@ -97,7 +98,7 @@ def times_of_laws(bench):
 
 @scene
 def errors_of_settings(bench):
-    """Velocity Verlet moves as X cos(omega' t), cos(omega' h) = 1 - (omega h)^2 / 2, in place of X cos(omega t)."""
+    """Velocity Verlet moves as X cos(omega' t) with cos(omega' h) = 1 - (omega h)^2 / 2, instead of X cos(omega t)."""
     base = oscillator(bench, "errors_of_settings")
     bench.hapbench(
         "converge",
@@ -116,7 +117,7 @@ def errors_of_settings(bench):
     of_verlet = np.arccos(1 - (omega * h) ** 2 / 2) / h
     shifted = X * (np.cos(np.outer(of_verlet, t)) - np.cos(omega * t))
     known = np.sqrt(np.mean(shifted**2, axis=1))
-    # The reference is rk4 with a step h / 128, whose error grows by (omega h / 128)^4 / 120 of X in a radian.
+    # The reference is rk4 with a step h / 128. Its error grows by (omega h / 128)^4 / 120 of X per radian.
     fine = Within("error of the reference solution", absolute=1e-9 * X)
     for table, found in (("convergence.csv", errors), ("convergence_timing.csv", times)):
         for name, value, wrong in (
@@ -188,7 +189,8 @@ def errors_of_settings(bench):
         ("default", [1e-6] * 4),
     )
     add_times(bench, "convergence_timing.csv", times, h, deadline=h)
-    # The error falls and the cost grows with each level, so that all settings are on the front, which is straight.
+    # The error decreases and the cost increases with each level, so that all settings are on the front. The front is
+    # straight.
     cost = times["seconds_per_simulated_second"]
     front = [not np.any((cost < cost[i]) & (known < known[i])) for i in range(4)]
     texts = lambda values: ["true" if value else "false" for value in values]
@@ -212,7 +214,7 @@ def errors_of_settings(bench):
 
 @scene
 def times_of_a_sweep(bench):
-    """Three runs with other masses on the same spring."""
+    """Three runs with different masses on the same spring."""
     base = oscillator(bench, "times_of_a_sweep")
     words = ("--vary", "rendering.mass_kg=0.1,0.2,0.3", "--time", "--out", "swept", "--quiet")
     bench.hapbench("sweep", base, *words)

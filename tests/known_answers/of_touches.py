@@ -1,5 +1,5 @@
-"""Scenes behind the metrics of summary.json and the tables of a run: a tool led along a path on
-springs, whose every row is known."""
+"""Scenes for the metrics of summary.json and the tables of a run: a tool moves along a path on springs, so that every
+row is known."""
 import math
 
 import numpy as np
@@ -8,8 +8,8 @@ from answers import EXACT, ROUNDING, Within, norms, profile, rms, scene
 from physics import BINNED, FILTERED, STEPPED, Phases, high_pass, nearest_rank, settled_high_pass
 
 
-# Two nearly parallel springs, of which the reduction keeps the deeper, one across, and five that
-# are never reached.
+# Two nearly parallel springs, of which the reduction keeps the deeper spring, one perpendicular spring, and five
+# springs that are never reached.
 NEAR = 0.03
 DIRECTIONS = np.array(
     [
@@ -65,8 +65,8 @@ TOUCHES = {
 
 
 class Touches:
-    """Every row of TOUCHES by the formulas of the rendering:
-    f = -K sum d u - B S v - (mu_s + mu_f |f_spring|) (v - S v)."""
+    """Every row of TOUCHES by the formulas of the rendering: f = -K sum d u - B S v - (mu_s + mu_f |f_spring|) (v - S
+    v)."""
 
     def __init__(self, dt=0.0005, K=1000.0, B=2.0, mu_s=1.0, mu_f=1.0):
         self.dt, self.t = dt, np.arange(1200) * dt
@@ -77,7 +77,7 @@ class Touches:
         self.kept = self.touched.copy()
         deeper = (
             self.d[:, 1] > self.d[:, 0]
-        )  # of those alike the first stays unless the second is deeper
+        )  # among parallel springs, the first is kept unless the second is deeper
         both = self.touched[:, 0] & self.touched[:, 1]
         self.kept[both & deeper, 0] = self.kept[both & ~deeper, 1] = False
         self.S = np.einsum("kn,ni,nj->kij", self.kept.astype(float), DIRECTIONS, DIRECTIONS)
@@ -100,8 +100,8 @@ class Touches:
 
 @scene
 def touches(bench):
-    """A tool led three times onto springs, twice after a time away that counts, with a ripple of
-    100 Hz across."""
+    """A tool moves three times onto springs, with a vibration of 100 Hz perpendicular to them. Two of the touches
+    follow a time without contact that is long enough to count."""
     run, r = bench.run(bench.scenario("touches", **TOUCHES)), Touches()
     F, settled, landing, touching = norms(r.f), r.phases.settled, r.phases.landing, r.contact
     last = int(np.flatnonzero(touching)[-1])
@@ -367,8 +367,8 @@ def touches(bench):
 
 
 def touch_tables(bench, run, r):
-    """trajectory.csv, stiffness_tensor.csv, ratios.csv, contacts.csv and contact_trace.csv of the
-    same run."""
+    """Columns of trajectory.csv, stiffness_tensor.csv, ratios.csv, contacts.csv and contact_trace.csv of the same
+    run."""
     rows, touching = "the formula", r.contact
     columns = [
         ("step", np.arange(1200.0), "0, 1, ...", EXACT, "from 1", np.arange(1200.0) + 1),

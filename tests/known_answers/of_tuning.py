@@ -1,4 +1,4 @@
-"""Scenes behind the tables of tune: the eigenvalues of the held loop of a handle on one spring."""
+"""Scenes for the tables of tune: the eigenvalues of the sampled loop of a handle on one spring."""
 import json
 import math
 
@@ -10,8 +10,8 @@ from physics import SPRING, SUMMED, edge_of, held_loop
 
 @scene
 def tuned(bench):
-    """A handle on one spring, with a sample of delay: the largest edge of the held loop over B,
-    over the margin, and what lies around it."""
+    """A handle on one spring with a delay of one sample: the largest stability limit of the sampled loop over B,
+    divided by the margin, and the neighbouring trials."""
     m, b, T, delay = 0.1, 0.5, 0.001, 1
     base = bench.scenario(
         "tuned",
@@ -60,7 +60,8 @@ def tuned(bench):
     bench.add(
         "tune.csv:stiffness_N_per_m", K, edge(B) / 2, by, near, ("without the margin", edge(B))
     )
-    at_K = 2 * zeta * math.sqrt(K * m)  # B at K; along zeta it grows with the root of the gain
+    # B at the stiffness K; at constant zeta, B grows with the square root of the gain
+    at_K = 2 * zeta * math.sqrt(K * m)
     gain = edge_of(lambda g: loop(g * K, math.sqrt(g) * at_K), 1.0, 64.0)
     bench.add(
         "tune.csv:rendering.damping_ratio",
@@ -91,8 +92,8 @@ def tuned(bench):
 
 
 def tuned_margins(bench, K, at_K, by, delay, gain, law, loop, margin, table, zeta):
-    """Margins by the eigenvalues of the held loop: the gain and the delay at which one leaves the
-    unit circle, and the smallest damping ratio -Re s / |s|, s = ln z / T."""
+    """Margins from the eigenvalues of the sampled loop: the gain and the delay at which an eigenvalue leaves the unit
+    circle, and the smallest damping ratio -Re s / |s| with s = ln z / T."""
     late = edge_of(lambda d: loop(K, at_K, d), 0.0, 8.0)
     z = np.linalg.eigvals(loop(K, at_K))
     s = np.log(z[np.abs(z) > 1e-9].astype(complex))
@@ -120,7 +121,7 @@ def tuned_margins(bench, K, at_K, by, delay, gain, law, loop, margin, table, zet
 
 
 def tuned_order(bench, law, printed, runs, table):
-    """What holds of a single law, and the limits as asked."""
+    """The columns that are known for a single law, and the bounds as given."""
     bench.add(
         "tune.csv:algorithm",
         table["algorithm"],
@@ -174,7 +175,7 @@ def tuned_order(bench, law, printed, runs, table):
 
 
 def tuned_words(bench, law, m):
-    """The words of the answer: one law, whose loop alone binds, as asked."""
+    """The words of the answer: one law, limited by its loop alone, and the question as given."""
     for name, known, naive in (
         ("feasible", True, False),
         ("lambda_max", 1.0, 2.0),
@@ -200,8 +201,7 @@ def tuned_words(bench, law, m):
 
 
 def tuned_choice(bench, K, base, trials, zeta):
-    """The row of the choice among the trials: its words as asked, its metrics by a run
-    of its own."""
+    """The row of the choice among the trials: its words as given, its metrics from a separate run."""
     own = next(
         row
         for row in trials.rows
@@ -250,10 +250,10 @@ def tuned_choice(bench, K, base, trials, zeta):
 
 
 def tuned_trials(bench, by, loop, m, trials):
-    """Each trial by its own eigenvalues: feasible below half the edge of its zeta, but for the
-    strip in which runs cannot tell."""
-    # Each trial by its own eigenvalues: feasible below half the edge of its zeta, but for the strip
-    # in which runs cannot tell.
+    """Each trial from its own eigenvalues: feasible below half the limit at its zeta, except in the interval that the
+    runs cannot resolve."""
+    # Each trial from its own eigenvalues: feasible below half the limit at its zeta, except in the interval that the
+    # runs cannot resolve.
     given = [row for row in trials.rows if row["feasible"] in ("true", "false")]
     edges = [
         edge_of(

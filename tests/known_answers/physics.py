@@ -1,5 +1,4 @@
-"""What scenes share: filters and phases of a run, linear recurrences, and the classes of their
-motion."""
+"""Functions shared by the scenes: filters and phases of a run, linear recurrences, and the classes of their motion."""
 import math
 
 import numpy as np
@@ -35,7 +34,7 @@ BINNED = Within(
 
 
 def high_pass(x, dt):
-    """Butterworth's of fourth order at 30 Hz, at rest at the first sample before it."""
+    """Fourth-order Butterworth high-pass at 30 Hz, with zero state before the first sample."""
     sections = signal.butter(4, 30.0, "high", fs=1 / dt, output="sos")
     return signal.sosfilt(
         sections, x, axis=0, zi=signal.sosfilt_zi(sections)[:, :, None] * x[0][None, None, :]
@@ -43,7 +42,7 @@ def high_pass(x, dt):
 
 
 class Phases:
-    """Rows of landings and of settled contact, by their definition."""
+    """Rows of landings and of settled contact, by their definitions."""
 
     def __init__(self, contact, dt):
         rows, touches = round(0.05 / dt), np.flatnonzero(contact)
@@ -55,8 +54,7 @@ class Phases:
 
 
 def settled_high_pass(f, phases, dt):
-    """The force behind the high-pass, which starts at rest in the first settled row after each
-    landing."""
+    """Returns the high-passed force. The filter starts with zero output in the first settled row after each landing."""
     found = np.zeros_like(f)
     for rows in np.split(np.arange(len(f)), np.flatnonzero(np.diff(phases.landing)) + 1):
         rows = rows[np.cumsum(phases.settled[rows]) > 0]
@@ -70,56 +68,56 @@ def nearest_rank(values, share):
 
 
 def step_matrix(K, B, M, dt):
-    """x, v after a step of leapfrog."""
+    """Returns the matrix of (x, v) for one step of leapfrog."""
     return np.array([[1 - K * dt * dt / M, dt - B * dt * dt / M], [-K * dt / M, 1 - B * dt / M]])
 
 
 def bisected(holds, low, high, width=0.0):
-    """The edge between `low`, where it holds, and `high`, where it does not, to a relative width or
-    to rounding."""
+    """Returns the boundary between `low`, where the condition holds, and `high`, where it does not, to a relative width
+    or to rounding."""
     while low < (middle := 0.5 * (low + high)) < high and high - low > width * high:
         low, high = (middle, high) if holds(middle) else (low, middle)
     return low
 
 
 def radius(matrix):
-    """The largest size of its eigenvalues, below 1 where what it maps dies out."""
+    """Returns the spectral radius of a matrix: below 1, the motion decays."""
     return np.abs(np.linalg.eigvals(matrix)).max()
 
 
 def edge_of(loop, low, high):
-    """The value between low and high from which on the motion of the loop, a matrix by the value,
-    does not die out."""
+    """Returns the smallest value between low and high from which the motion does not decay. `loop` returns the matrix
+    for a value."""
     return bisected(lambda value: radius(loop(value)) < 1, low, high)
 
 
 def held_loop(m, b, T, K, B, delay=0, spring=0.0):
-    """The handle of an impedance device on a spring and damper that hold their force over each
-    period: its exact linear map."""
+    """Returns the exact linear map of the handle of an impedance device on a spring and damper whose force is held over
+    each period."""
     whole = int(delay)
     part = delay - whole
     state = np.eye(
         3 + whole + (part > 0)
-    )  # x, v, x of the last sample, forces under way (the newest first)
+    )  # state: x, v, x of the last sample, delayed forces (the newest first)
     forces = np.vstack([(-K - B / T) * state[0] + B / T * state[2], state[3:]])
     A = np.array(
         [[0, 1, 0], [-spring / m, -b / m, 1 / m], [0, 0, 0]]
-    )  # of x, v and the force that is held
+    )  # inputs: x, v and the held force
     moved = state[:2]
     for t, held in (
         (part * T, forces[-1]),
         ((1 - part) * T, forces[whole]),
-    ):  # until the newer one arrives, and after it
+    ):  # the older force until the newer force arrives, then the newer force
         moved = linalg.expm(A * t)[:2] @ np.vstack([moved, held])
     return np.vstack([moved, state[0], forces[:-1]])
 
 
 def motion_of(matrix, x, n=8000):
-    """Speeds of n rows of step_matrix or held_loop from rest at x, or None if it leaves the default
+    """Returns the speeds in n rows of step_matrix or held_loop from rest at x, or None if the motion leaves the default
     bounds."""
     values, vectors = np.linalg.eig(matrix)
     start = np.zeros(len(matrix))
-    start[:3:2] = x  # and at the last sample
+    start[:3:2] = x  # the last sample also saw this position
     parts = vectors * np.linalg.solve(vectors, start)
     with np.errstate(over="ignore", invalid="ignore"):
         powers = values[:, None] ** np.arange(n)
@@ -128,7 +126,8 @@ def motion_of(matrix, x, n=8000):
 
 
 def class_of(matrix, x, n=8000):
-    """By `describe stability`: quarter by quarter, amplitude the largest speed."""
+    """Returns the class by the rules of `describe stability`: compares quarters of the run; the amplitude is the
+    largest speed."""
     v = motion_of(matrix, x, n)
     if v is None:
         return "diverged"

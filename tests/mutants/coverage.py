@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
-"""Runs tests of a build that counts lines, and tells what share of the lines of four folders they run.
+"""Runs tests of a build that counts lines, and reports the fraction of the lines of four folders that they execute.
 
-    cmake --preset coverage && cmake --build --preset coverage --target fast_tests program_test
-    tests/mutants/coverage.py build/coverage >tests/mutants/coverage.txt
+  cmake --preset coverage && cmake --build --preset coverage --target fast_tests program_test
+  tests/mutants/coverage.py build/coverage >tests/mutants/coverage.txt
 
-It first forgets what was counted and runs the tests: the fast ones, those that run the program, and
-the known answers. A line counts, in headers too, if a library of these folders has code of it, and
-as run if any of its object files has run it. With --against FILE the exit status is 1 if the share
-of a folder is more than one per cent below that.
+It first resets the counters and runs the tests: the fast tests, the tests that run the program, and the known answers.
+A line, also of a header, is counted if a library of these folders has code for it, and is executed if any object file
+has executed it. With --against FILE the exit status is 1 if the fraction of a folder is more than one percentage point
+below the value in the file.
 """
 import argparse
 import json
@@ -19,14 +19,14 @@ from pathlib import Path
 
 SOURCE = Path(__file__).resolve().parent.parent.parent
 FOLDERS = ("sim", "algorithms", "device_model", "results/observe")
-# Suites of GoogleTest have no dot in their names, tests that are scripts have; one of these looks
-# into the libraries, which the counters change.
+# GoogleTest suites have no dot in their names; tests that are scripts do. One of the scripts inspects the libraries,
+# which the counters change.
 TESTS = (
     ["-L", "^fast$", "-E", "^Library[.]"],
     ["-L", "^slow$", "-E", "[.]"],
     ["-R", "^KnownAnswers[.]"],
 )
-MOST_FALL = 1.0  # per cent of a folder's lines
+MOST_FALL = 1.0  # largest allowed decrease [% of a folder's lines]
 
 
 def run_tests(build):
@@ -44,7 +44,7 @@ def run_tests(build):
 
 
 def lines_of(notes):
-    """The lines of the tree with code in an object file, as (file, number, whether it was run)."""
+    """Returns the lines of the source tree with code in an object file, as (file, number, True if it was executed)."""
     report = json.loads(
         subprocess.run(
             ["gcov", "--json-format", "--stdout", notes],
@@ -64,7 +64,7 @@ def lines_of(notes):
 
 
 def counted(build):
-    """Lines, and lines that were run, of each folder."""
+    """Returns the numbers of lines and of executed lines of each folder."""
     libraries = sorted({folder.split("/")[0] for folder in FOLDERS})
     notes = [
         file

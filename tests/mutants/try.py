@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""Tries the faults of mutants.json on a build of the tests: each is put in and has to fail a test of its `killed_by`.
+"""Tries the faults of mutants.json on a build of the tests: each fault must make a test of its `killed_by` fail.
 
-    tests/mutants/try.py [BUILD [NAME ...]]
+  tests/mutants/try.py [BUILD [NAME ...]]
 
-For each mutant, or those named: replaces its text, builds what these tests run, and runs them.
-Before that they have to pass without any mutant. The source is restored after each, also if
-interrupted, and the build at the end. Exit status 1 if a mutant survives, 2 if one could not be
-tried. Without a build it only checks that the text of each stands once in its file.
+For each mutant, or for the mutants NAME: replaces its text, builds the programs of its tests, and runs them. These
+tests must first pass without any mutant. The source is restored after each mutant, also after an interruption, and the
+build at the end. The exit status is 1 if a mutant survives, and 2 if a mutant could not be tried. Without BUILD, it
+only checks that the text of each mutant occurs exactly once in its file.
 """
 import argparse
 import json
@@ -26,7 +26,7 @@ def said(*words):
 
 
 def make(build, regex):
-    """Builds the programs that the tests run which the regular expression selects."""
+    """Builds the programs of the tests that the regular expression selects."""
     tests = json.loads(said("ctest", "--test-dir", build, "--show-only=json-v1", "-R", regex)[1])[
         "tests"
     ]
@@ -50,7 +50,7 @@ def make(build, regex):
 
 
 def failing(build, regex):
-    """The first test that fails of those selected; empty if all pass."""
+    """Returns the first failing test among the selected tests; empty if all pass."""
     status, output = said(
         "ctest", "--test-dir", build, "--stop-on-failure", "--no-tests=error", "-R", regex
     )
@@ -71,7 +71,7 @@ def mutated(mutant):
 
 
 def killer(mutant, build):
-    """The name of a test that fails with the mutant; empty if none does."""
+    """Returns the name of a test that fails with the mutant; empty if none fails."""
     path = SOURCE / mutant["file"]
     original, fault = path.read_bytes(), mutated(mutant)
     try:
@@ -83,7 +83,7 @@ def killer(mutant, build):
 
 
 def tried(build, names):
-    """How many mutants survive."""
+    """Tries the mutants and returns the number of survivors."""
     mutants = json.loads((HERE / "mutants.json").read_text(encoding="utf-8"))
     if unknown := set(names) - {mutant["name"] for mutant in mutants}:
         raise RuntimeError(f"no mutant is called {', '.join(sorted(unknown))}")
@@ -120,7 +120,9 @@ def main():
     )
     parser.add_argument("names", nargs="*", metavar="NAME", help="mutants to try instead of all")
     options = parser.parse_args()
-    signal.signal(signal.SIGTERM, signal.default_int_handler)  # restores the source
+    signal.signal(
+        signal.SIGTERM, signal.default_int_handler
+    )  # SIGTERM then restores the source, as Ctrl-C does
     try:
         return 1 if tried(options.build and options.build.resolve(), options.names) else 0
     except RuntimeError as problem:

@@ -1,11 +1,11 @@
-"""Shows what it takes to add things: the edits that the manuals ask for, and no other.
+"""Tests the edits that the manuals require for an extension: no other edits are necessary.
 
-    python3 tests/scripts/fixture.py tests/scripts/adding_test.py [--keep]
+  python3 tests/scripts/fixture.py tests/scripts/adding_test.py [--keep]
 
-Copies the tree to a scratch folder, adds a law, a tool, an environment, a named file, a device
-field, a section of metrics, a column of trajectory.csv and a command there, builds the program
-(minutes) and shows that reader, schema, describe, list, results, sweep, help and completion know
-each of them. `--keep` leaves the folder behind, /tmp/hapbench_adding_….
+Copies the source tree to a scratch folder and adds a law, a tool, an environment, a named file, a device field, a
+section of metrics, a column of trajectory.csv and a command. Then it builds the program (minutes) and tests that
+reader, schema, describe, list, results, sweep, help and completion know each of them. `--keep` keeps the folder
+/tmp/hapbench_adding_….
 """
 import csv
 import json
@@ -19,7 +19,7 @@ from pathlib import Path
 from additions import ADDITIONS, INSIDE, Tree
 from fixture import must, ran, scratch_folder
 
-# All the new things.
+# A scenario that uses all added parts.
 SCENARIO = {
     "time": {"step_s": 0.0005, "steps": 20},
     "environment": {"type": "ridge", "height_m": 0.001},
@@ -71,7 +71,7 @@ class Adding(unittest.TestCase):
         self.folder.mkdir()
 
     def hapbench(self, *words, status=0):
-        """Standard output, or of a refusal standard error."""
+        """Returns standard output; for an expected error, standard error."""
         done = ran(self.program, *words, cwd=self.folder, env={**os.environ, "NO_COLOR": "1"})
         self.assertEqual(done.returncode, status, f"{words}\n{done.stdout}{done.stderr}")
         return done.stdout if status == 0 else done.stderr
@@ -80,7 +80,7 @@ class Adding(unittest.TestCase):
         (self.folder / "scene.json").write_text(json.dumps(SCENARIO | parts))
 
     def run_scene(self, *words, status=0):
-        """Summary and effective scenario of a run of it, in the folder out."""
+        """Runs the scenario into the folder out. Returns the summary and the effective scenario."""
         self.hapbench("run", "scene.json", *words, "--out", "out", "--quiet", status=status)
         return [
             json.loads((self.folder / "out" / name).read_text())

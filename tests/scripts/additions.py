@@ -1,11 +1,12 @@
-"""The things that adding_test.py adds to a copy of the tree: for each the files that it may touch, and its edits."""
+"""The parts that adding_test.py adds to a copy of the source tree. Each part has the files that it may change, and its
+edits."""
 import shutil
 
 from fixture import SOURCE
 
 
 class Tree:
-    """A copy of the sources, as they stand now."""
+    """A copy of the current sources."""
 
     def __init__(self, folder):
         self.folder = shutil.copytree(
@@ -16,7 +17,7 @@ class Tree:
         )
 
     def edit(self, anchor, new):
-        """Puts `new` in place of the anchor in the only place of a source that has it. Returns the file's name."""
+        """Replaces the anchor, which must occur exactly once in the sources, by `new`. Returns the file's name."""
         folders = [
             self.folder / name
             for name in ("sim", "algorithms", "device_model", "results", "scenarios")
@@ -44,7 +45,7 @@ def before(anchor, new):
     return Tree.edit, anchor, new + anchor
 
 
-# What an environment says of its inside; without it the tree does not compile.
+# Required member of an environment; without it the code does not compile.
 INSIDE = """
 static std::unique_ptr<const Solid> make_solid(const RidgeEnvironment& ridge) {
   return make_solid(surface_points(ridge));
@@ -52,7 +53,7 @@ static std::unique_ptr<const Solid> make_solid(const RidgeEnvironment& ridge) {
 
 """
 
-# Each addition with the most files that it may touch, and its edits.
+# For each addition, the largest number of files that it may change, and its edits.
 ADDITIONS = {
     "law": (
         3,

@@ -11,24 +11,25 @@ os.environ.setdefault("HAPBENCH_PROGRAM", str(PROGRAM))
 from hapbench import audit  # noqa: E402  (finds the program in the environment)
 
 T = 1e-3  # sampling period [s]
-MASS, HAND, HAND_DAMPING = 0.12, 250.0, 3.5  # of the handle and the hand [kg, N/m, N s/m]
-# Intervals of exact models cover rounding only: positions have six decimals, forces nine digits.
+# Mass of the handle [kg], stiffness [N/m] and damping [N s/m] of the hand.
+MASS, HAND, HAND_DAMPING = 0.12, 250.0, 3.5
+# Intervals of exact models only contain rounding: positions have six decimals, forces nine digits.
 ROUNDING = 1e-4
 
 
 def presses(t):
-    """Target of the hand: out of contact, and three presses that begin within a row."""
+    """Returns the target of a hand: no contact first, then three presses. Each press begins between two rows."""
     return np.where((t > 0.3) & (t % 1.2 < 0.8), -8e-3, 4e-3)
 
 
 def decay(t):
-    """Target of a hand that presses once and then stays."""
+    """Returns the target of a hand that presses once and then stays."""
     return np.where(t > 0.3, -8e-3, 4e-3)
 
 
 def simulated(stiffness, damping, delay, target=presses, friction=0.0, slide=0.0, tremor=0.0):
-    """Times, positions (x, z) and forces (x, z) of a handle at a wall, integrated in ten parts of a period. The engine
-    uses the true velocity of `delay` rows before."""
+    """Returns times, positions (x, z) and forces (x, z) of a handle at a wall, integrated with ten steps per period.
+    The engine uses the true velocity of `delay` rows earlier."""
     rng, rows, parts = np.random.default_rng(1), 3000, 10
     at, speed, shake = np.array([0.0, 4e-3]), np.zeros(2), 0.0
     positions, speeds, forces = np.zeros((rows, 2)), np.zeros((rows, 2)), np.zeros((rows, 2))
@@ -66,7 +67,7 @@ class Battery(unittest.TestCase):
         self.assertTrue(low - slack <= truth <= high + slack, (message, interval, truth))
 
     def determined(self, log, stiffness, damping, delay):
-        """The intervals hold the truth, and the values are of use: within 2 % of K."""
+        """Asserts that the intervals contain the true values, and that the values are accurate to 2 % of K."""
         spring = audit(log)["stiffness"]
         name = (stiffness, damping, delay)
         self.assertIsNotNone(spring, name)
@@ -78,7 +79,7 @@ class Battery(unittest.TestCase):
         return spring
 
     def test_presses_of_one_axis(self):
-        """The last contact is cut off by the end of the log; the others are presses."""
+        """The end of the log cuts off the last contact; the other contacts are complete presses."""
         for truth in ((600.0, 2.0, 2), (600.0, 0.0, 0), (1500.0, 1.0, 1), (4000.0, 2.0, 2)):
             self.determined(one_axis(*truth), *truth)
 
@@ -90,11 +91,11 @@ class Battery(unittest.TestCase):
         truth = (600.0, 2.0, 2)
         log = three_axes(*truth, friction=0.4, slide=5e-3)
         spring = self.determined(log, *truth)
-        # The normal is known to the resolution of 1 um in a travel of 5 mm.
+        # The error of the normal is the resolution of 1 um divided by the travel of 5 mm.
         self.assertAlmostEqual(abs(spring["direction"][2]), 1.0, delta=1e-3)
 
     def test_no_number_without_motion(self):
-        """An undisturbed decay fits any delay, so that the log does not determine one."""
+        """An undisturbed decay fits any delay, so the log does not determine the delay."""
         t, position, force = simulated(600.0, 2.0, 2, target=decay)
         keep = t > 0.45
         log = {"t": t[keep], "position": position[keep, 1], "force": force[keep, 1]}
@@ -107,7 +108,7 @@ class Battery(unittest.TestCase):
         self.holds(spring["stiffness_interval"], 600.0, "decay")
 
     def test_a_loop_slower_than_the_log(self):
-        """The limit is the limit at the rate at which position and force change."""
+        """The limit is computed at the rate at which position and force change."""
         log = one_axis(600.0, 2.0, 0)
         found = audit({name: np.repeat(values, 4) for name, values in log.items() if name != "t"}
                       | {"t": 0.25 * T * np.arange(4 * len(log["t"]))}, "touch")  # fmt: skip

@@ -1,4 +1,4 @@
-"""`hapbench audit` and hapbench.audit on logs of known answer, and on runs of our own."""
+"""`hapbench audit` and hapbench.audit on logs with known answers, and on runs of hapbench."""
 import json
 import math
 import os
@@ -12,12 +12,13 @@ os.environ.setdefault("HAPBENCH_PROGRAM", str(PROGRAM))
 from hapbench import InputError, audit  # noqa: E402  (finds the program in the environment)
 
 T = 0.001  # sampling period of the logs [s]
-# Least squares of exact data: rounding of the normal equations, and 1e-6 that every interval has.
+# Least squares of exact data: rounding of the normal equations, and 1e-6, which is added to every interval.
 EXACT = 1e-5
 
 
 def pressed(cycles, amplitude=1e-3, per_cycle=100, depth=3e-3):
-    """Positions of a tool that lands within 50 rows and moves `cycles` times up and down within the surface z < 0."""
+    """Returns positions of a tool that lands within 50 rows and then moves up and down `cycles` times inside the
+    surface z < 0."""
     landing = np.concatenate([np.full(100, 1e-3), np.linspace(1e-3, -depth, 50, endpoint=False)])
     phase = 2.0 * np.pi / per_cycle * np.arange(cycles * per_cycle + 1)
     return np.concatenate([landing, -depth - amplitude * np.sin(phase)])
@@ -28,7 +29,7 @@ def late(values, rows):
 
 
 def table(z, force, **more):
-    """A log whose tool moves along z."""
+    """Returns a log of a tool that moves along z."""
     zero = np.zeros(len(z))
     return {
         "t": T * np.arange(len(z)),
@@ -47,7 +48,7 @@ def csv_text(columns):
 
 
 def wall(z, stiffness, damping=0.0):
-    """Force of a one-sided spring and damper, with the velocity by the difference of positions."""
+    """Returns the force of a one-sided spring and damper, with the velocity from position differences."""
     speed = np.diff(z, prepend=z[0]) / T
     return np.where(z < 0.0, -stiffness * z - damping * speed, 0.0)
 
@@ -58,8 +59,8 @@ def rules_of(found):
 
 class KnownAnswers(unittest.TestCase):
     def test_sampled_spring_with_delay(self):
-        """Held for a row, f_k = −K x_(k−d) on A sin(k φ) gives K A² N sin((d + ½) φ) sin(φ/2) per cycle of
-        N rows."""
+        """With held forces, f_k = −K x_(k−d) on x = A sin(k φ) does the work K A² N sin((d + ½) φ) sin(φ/2) per cycle
+        of N rows."""
         stiffness, amplitude, per_cycle = 1200.0, 1e-3, 100
         for delay in (0, 1, 3):
             found = []
@@ -79,11 +80,11 @@ class KnownAnswers(unittest.TestCase):
                 * math.sin(angle / 2.0)
             )
             work = (found[1]["energy"]["work_J"] - found[0]["energy"]["work_J"]) / 20.0
-            # Sums of 3000 products of about 4 N and 0.1 mm, each rounded to 1e-16 of it.
+            # Sums of 3000 products of about 4 N and 0.1 mm, each with a relative rounding error of 1e-16.
             self.assertAlmostEqual(work, per, delta=1e-12)
 
     def test_limit_and_frequency_in_closed_form(self):
-        """An undamped handle at K, B: K T²/m < 2 β (2 − β)/(2 + β), and at the limit cos θ = 1 − κ/4 −
+        """For an undamped handle at a wall with K, B: K T²/m < 2 β (2 − β)/(2 + β), and at the limit cos θ = 1 − κ/4 −
         β/2."""
         mass, damping = 0.1, 5.0
         beta = damping * T / mass
@@ -94,7 +95,7 @@ class KnownAnswers(unittest.TestCase):
         for factor in (0.5, 1.001):
             z = pressed(20)
             found = audit(table(z, wall(z, factor * limit, damping)), device)["device"]
-            # B is known to 1e-5 of its value, and the limit is nearly proportional to it.
+            # The relative error of B is 1e-5, and the limit is nearly proportional to B.
             self.assertAlmostEqual(found["linear_limit_N_per_m"] / limit, 1.0, delta=2 * EXACT)
             self.assertAlmostEqual(found["ratio"] / factor, 1.0, delta=3 * EXACT)
             if factor < 1.0:
@@ -102,23 +103,25 @@ class KnownAnswers(unittest.TestCase):
                 continue
             kappa = limit * T**2 / mass
             frequency = math.acos(1.0 - kappa / 4.0 - beta / 2.0) / (2.0 * math.pi * T)
-            # At 1.001 times the limit, the square of the frequency is 1.001 times as large at most.
+            # At 1.001 times the limit, the squared frequency is at most 1.001 times as large.
             self.assertAlmostEqual(found["expected_frequency_Hz"] / frequency, 1.0, delta=1e-3)
         answer = hapbench(
             "limit", "wall_on_handle", "--device", device, "--json", "--out", scratch / "limit",
             "--set", f"time.step_s={T}", "--set", f"rendering.damping_N_s_per_m={damping}",
         )  # fmt: skip
         row = json.loads(answer)["limits"][0]
-        same = row["theoretical_limit"] or row["linear_limit"]  # this loop is linear
+        # This loop is linear, so either limit is valid.
+        same = row["theoretical_limit"] or row["linear_limit"]
         self.assertAlmostEqual(found["linear_limit_N_per_m"] / same, 1.0, delta=2 * EXACT)
 
     def test_passive_spring_and_damper(self):
-        """With B > K T / 2 a held spring and damper creates nothing; without damping it does, and its path does not."""
+        """If B > K T / 2, a held spring and damper creates no energy. Without damping it creates energy, while the work
+        along the path is zero."""
         rng = np.random.default_rng(1)
         z = pressed(20) + 2e-4 * np.cumsum(rng.normal(size=len(pressed(20)))) / 100.0
         stiffness = 1000.0
         damped = audit(table(z, wall(z, stiffness, 1.0)))["energy"]
-        # A contact that begins between rows adds at most K d²/2 with d the step of 80 um at touch.
+        # A contact that begins between rows adds at most K d²/2, with the displacement d of 80 um per row at touch.
         touch = 0.5 * stiffness * 1e-4**2
         self.assertLessEqual(damped["net_created_J"], damped["net_created_error_J"] + touch)
         bare = audit(table(z, wall(z, stiffness)))["energy"]
@@ -126,7 +129,7 @@ class KnownAnswers(unittest.TestCase):
         self.assertLessEqual(bare["net_created_path_J"], bare["net_created_error_J"] + touch)
 
     def test_quantised_position(self):
-        """The encoder's step widens the intervals and the error, which hold the truth."""
+        """The encoder step widens the intervals and the error of the work, which still contain the true values."""
         rng = np.random.default_rng(2)
         for step in (1e-5, 5e-5):
             z = (
@@ -142,7 +145,7 @@ class KnownAnswers(unittest.TestCase):
             true_work = float(np.sum(force[:-1] * np.diff(z)))
             energy = found["energy"]
             self.assertLessEqual(abs(energy["work_J"] - true_work), energy["work_error_J"])
-            # The bound is of use: below the energy that one cycle stores.
+            # The bound is small enough to be useful: below the energy stored in one cycle.
             self.assertLess(energy["work_error_J"], 20.0 * 1500.0 * 3e-3 * 1e-3)
 
     def test_position_that_moves_by_few_counts(self):
@@ -155,7 +158,7 @@ class KnownAnswers(unittest.TestCase):
         )
 
     def test_dry_friction(self):
-        """Friction of c takes 4 A c per cycle."""
+        """Dry friction c dissipates 4 A c per cycle of amplitude A."""
         stiffness, friction, amplitude = 800.0, 0.4, 1e-3
 
         def log(cycles):
@@ -168,13 +171,13 @@ class KnownAnswers(unittest.TestCase):
         self.assertAlmostEqual(spring["stiffness_N_per_m"] / stiffness, 1.0, delta=0.01)
         self.assertAlmostEqual(spring["dry_friction_N"] / friction, 1.0, delta=0.01)
         lost = (found["energy"]["work_path_J"] - shorter["energy"]["work_path_J"]) / 10.0
-        # Twice per cycle, in the row of the turn, the sign holds for half a step too long: A (1 − cos φ) each.
+        # Twice per cycle, at the reversal, the sign is wrong for half a step: A (1 − cos φ) each.
         self.assertAlmostEqual(lost / (-4.0 * amplitude * friction), 1.0, delta=0.005)
         self.assertNotIn("energy", rules_of(found))
 
     def test_buzz_of_a_device_with_delay(self):
-        """A handle of 0.08 kg with a delay of 2 samples at 2.3 times its limit buzzes near the frequency of
-        the theory."""
+        """A handle of 0.08 kg with a delay of 2 samples, at 2.3 times its stability limit, vibrates near the frequency
+        of the linear theory."""
         mass, viscous, delay = 0.08, 1.0, 2
         scratch = scratch_folder(self)
         device = scratch / "late.json"
@@ -188,7 +191,8 @@ class KnownAnswers(unittest.TestCase):
                 }
             )
         )
-        stiffness = 2.3 * viscous / (T * (0.5 + delay))  # about, by Gil and Hulin
+        # Limit approximated by the formula of Gil and Hulin.
+        stiffness = 2.3 * viscous / (T * (0.5 + delay))
         log = handle_at_wall(mass, viscous, delay, stiffness)
         found = audit(log, device)
         self.assertAlmostEqual(
@@ -196,9 +200,9 @@ class KnownAnswers(unittest.TestCase):
         )
         self.assertAlmostEqual(
             found["device"]["ratio"], 2.3, delta=0.14 * 2.3
-        )  # the formula is that good
+        )  # accuracy of the formula
         expected, seen = found["device"]["expected_frequency_Hz"], found["buzz"][0]["frequency_Hz"]
-        # The wall pushes only: a growing oscillation loses contact and then has a longer period.
+        # The wall only pushes: a growing oscillation loses contact and then has a longer period.
         self.assertTrue(0.6 * expected < seen < 1.1 * expected, (expected, seen))
         edge = rules_of(found)["edge"]
         self.assertIn(f"expect a buzz near {expected:.0f} Hz", edge["says"])
@@ -206,7 +210,8 @@ class KnownAnswers(unittest.TestCase):
 
 
 def handle_at_wall(mass, viscous, delay, stiffness, seconds=3.0):
-    """Log of a handle that a hand of 200 N/m presses into a wall, integrated in twenty parts of a period."""
+    """Returns the log of a handle that a hand of 200 N/m presses into a wall, integrated with twenty steps per
+    period."""
     z, v, waiting, rows = 1e-3, 0.0, [0.0] * delay, []
     parts = 20
     for k in range(int(seconds / T)):
@@ -229,7 +234,8 @@ class Clocks(unittest.TestCase):
         rng = np.random.default_rng(3)
         jittered = log | {"t": log["t"] + 1e-4 * rng.uniform(-0.5, 0.5, len(z))}
         clock = audit(jittered)["clock"]
-        # Differences of two uniform errors of width w scatter by w/√6; 2000 of them by 3 % more or less.
+        # Differences of two uniform errors of width w have the standard deviation w/√6, estimated from 2000 differences
+        # with an error of 3 %.
         self.assertAlmostEqual(clock["jitter_s"] / (1e-4 / math.sqrt(6.0)), 1.0, delta=0.1)
         kept = np.ones(len(z), bool)
         kept[[500, 900, 901]] = False
@@ -251,7 +257,7 @@ class Clocks(unittest.TestCase):
 
 class Formats(unittest.TestCase):
     def test_other_engine(self):
-        """Nanoseconds since 1970, millimetres, a quaternion, and the force by the tool on the object."""
+        """A log with nanoseconds since 1970, millimetres, a quaternion, and the force of the tool on the object."""
         z = pressed(20)
         force = wall(z, 1000.0, 1.0)
         start = 1_700_000_000_000_000_000
@@ -331,7 +337,8 @@ class Formats(unittest.TestCase):
 
 class OwnRuns(unittest.TestCase):
     def test_numbers_are_those_of_the_summary(self):
-        """Of an ideal device, of a handle with a device, and of a run with several landings."""
+        """Compares audit with the summary for an ideal device, for a handle with a device, and for a run with several
+        landings."""
         scratch = scratch_folder(self)
         for scene in ("device_at_wall", "tap_wall", "impedance_at_wall"):
             run = scratch / scene
@@ -346,7 +353,7 @@ class OwnRuns(unittest.TestCase):
                 self.agree(scene, name, found["metrics"][name], summary, name)
             if scene == "device_at_wall":
                 continue  # for a free virtual tool, run uses the mean velocity of a step
-            # No turn, so that the port of the translation is the whole port.
+            # The tool does not rotate, so that all energy passes through the translation.
             created = summary["passivity"]["net_created_J"]
             self.assertAlmostEqual(
                 found["energy"]["net_created_J"], created, delta=1e-9 + 1e-9 * created
@@ -357,7 +364,7 @@ class OwnRuns(unittest.TestCase):
         if stated is None or value is None:
             self.assertEqual(value, stated, (scene, name))
             return
-        # Sums in another order round otherwise; the histogram of steps states its error.
+        # Sums in another order round differently; the histogram of steps states its error.
         within = 1e-9 * abs(stated) + summary["tolerances"].get(metric, 0.0) + 1e-12
         self.assertAlmostEqual(value, stated, delta=within, msg=(scene, name))
 

@@ -1,5 +1,5 @@
-"""hapbench as a library: a project of its own finds it installed, and takes it in as a folder;
-elementary functions are its own. Arguments: the program, cmake, nm, the build tree."""
+"""Tests hapbench as a library: another project uses the installed library, or includes the source folder, and
+elementary functions are hapbench's own. Arguments: the program, cmake, nm, the build tree."""
 import json
 import re
 import shutil
@@ -13,7 +13,7 @@ from fixture import ENVIRONMENT, PROGRAM, SOURCE, must, ran, scratch_folder
 CMAKE, NM, BUILD = sys.argv[2:5]
 CONSUMER = SOURCE / "tests" / "consumer"
 SCENARIO = "peg_in_hole_2d_mean"
-# A parent's flags are its own business; CMake would take these from the environment.
+# Removes the flags of the test's caller, which CMake would read from the environment.
 BARE = {
     key: value
     for key, value in ENVIRONMENT.items()
@@ -25,7 +25,7 @@ C_FUNCTIONS = re.compile(
     r"c(?:abs|arg|exp|log|pow|sqrt))[fl]?$",
     re.M,
 )
-# OpenMesh has a cosine among the virtual functions of its mesh, for feature edges, which we do not ask for.
+# OpenMesh uses a cosine in the virtual functions of its mesh for feature edges, which hapbench does not call.
 OPENMESH = {
     ("libhapbench_sim_mesh", "cos"),
     ("libhapbench_scenarios_input", "cos"),
@@ -34,7 +34,7 @@ OPENMESH = {
 
 
 def ascii_pyramid():
-    """A closed pyramid on a square of 4 mm, 3 mm high, as STL."""
+    """Returns a closed pyramid on a square of 4 mm, 3 mm high, as STL."""
     a, b, c, d, top = (
         (-2e-3, -2e-3, 0),
         (2e-3, -2e-3, 0),
@@ -80,7 +80,7 @@ class Consumer(unittest.TestCase):
         self.assertEqual(state_hash, json.loads((out / "summary.json").read_text())["state_hash"])
 
     def test_an_installed_renderer_renders_in_a_loop_of_another_project(self):
-        """In C, found by CMake and by pkg-config; the log is replayed bit for bit."""
+        """A program in C that finds the library by CMake and by pkg-config; the log is replayed bit for bit."""
         project = CONSUMER / "loop"
         build = self.folder / "loop"
         must(CMAKE, "-G", "Ninja", "-S", project, "-B", build, f"-DCMAKE_PREFIX_PATH={self.prefix}")
@@ -93,7 +93,7 @@ class Consumer(unittest.TestCase):
         }
         self.assertTrue(all(name.startswith("hapbench_renderer_") for name in exported), exported)
         self.assertEqual(len(exported), 8, exported)
-        # The molar of drag_molar, and a pyramid of our own.
+        # The molar of drag_molar, and a pyramid written by this test.
         pyramid = self.folder / "pyramid.stl"
         pyramid.write_text(ascii_pyramid())
         own = self.folder / "own.json"
@@ -199,8 +199,8 @@ class Consumer(unittest.TestCase):
             self.assertNotIn(word, own)
 
     def test_it_computes_elementary_functions_itself(self):
-        """Not by the C library, whose last digits differ; a call which Eigen or the standard
-        library makes for us is found as well."""
+        """Elementary functions must not come from the C library, because their last digits differ between versions.
+        Calls by Eigen or the standard library are also detected."""
         archives = sorted(
             p for p in Path(BUILD).rglob("libhapbench_*.a") if "test_support" not in p.name
         )

@@ -1,5 +1,5 @@
-"""The manuals keep what they promise: documented commands and examples work, links lead somewhere,
-generated tables are those on record, and the first page keeps its size."""
+"""Tests the manuals: documented commands and examples work, link targets exist, generated tables equal the stored
+tables, and the first page keeps its size."""
 import json
 import math
 import os
@@ -33,9 +33,9 @@ TUTORIALS = SOURCE / "scenarios" / "library" / "tutorials"
 MANUALS = [Manual(file) for file in manuals()]
 COMMANDS = [command for manual in MANUALS for command in manual.commands()]
 started = partial(ran, LC_ALL="C.UTF-8")
-# No option of the program is like it, so that no other is named as the one that may have been meant.
+# No option of the program is similar, so that the message suggests no other option.
 UNKNOWN = "--zzzz"
-# Minutes long: parsed, not run.
+# These commands take minutes and are only parsed.
 LONG = {"reproduce", "stress"}
 FEW_STEPS = ["--set", 'time={"step_s": 0.0005, "steps": 40}']
 SHORTER = {
@@ -57,7 +57,7 @@ def text_of(name):
 
 
 def prepare(folder):
-    """Writes the files that manuals call their reader's own."""
+    """Writes the files that the manuals describe as files of the reader."""
     for name, source in (
         ("my.stl", "tests/data/seeds/cube_text.stl"),
         ("log.txt", "scenarios/library/examples/data/wipe.hapi.txt"),
@@ -68,7 +68,7 @@ def prepare(folder):
         shutil.copy(SOURCE / source, folder / name)
     # A straight stroke of 20 samples in microseconds and millimetres, with a force and quaternions.
     stroke = "".join(f"{10000 * i},1,0,0,{i / 20},0,0,0,0,0,1\n" for i in range(20))
-    # A mass of 0.1 kg that a force of 1 N swings once a second, in steps of 10 um.
+    # A mass of 0.1 kg that a force of 1 N moves at 1 Hz, with a resolution of 10 um.
     turns = [math.cos(math.tau * i / 100) for i in range(200)]
     log = "".join(
         f"{i / 100},{turn},{round(2.533e4 * (1 - turn)) * 1e-5}\n" for i, turn in enumerate(turns)
@@ -82,7 +82,7 @@ def prepare(folder):
     ):
         (folder / name).write_text(text, encoding="ascii")
     write_files_of_getting_started(folder)
-    # The example in C, by the manual's line.
+    # Compiles the example in C with the command line of the manual.
     compiler = re.search(r"^    (gcc .*) -o \S+$", text_of("algorithms/WRITE_A_LAW.md"), re.M)[
         1
     ].split()
@@ -109,12 +109,12 @@ def prepare(folder):
 
 
 def shortened(command, folder):
-    """A command's words, shorter, and with patterns replaced by the files that they match, in the
+    """Returns a command's words with shorter runs. Patterns are replaced by the files that they match, in the source
     tree or in the folder."""
     given = list(command.words[1:])
     if (
         given[0] == "plot" and "--from" in given
-    ):  # a span of time that a shortened run does not have
+    ):  # an interval of time that a shortened run does not contain
         given = given[: given.index("--from")]
     runs = given[0] != "sweep" or "--vary" in given and "--row" not in given
     shorter = SHORTER.get(given[0], []) if runs else []
@@ -123,9 +123,10 @@ def shortened(command, folder):
         and given[1].startswith("stability_")
         and not {"--device", "--algorithms"} & set(given)
     ):
-        shorter = [*shorter, "--algorithms", "shaped_stiffness"]  # of studies over all laws
+        shorter = [*shorter, "--algorithms", "shaped_stiffness"]  # for studies over all laws
     if "--errors" in given:
-        shorter = [*shorter, "--set", "environment.spacing_m=4e-4"]  # half of that for the errors
+        # The errors use half of this spacing.
+        shorter = [*shorter, "--set", "environment.spacing_m=4e-4"]
     if "--resolution" in given:
         shorter = [word for word in shorter if word not in ("--resolution", "0.5")]
     found = []
@@ -141,7 +142,7 @@ class Commands(unittest.TestCase):
         self.assertGreater(len(commands), 50)
         for command in commands:
             if command.words[1:2] == ("--version",):
-                continue  # whatever follows
+                continue  # also skips the following commands
             with self.subTest(str(command)):
                 done = started(PROGRAM, *command.words[1:], UNKNOWN)
                 self.assertEqual(done.returncode, 2, done.stderr)
@@ -153,7 +154,8 @@ class Commands(unittest.TestCase):
         prepare(prepared)
         for manual in MANUALS:
             if manual.file.is_relative_to(RECORD) or manual.file.is_relative_to(TUTORIALS):
-                continue  # records of work of minutes; tutorials_test.py runs those in full
+                # Records that take minutes; tutorials_test.py runs these commands completely.
+                continue
             folder = shutil.copytree(prepared, scratch_folder(self), dirs_exist_ok=True)
             for command in manual.commands():
                 if (
@@ -264,7 +266,7 @@ class Generated(unittest.TestCase):
 
 class Examples(unittest.TestCase):
     def test_the_force_on_a_sphere_by_python_is_that_of_the_sphere(self):
-        """K times the depth, along the line of the centres."""
+        """The force on a sphere is K times the depth, along the line between the centres."""
         folder = scratch_folder(self)
         must(
             sys.executable,
@@ -279,5 +281,5 @@ class Examples(unittest.TestCase):
         distance = np.linalg.norm(place, axis=1, keepdims=True)
         known = 20000 * np.maximum(0, 0.0025 - distance) * place / distance
         self.assertGreater(np.count_nonzero(known[:, 2]), 500)
-        # A few roundings of 2.5 mm, times K.
+        # A few rounding errors of 2.5 mm, times K.
         self.assertLess(np.abs(force - known).max(), 1e-13)

@@ -1,16 +1,17 @@
-"""What a figure shows, from the contents of its axes, and whether it fits its sheet."""
+"""Checks of a figure from the contents of its axes, and of its size on the sheet."""
 import itertools
 
 import numpy as np
 
 from hapbench_style import fix_layout
 
-SMALLEST, LARGEST = 7, 9  # font sizes [points]
-SLACK = 2.0  # by which a text may leave the figure or overlap another one [pixels]; 100 pixels are an inch
+SMALLEST, LARGEST = 7, 9  # smallest and largest font size [points]
+# Tolerance for texts that leave the figure or overlap another text [pixels]; 100 pixels are an inch.
+SLACK = 2.0
 
 
 def texts_of(figure):
-    """The visible texts that are not empty: those of the figure and its parts, titles, labels, and ticks in view."""
+    """Returns the visible, non-empty texts of the figure and its parts: titles, labels, and tick labels within view."""
     found = []
     for part in (figure, *figure.subfigs):
         found += [*part.texts, *(text for legend in part.legends for text in legend.get_texts())]
@@ -33,7 +34,7 @@ def texts_of(figure):
 
 
 def legend_labels(figure):
-    """The entries of the legends of the figure, its parts and its axes."""
+    """Returns the entries of the legends of the figure, its parts and its axes."""
     parts = [figure, *figure.subfigs, *figure.axes]
     legends = [one for part in parts for one in getattr(part, "legends", [])]
     legends += [ax.get_legend() for ax in figure.axes if ax.get_legend()]
@@ -41,13 +42,13 @@ def legend_labels(figure):
 
 
 def curves_of(ax, marker):
-    """Points of the curves with a marker."""
+    """Returns the points of the curves with a marker."""
     return [line.get_xydata() for line in ax.lines if line.get_marker() == marker]
 
 
 def assert_fits(test, figure, sheet):
-    """The figure has the size of the sheet, fonts of 7 to 9 pt, no text outside or over another one, no legend over
-    axes, and a unit on every axis of numbers."""
+    """Asserts that the figure has the size of the sheet, fonts of 7 to 9 pt, no text outside of the figure or over
+    another text, no legend over axes, and a unit on every numeric axis."""
     fix_layout(figure)
     test.assertAlmostEqual(figure.get_figwidth(), sheet.width)
     if sheet.height:
@@ -81,7 +82,7 @@ def assert_fits(test, figure, sheet):
 
 
 def has_numbers(along):
-    """True unless the labels of the ticks are texts."""
+    """Returns True unless the tick labels are texts."""
     labels = [tick.get_text().strip() for tick in along.get_ticklabels()]
     return not any(
         any(letter.isalpha() for letter in label.replace("mathdefault", "")) for label in labels

@@ -1,4 +1,4 @@
-"""scripts/figures on freshly made results."""
+"""scripts/figures on newly computed results."""
 import json
 import os
 import re
@@ -11,16 +11,17 @@ from unittest import mock
 
 from fixture import PROGRAM, SOURCE, in_process, must, ran, scratch_folder
 
-from hapbench_figures import __main__ as command  # below scripts/python, which the fixture adds
+# In scripts/python, which the fixture adds to the path.
+from hapbench_figures import __main__ as command
 
 SVG = "{http://www.w3.org/2000/svg}"
 REFERENCE = SOURCE / "results" / "reference"
 RECORD = REFERENCE / "figures"
-LARGEST = 65_000  # of a figure of the thesis on record [bytes]
-# Short runs of the same scenarios: what is tested is the drawing. They need not end as their scenarios expect.
+LARGEST = 65_000  # largest size of a stored figure of the thesis [bytes]
+# Short runs of the same scenarios, because the test is about drawing. Their outcomes need not be the expected outcomes.
 RUNS = (
     ("task[13]*", ["time.duration_s=1", "record.every=8"]),
-    ("task2*", ["time.duration_s=7", "record.every=8"]),  # with a tap beyond 2 N
+    ("task2*", ["time.duration_s=7", "record.every=8"]),  # includes a tap beyond 2 N
     ("force_limit_*", []),
     ("corner_*", []),
     ("peg_in_hole_2d_*", []),
@@ -32,8 +33,8 @@ RUNS = (
         ["hand.trials=1", "hand.task.time_limit_s=2", "hand.task.targets_per_place=1"],
     ),
 )
-# Figures that between them use every way of drawing: thinned marks, shaded areas, arrows, rasterised marks, limits.
-# They are drawn by the command, in every format; the others as SVG only, which takes a third of the time.
+# These figures together use every drawing function: subsampled marks, shaded areas, arrows, rasterised marks, limits.
+# The command draws them in every format; the other figures are drawn as SVG only, which takes a third of the time.
 DRAWN_BY_COMMAND = "A.5,C.3,D.7,stability-z_width"
 hapbench = partial(must, PROGRAM, statuses=(0, 3))
 figures = partial(ran, SOURCE / "scripts" / "figures")
@@ -44,7 +45,7 @@ def make_results(directory):
     for pattern, overrides in RUNS:
         scenarios = sorted((SOURCE / "scenarios" / "library" / "thesis").glob(f"{pattern}.json"))
         assert scenarios, pattern
-        # Only several scenarios get a directory each.
+        # Runs of several scenarios have one directory for each scenario.
         out = directory / "thesis" / (scenarios[0].stem if len(scenarios) == 1 else "")
         hapbench("run", *scenarios, *(f"--set={text}" for text in overrides), "--out", out)
     name = "corner_continuous_normal_projection"
@@ -79,7 +80,7 @@ def make_results(directory):
         hapbench(ask, study, *words, "--out", directory / study)
     make_accuracy(directory / "accuracy")
     shutil.copy(REFERENCE / "claims.json", directory)
-    # The load of the loop is drawn where it is known.
+    # The load of the loop is drawn if step times were measured.
     loop = directory / "step_latency" / "task2_rotate_signed_distance"
     loop.mkdir(parents=True)
     (loop / "timing.json").write_text(
@@ -88,8 +89,8 @@ def make_results(directory):
 
 
 def make_accuracy(directory):
-    """As of hapbench_accuracy, whose runs would take longer than all else here: each setting twice
-    as exact in twice the time, but the last."""
+    """Writes results in the form of hapbench_accuracy, whose runs would take longer than all other tests. Each setting
+    takes twice the time and has half the error of the previous setting, except the last."""
     directory.mkdir()
     columns = (
         "error_rms_m",
@@ -143,7 +144,8 @@ class Figures(unittest.TestCase):
         cls.directory = scratch_folder(cls)
         cls.results, cls.drawn = cls.directory / "results", cls.directory / "figures"
         make_results(cls.results)
-        program = mock.patch.dict(os.environ, {"HAPBENCH_PROGRAM": str(PROGRAM)})  # it finds knees
+        # The program finds the knees.
+        program = mock.patch.dict(os.environ, {"HAPBENCH_PROGRAM": str(PROGRAM)})
         program.start()
         cls.addClassCleanup(program.stop)
         with mock.patch.object(command, "FORMATS", ("svg",)):
@@ -206,8 +208,7 @@ class Figures(unittest.TestCase):
                     ),
                     known,
                 )
-                # An empty pair of axes has about ten paths and no text besides the numbers. Dots of
-                # one colour are one path.
+                # Empty axes have about ten paths and no text besides the numbers. Dots of one colour are one path.
                 self.assertGreater(sum(1 for _ in root.iter(f"{SVG}path")), 12)
                 self.assertRegex(
                     " ".join(root.itertext()),

@@ -1,7 +1,7 @@
-"""Shared by the tests of scripts: the tree, the built program, and commands to run. As a script it
-runs the tests of a file:
+"""Shared by the tests of scripts: the source tree, the built program, and commands to run. As a script it runs the
+tests of a file:
 
-    python3 tests/scripts/fixture.py FILE_test.py PROGRAM [WORD...]     the words are the file's own
+  python3 tests/scripts/fixture.py FILE_test.py PROGRAM [WORD...]     the words are arguments of the file
 """
 import os
 import re
@@ -29,8 +29,8 @@ sys.path.insert(0, str(SOURCE / "scripts" / "python"))
 
 
 def ran(*words, cwd=None, env=ENVIRONMENT, **environment):
-    """The finished process of a command, with its output, but for lines of progress, which come
-    with time. `environment`: variables set besides those of `env`."""
+    """Runs a command and returns the finished process with its output, without progress lines, which depend on time.
+    `environment`: variables in addition to `env`."""
     done = subprocess.run(
         [*map(str, words)],
         cwd=cwd,
@@ -49,7 +49,7 @@ def without_progress(said):
 
 
 def must(*words, statuses=(0,), **options):
-    """Standard output of a command that ends with one of the statuses."""
+    """Returns the standard output of a command, which must end with one of the statuses."""
     done = ran(*words, **options)
     assert (
         done.returncode in statuses
@@ -58,15 +58,15 @@ def must(*words, statuses=(0,), **options):
 
 
 def hapbench(*words, expected=0):
-    """Standard output of the program, or what it says on standard error if another status than 0 is expected."""
+    """Returns the standard output of the program; if a status other than 0 is expected, its standard error."""
     done = ran(PROGRAM, *words, LC_ALL="C")
     assert done.returncode == expected, (words, done.returncode, done.stderr)
     return done.stderr if expected else done.stdout
 
 
 def in_process(command, *words, **environment):
-    """Status, standard output and standard error of the main function of a command, where starting
-    another process takes longer."""
+    """Calls the main function of a command in this process, because starting a process takes longer. Returns status,
+    standard output and standard error."""
     said, error = StringIO(), StringIO()
     with redirect_stdout(said), redirect_stderr(error), mock.patch.dict(os.environ, environment):
         try:
@@ -77,7 +77,7 @@ def in_process(command, *words, **environment):
 
 
 def assert_whole(test, page):
-    """A page refers to nothing outside itself, and each of its links to one place in it."""
+    """Asserts that a page refers to no other file, and that each of its links has exactly one target in the page."""
     for reference in re.findall(r'(?:src|href)="([^"]*)"', page):
         test.assertRegex(reference, r"^(#|data:)")
     names = re.findall(r'\bid="([^"]+)"', page)
@@ -86,7 +86,8 @@ def assert_whole(test, page):
 
 
 def scratch_folder(of):
-    """A folder that goes with a test, a class of tests (`of` is the class) or a module (`of` is unittest)."""
+    """Returns a folder that is deleted after a test, a class of tests (`of` is the class) or a module (`of` is
+    unittest)."""
     scratch = tempfile.TemporaryDirectory(prefix="hapbench-test-")
     add = {unittest: unittest.addModuleCleanup}.get(of) or (
         of.addClassCleanup if isinstance(of, type) else of.addCleanup

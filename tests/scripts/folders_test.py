@@ -102,7 +102,7 @@ class Folders(unittest.TestCase):
             for attempt in range(3):
                 folder = self.root / f"race_{name}_{attempt}"
                 ends = self.ends_of([self.start(name, folder) for _ in range(3)])
-                # Short commands may follow each other; then several succeed.
+                # Short commands may run one after the other; then several succeed.
                 self.assertIn(0, [status for status, _ in ends], (name, ends))
                 for status, text in ends:
                     self.assertTrue(status == 0 or self.refused(text, folder), (name, text))
@@ -160,7 +160,7 @@ class Folders(unittest.TestCase):
         self.assertEqual(self.ends_of([comparison])[0][0], 0)
 
     def test_beside_reproduce_only_its_own_runs_are_refused(self):
-        """scripts/reproduce runs studies into folders beside those of reproduce."""
+        """scripts/reproduce runs studies into folders beside the folders of reproduce."""
         folder = self.root / "both"
         reproduce = subprocess.Popen(
             [str(PROGRAM), "reproduce", "--jobs", "1", "--out", folder],

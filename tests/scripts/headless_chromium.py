@@ -1,5 +1,5 @@
-"""A headless Chromium for tests, and what every page has to keep. HAPBENCH_CHROMIUM names the
-browser, chromedriver stands in the path (scripts/setup --browser)."""
+"""A headless Chromium for tests, and the requirements for every page. HAPBENCH_CHROMIUM names the browser; chromedriver
+is in the path (scripts/setup --browser)."""
 import json
 import os
 import time
@@ -13,7 +13,7 @@ UNNAMED = """[...document.querySelectorAll('button, select, input, canvas, img')
     !(e.getAttribute('aria-label') || e.getAttribute('alt') || e.textContent.trim() && e.tagName === 'BUTTON' ||
       [...(e.labels || [])].some((label) => label.textContent.trim()))).map((e) => e.outerHTML.slice(0, 80))"""
 
-# Texts whose contrast to what is behind them is less than WCAG's level AA asks for, 4.5 to 1.
+# Finds texts whose contrast to their background is below 4.5 to 1, which WCAG's level AA requires.
 PALE = """(() => {
   const rgb = (text) => (text.match(/[\\d.]+/g) || []).map(Number);
   const light = ([r, g, b]) => [0.2126, 0.7152, 0.0722].reduce((sum, part, i) => {
@@ -38,10 +38,10 @@ PALE = """(() => {
 
 
 def started(program):
-    """A browser without network."""
+    """Starts a browser without network access."""
     options = webdriver.ChromeOptions()
     options.binary_location = program
-    # The sandbox does not start for root, and the page is our own.
+    # The sandbox does not start for root, and the page is trusted.
     sandbox = ["--no-sandbox"] if os.geteuid() == 0 else []
     for option in [
         "--headless=new",
@@ -59,11 +59,11 @@ def started(program):
 
 
 class Page(unittest.TestCase):
-    """Tests of one page, opened from its file without network."""
+    """Tests of one page, opened from its file without network access."""
 
     @classmethod
     def show(cls, file):
-        """Opens the file for the tests of a module, in its setUpModule."""
+        """Opens the file for the tests of a module; called by setUpModule."""
         cls.url, cls.driver = file.as_uri(), started(os.environ["HAPBENCH_CHROMIUM"])
         unittest.addModuleCleanup(cls.driver.quit)
 
@@ -77,7 +77,7 @@ class Page(unittest.TestCase):
         self.assertEqual(self.complaints(), [])
 
     def call(self, method, **parameters):
-        """A method of the DevTools protocol."""
+        """Calls a method of the DevTools protocol."""
         return self.driver.execute_cdp_cmd(method, parameters)
 
     def open(self, hash_=""):
@@ -96,13 +96,13 @@ class Page(unittest.TestCase):
             time.sleep(0.05)
 
     def js(self, expression):
-        """Its value, of a promise the one that it keeps."""
+        """Evaluates an expression and returns its value; awaits a promise."""
         return self.driver.execute_script(f"return ({expression})")
 
     def complaints(self):
-        """Since the last call: what console and browser say, but for console.log, uncaught
-        exceptions, and requests for anything outside the file."""
-        # Allowed are console.log (INFO, as console.info) and what the browser itself says at its lowest level.
+        """Returns the messages since the last call: console and browser messages except console.log, uncaught
+        exceptions, and requests for other files."""
+        # Ignores console.log (INFO, like console.info) and browser messages of the lowest level.
         found = [
             entry
             for entry in self.driver.get_log("browser")
@@ -143,7 +143,7 @@ class Page(unittest.TestCase):
         )
 
     def click(self, selector):
-        """Clicks by the mouse, because browsers allow sound only then."""
+        """Clicks with the mouse, because browsers allow sound only after a click."""
         x, y = self.centre(selector)
         for kind in ("mousePressed", "mouseReleased"):
             self.mouse(kind, x, y, button="left", clickCount=1)
@@ -155,7 +155,7 @@ class Page(unittest.TestCase):
         )
 
     def check_every_page(self):
-        """It fits a telephone, every control has a name, and every text can be read in both themes."""
+        """The page fits on a telephone, every control has a name, and every text is legible in both themes."""
         self.assertEqual(self.js(UNNAMED), [])
         for dark in (True, False):
             self.dark(dark)

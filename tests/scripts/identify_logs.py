@@ -1,5 +1,5 @@
-"""Synthetic logs of identifications, and whether what is told of them holds. As a script it is a test: the
-study of 200 logs, whose table is in device_model/FIT_METHOD.md."""
+"""Synthetic logs of identifications, and a check of the reported parameters. As a script it is a test: the study of 200
+logs, whose table is in device_model/FIT_METHOD.md."""
 import os
 import sys
 
@@ -11,13 +11,13 @@ from hapbench_identify.log import log_of
 from hapbench_identify.model import KINDS, NAMES, Simulator, design, positions
 from hapbench_command import Faults
 
-os.environ["HAPBENCH_PROGRAM"] = str(PROGRAM)  # which simulates the logs
+os.environ["HAPBENCH_PROGRAM"] = str(PROGRAM)  # this program simulates the logs
 LOGS = 200
 PARAMETERS = NAMES[:5]
 
 
 def synthetic(seed):
-    """(log, truth of NAMES, what it is)."""
+    """Returns (log, true values of NAMES, description)."""
     random = np.random.default_rng(seed)
     kind = list(KINDS)[seed % 3]
     rate, duration = random.choice([500.0, 1000.0, 2000.0, 4000.0]), float(
@@ -52,8 +52,8 @@ def synthetic(seed):
 
 
 def judged(seed):
-    """What the fit of a log is worth: by parameter True, False or None where it is not told, the
-    residual over that of its model at the truth, and seconds."""
+    """Judges the fit of a log. Returns for each parameter True, False, or None if the fit does not report it, the ratio
+    of the residual to the residual of the model with true parameters, and the time [s]."""
     log, truth, what = synthetic(seed)
     begun = sum(os.times()[:3])
     try:
@@ -67,7 +67,7 @@ def judged(seed):
             "over": None,
             "seconds": 0.0,
         }
-    seconds = sum(os.times()[:3]) - begun  # of this process, and of its children in user mode
+    seconds = sum(os.times()[:3]) - begun  # user time of this process and of its child processes
     with Simulator(log.time, log.force) as simulate:
         at_truth = Cost(simulate, log)(truth)
     holds = {
@@ -86,7 +86,7 @@ def judged(seed):
 
 
 def table(ones):
-    """Rows of a table in Markdown: what holds of what is told, by the kind of signal and in all."""
+    """Returns the rows of a Markdown table: fraction of correct reported values by kind of signal, and in total."""
     rows = [
         "| logs | m | b | c | delay | offset | refused | not told | largest residual / at the "
         "truth | CPU, mean, largest |",

@@ -1,4 +1,4 @@
-"""`hapbench import device` on logs of a simulator of its own."""
+"""`hapbench import device` on logs of an independent simulator."""
 import json
 import unittest
 from functools import partial
@@ -24,9 +24,9 @@ HANDLE = (M, B, C, LATE, 0.0, 0.0)
 
 
 def played(time, force, finer, spring=0.0, stribeck=(0.0, 1.0)):
-    """Positions at `time` by small steps with the mean speed of each; dry friction stops the handle within a step.
-    `stribeck`: by how much, relative to dry friction, it is larger at rest, and up to which speed [m/s].
-    """
+    """Returns positions at `time` from small steps with the mean speed of each step; dry friction stops the handle
+    within a step. `stribeck`: relative increase of dry friction at rest, and the speed up to which friction is
+    increased [m/s]."""
     x = v = 0.0
     places = [x]
     arrivals = time + LATE
@@ -78,7 +78,7 @@ class Logs(unittest.TestCase):
         return said
 
     def assert_holds(self, told):
-        # A varying clock has another mean interval than 1 ms.
+        # The mean interval of a clock with jitter is not 1 ms.
         for name, true in {**TRUE, "delay_samples": LATE / told["step_s"]}.items():
             low, high = told[name]["interval"]
             self.assertTrue(low <= true <= high, f"{name}: {true} in {low} ... {high}")
@@ -112,7 +112,7 @@ class Identify(Logs):
         )
         self.assertTrue((self.root / "device.svg").read_text().startswith("<?xml"))
         self.assertEqual(run("validate", self.root / "device.json").returncode, 0)
-        # A scene of other steps makes its own samples of the delay, which is in seconds.
+        # A scene with another step converts the delay, which is in seconds, to its own samples.
         self.assertAlmostEqual(device["delay_s"], 1e-3 * told["delay_samples"]["value"], delta=1e-8)
         self.assertNotIn("delay_samples", device)
         run(
@@ -156,13 +156,16 @@ class Identify(Logs):
         held = [holds for one in ones for holds in one["holds"].values()]
         self.assertGreaterEqual(
             sum(held), 27
-        )  # of 30 at 95 %; fewer once in 16 times, and these seeds are fixed
+        )  # of 30 intervals at 95 %; fewer have a probability of 1/16, and the seeds are fixed
 
     def test_what_the_log_cannot_tell_has_no_value(self):
         time = np.arange(2000) * 1e-3
         force = np.where(
-            time % 0.5 < 0.1, 1.0, 0.0
-        )  # pushes one way: friction and a constant force do the same
+            time % 0.5 < 0.1,
+            1.0,
+            0.0
+            # The force pushes in one direction, so that friction and a constant force cannot be distinguished.
+        )
         told, warned = self.told(
             self.log(
                 np.round(positions(time, force, (M, B, 0.0, 0.0, 0.0, 0.3)) / Q) * Q, time, force
@@ -176,7 +179,7 @@ class Identify(Logs):
         )
         self.assertNotIn("coulomb_N", json.loads((self.root / "device.json").read_text()))
         self.assertAlmostEqual(told["handle_mass_kg"]["value"] / M, 1.0, delta=0.02)
-        # At rest for most of the time, what moves it tells all the same.
+        # Even if the handle rests for most of the time, its motion determines the parameters.
         rest = np.concatenate([self.force, np.zeros(4 * len(self.force))])
         time = np.arange(len(rest)) * 1e-3
         told, _ = self.told(self.log(np.round(positions(time, rest, HANDLE) / Q) * Q, time, rest))
@@ -240,10 +243,10 @@ class Identify(Logs):
         ):
             said = self.refused(self.log(position * places, time * self.time, force * self.force))
             self.assertIn(f"it is a handle of 0.12 kg: --scale {scale}", said)
-        # What is given stays in the advice.
+        # The advice keeps the given scale.
         said = self.refused(self.log(1e3 * places, 1e3 * self.time), "--scale", "position=1e-3")
         self.assertIn("--scale position=0.001,time=0.001", said)
-        # A handle that may be one is kept, with a warning.
+        # A handle with a plausible mass is accepted with a warning.
         _, warned = self.told(self.log(places, force=self.force / 9.80665e-3))
         self.assertIn("In s, gf, m it is a handle of 0.12 kg: --scale force=0.00980665", warned)
 
@@ -313,7 +316,7 @@ class Identify(Logs):
 
 
 class Doubt(Logs):
-    """Logs of which the model is not true, or not quite."""
+    """Logs that do not, or only approximately, follow the model."""
 
     def setUp(self):
         self.random = np.random.default_rng(5)
@@ -385,7 +388,7 @@ class Design(unittest.TestCase):
                 time, values = design(kind, force, travel, 1000.0, 3.0, mass)
                 self.assertLessEqual(np.abs(values).max(), force * (1 + 1e-12), kind)
                 self.assertGreater(np.abs(values).max(), 0.1 * force, kind)
-                # A free mass under held forces, by the trapezoidal rule, which is exact for it.
+                # A free mass under held forces by the trapezoidal rule, which is exact in this case.
                 speed = np.concatenate([[0.0], np.cumsum(values[:-1])]) * 1e-3 / mass
                 place = np.concatenate([[0.0], np.cumsum(0.5 * (speed[1:] + speed[:-1]))]) * 1e-3
                 self.assertLessEqual(np.ptp(place), travel * (1 + 1e-9), kind)
@@ -398,7 +401,7 @@ class Design(unittest.TestCase):
             for mass, force, travel in ((0.06, 3.0, 0.03), (0.1, 2.0, 0.08), (0.2, 1.0, 0.1)):
                 with self.subTest(kind=kind, mass=mass):
                     time, values = design(kind, force, travel, 1000.0, 4.0, mass)
-                    # Semi-implicit steps of 0.1 ms for all frictions at once, two samples late.
+                    # Semi-implicit steps of 0.1 ms for all frictions at once, with a delay of two samples.
                     x, v, low, high = np.zeros((4, len(dry)))
                     grip = 1e-4 * dry * np.abs(values).max() / mass
                     for push in np.repeat(np.concatenate([[0.0, 0.0], values[:-2]]), 10).tolist():
@@ -406,7 +409,7 @@ class Design(unittest.TestCase):
                         v = np.sign(free) * np.maximum(np.abs(free) - grip, 0.0)
                         x = x + 1e-4 * v
                         low, high = np.minimum(low, x), np.maximum(high, x)
-                    # Steps of 0.1 ms move the handle by up to 0.5 % of a stroke too far.
+                    # Steps of 0.1 ms overestimate the travel by up to 0.5 % of a stroke.
                     self.assertLessEqual(high.max() - low.min(), 1.005 * travel)
 
     def test_travel_that_limits_the_force_is_said(self):

@@ -1,4 +1,4 @@
-"""The command `import stroke`: files, pipes, presets, Ctrl-C and what it prints."""
+"""The command `import stroke`: files, pipes, presets, Ctrl-C and output."""
 import json
 import os
 import signal as signals
@@ -25,7 +25,7 @@ class Command(Given):
             "new", "stroke", "--from", self.root / "stroke.csv", "--out", self.root / "stroke.json"
         )
         hapbench("validate", self.root / "stroke.json")
-        # Shifted by a millimetre, it leads the edge of the tool deeper than its half width: went_through.
+        # With a shift of a millimetre, the edge of the tool is deeper than its half width: went_through.
         done = json.loads(
             hapbench(
                 "run",
@@ -146,14 +146,14 @@ class Command(Given):
                 stderr=subprocess.PIPE,
                 env=ENVIRONMENT,
                 text=True,
-                # As from a terminal, which does not ignore Ctrl-C.
+                # As started from a terminal, which does not ignore Ctrl-C.
                 preexec_fn=lambda: signals.signal(signals.SIGINT, signals.SIG_DFL),
             ) as process:
                 time.sleep(seconds)
                 is_over = process.poll() is not None
                 process.send_signal(signals.SIGINT)
                 said = process.communicate()[1]
-                # A shell reports both as 130; at first, nothing has a handler.
+                # A shell reports both statuses as 130; right after the start, no handler is installed.
                 self.assertIn(process.returncode, (130, -signals.SIGINT), said)
                 self.assertNotIn("Traceback", said)
                 self.assertLessEqual(said.count("\n"), 1, said)

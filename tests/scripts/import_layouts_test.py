@@ -1,4 +1,4 @@
-"""Layouts of recordings of other programs: columns, texts, units, clocks and held rows."""
+"""Recordings of other programs: columns, texts, units, clocks and held rows."""
 from datetime import datetime, timedelta
 
 import numpy as np
@@ -8,7 +8,8 @@ from recordings import Given, moved, table
 
 
 class Layouts(Given):
-    """Recordings of other programs: what is read is what they mean, and what is not clear is refused or said."""
+    """Recordings of other programs are read with their intended meaning; unclear recordings are refused or cause a
+    note."""
 
     TIME = 0.002 * np.arange(100)
     PLACES = moved(TIME)
@@ -26,7 +27,7 @@ class Layouts(Given):
         return "\n".join(found["warnings"]), found
 
     def assert_tip(self, data, columns, warned="", **options):
-        """The tool points where the true turns say."""
+        """Asserts that the tool points in the true direction."""
         stroke, found = self.report(data, f"time=t,position=x,{columns}", **options)
         down = [0, 0, -1]
         np.testing.assert_allclose(stroke.turn.apply(down), self.TURNS.apply(down), atol=1e-6)
@@ -94,7 +95,7 @@ class Layouts(Given):
         self.assert_tip(first, "orientation=qx")
         self.assert_tip(last, "qw=qw,qx=qx,qy=qy,qz=qz")
         self.assert_tip(last, "orientation=5", orientation="quat_xyzw")
-        # An order that contradicts the names.
+        # An order that contradicts the names of the columns.
         contradicted = "was read by the names of its columns (qx, qy, qz, qw)"
         self.assert_tip(last, "orientation=qx", contradicted, orientation="quat_wxyz")
         self.assertIn(
@@ -107,7 +108,7 @@ class Layouts(Given):
             "their names say otherwise",
             self.report(last, "time=t,position=x,qw=qx,qx=qy,qy=qz,qz=qw")[1]["warnings"][0],
         )
-        # Columns that no orientation takes.
+        # Columns that do not form an orientation.
         for columns in ("orientation=qx", "qw=qw,qx=qx,qy=qy,qz=qz"):
             self.assertIn(
                 "is not used: --orientation none takes no columns",
@@ -194,7 +195,7 @@ class Layouts(Given):
         )
 
     def test_a_log_of_rostopic_is_read_by_its_names(self):
-        # Nanoseconds since 1970 are more than a double holds.
+        # Nanoseconds since 1970 exceed the precision of a double.
         pose = np.column_stack([self.PLACES, self.TURNS.as_quat()])
         ends = [f".{c}" for c in "xyz"], [f".{c}" for c in "xyzw"]
         names = ["field.pose.position" + end for end in ends[0]] + [
@@ -296,7 +297,7 @@ class Layouts(Given):
             self.assertAlmostEqual(found["rate_Hz"], 1000 / rows, delta=1e-6)
             np.testing.assert_allclose(stroke.position, moved(time[::rows]), atol=1e-9)
             self.assertIn(f"each pose is repeated in {rows} rows", found["warnings"][0])
-        # Rates that are no multiples, a speed that looks too fast in one row, and a rest.
+        # The rates are not multiples of each other, one row seems too fast, and the tool rests for some time.
         held = np.floor(60 * time) / 60
         _, found = self.report(table("t,x,y,z", time, 40 * moved(held)), "time=t,position=x")
         self.assertAlmostEqual(found["rows_per_held_sample"], 1000 / 60, delta=0.1)
@@ -308,14 +309,14 @@ class Layouts(Given):
             table("t,x,y,z", time, moved(held)), "time=t,position=x", set="held_rows=keep"
         )
         self.assertEqual(len(kept.time), 1200)
-        # A clock with jitter: runs of 3, 4 and 5 rows.
+        # A clock with jitter: samples of 3, 4 and 5 rows.
         lengths = np.random.default_rng(7).choice([3, 4, 5], 300, p=[0.2, 0.6, 0.2])
         held = time[np.repeat(np.cumsum(lengths) - lengths, lengths)[:1200].clip(max=1199)]
         _, found = self.report(
             table("t,x,y,z", time[: len(held)], moved(held)), "time=t,position=x"
         )
         self.assertAlmostEqual(found["rows_per_held_sample"], 4.0, delta=0.1)
-        # Coarse numbers, and an even speed in steps, are no held samples.
+        # Coarse numbers, and a constant speed in steps, are not held samples.
         for places in (np.round(moved(time), 4), np.round(np.outer(time, [0.0025, 0, 0]), 5)):
             _, found = self.report(table("t,x,y,z", time, places), "time=t,position=x")
             self.assertEqual((found["rows_per_held_sample"], found["samples"]), (1, 1200))

@@ -45,7 +45,7 @@ class Recordings(Given):
             self.assertAlmostEqual(
                 report["smoothing"]["position_rms_m"], np.sqrt(np.mean(moved**2)), delta=1e-13
             )
-            # Their components, of one sign, are smoothed and normalised again.
+            # The components, with consistent sign, are smoothed and normalised again.
             quaternions = Slerp(time, turns)(np.minimum(grid, time[-1])).as_quat()
             signs = np.cumprod(
                 np.sign(np.concatenate([[1], np.sum(quaternions[1:] * quaternions[:-1], axis=1)]))
@@ -76,7 +76,8 @@ class Recordings(Given):
         self.assertEqual(
             self.refusal(STRAIGHT, "time=1,position=3"),
             "rec.csv: columns: position: takes columns 3 ... 5 for x, y and z: a stroke has three components. "
-            "Add columns of zeros to a recording of one axis (hapbench audit reads it as it is); the file has 1, 2, 3, 4",
+            "Add columns of zeros to a recording of one axis (hapbench audit reads it as it is); the file has 1, 2, "
+            "3, 4",
         )
 
     def test_clocks_of_other_units_are_refused(self):
@@ -87,7 +88,7 @@ class Recordings(Given):
             "in other units? (--scale time=1e-06)",
         )
         self.assertEqual(self.refusal(even, scale="time=1e-6"), "")
-        # Four times the median are no gap, but longer than allowed.
+        # An interval of four times the median is not a gap, but it is longer than allowed.
         slow = "0,0,0,0\n0.2,0.001,0,0\n0.4,0.002,0,0\n1.2,0.003,0,0\n"
         self.assertEqual(
             self.refusal(slow),
@@ -96,7 +97,7 @@ class Recordings(Given):
         self.assertEqual(self.report(slow, max_gap=0.8)[1]["gaps"], 0)
 
     def test_the_mean_direction_of_the_tip_shows_a_wrong_order(self):
-        # Two turns about x, by 0.2 +- 0.1 rad, written w first.
+        # Two rotations about x, by 0.2 +- 0.1 rad, with w first.
         rows = "".join(
             f"{0.01 * i},0,0,0,{math.cos(a / 2)!r},{math.sin(a / 2)!r},0,0\n"
             for i, a in enumerate((0.1, 0.3))

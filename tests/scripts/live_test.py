@@ -1,4 +1,4 @@
-"""The live page in a real Chromium: what a hand does there is what the program computes."""
+"""Tests the live page in a real Chromium: the program computes the same results for the same motion of the hand."""
 import json
 import re
 import time
@@ -19,7 +19,8 @@ def setUpModule():
     page = folder / "live.html"
     made = ran(SOURCE / "scripts" / "live" / "make", "--out", page)
     if "could not" in made.stderr:
-        raise unittest.SkipTest(made.stderr.strip())  # packages that this machine cannot get
+        # Packages that are not available on this machine.
+        raise unittest.SkipTest(made.stderr.strip())
     assert made.returncode == 0, made.stderr
     Live.show(page)
 
@@ -37,20 +38,20 @@ class Live(Page):
         self.wait_for(READY)
 
     def move(self, way, rows):
-        """Moves the hand by the given ways [m, rad] over so many rows."""
+        """Moves the hand by the given displacement [m] and rotation [rad] over `rows` rows."""
         self.js(
             f"(async () => {{ const p = live.pointer; live.aim(p.map((x, i) => x + "
             f"{list(way)}[i])); await live.stepRows({rows}); }})()"
         )
 
     def assert_program_agrees(self, view=0, **files):
-        """What is kept of the motion has the same state when the program runs it."""
+        """Asserts that the program computes the same state hash for the recorded motion."""
         kept = self.js(f"live.kept({view})")
         file = folder / f"{kept['name']}.json"
         file.write_text(json.dumps(kept["scenario"]), encoding="utf-8")
         for name, content in files.items():
             (folder / name.replace("__", ".")).write_text(content, encoding="utf-8")
-        # A tool that went through the surface is not what is expected by default.
+        # By default, a tool that went through the surface is an unexpected outcome.
         [run] = json.loads(
             must(PROGRAM, "run", file, "--json", "--out", folder / "runs", statuses=(0, 3))
         )
@@ -138,8 +139,7 @@ class Live(Page):
             self.choose(menu, "shaped_stiffness" if "select" in menu else "0")
 
     def test_every_bundled_scene_is_the_program_s(self):
-        """A thousand rows of each, as the scenario says: WebAssembly is one of the machines that
-        have the same bytes."""
+        """A thousand rows of each bundled scene: WebAssembly must compute the same bits as other machines."""
         short = "time.steps=1000"
         names = {}
         scenarios = SOURCE / "scenarios" / "library"
@@ -164,7 +164,7 @@ class Live(Page):
                 statuses=(0, 3),
             )
         )
-        # Several trials are several runs.
+        # A scene with several trials has several runs.
         single = {
             name: run["state_hash"]
             for name, run in zip(names, runs, strict=True)

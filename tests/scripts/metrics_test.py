@@ -1,5 +1,5 @@
-"""Every metric of twelve runs, computed anew from the files of the run by the definitions of `hapbench describe metrics`
-alone, with numpy."""
+"""Recomputes every metric of twelve runs from the files of the run, with numpy and the definitions of `hapbench
+describe metrics` only."""
 import csv
 import json
 import math
@@ -8,7 +8,7 @@ import unittest
 import numpy as np
 from fixture import hapbench, scratch_folder
 
-# Scenes and what they are run with besides RECORDED.
+# Scenes, and settings in addition to RECORDED.
 ALL, TORQUE, INSIDE = "record.contacts=true", "record.torque=true", "record.inside=true"
 ENERGY = "record.energy=true"
 RECORDED = ("record.every=1", "record.trajectory=true", "expect={}", ALL, ENERGY, TORQUE)
@@ -29,12 +29,12 @@ SCENES = {
 ROUNDING = (
     1e-9  # sums of at most some thousand terms, and a filter with a memory of some hundred samples
 )
-BIN = 0.0079  # half a bin of the histogram of force_step_p99_N, as its definition says
+BIN = 0.0079  # half a bin of the histogram of force_step_p99_N, by its definition
 IN_NO_FILE = "in no file"
 
 
 def table(file):
-    """Columns of a table by name; NaN where a cell is empty."""
+    """Returns the columns of a table by name; NaN for empty cells."""
     with open(file, encoding="utf-8", newline="") as lines:
         rows = list(csv.reader(lines))
     cells = [[float(cell) if cell else math.nan for cell in row] for row in rows[1:]]
@@ -50,7 +50,7 @@ def norms(vectors_):
 
 
 def flat(value, name=""):
-    """Metrics of summary.json by their names."""
+    """Returns the metrics of summary.json by name."""
     if isinstance(value, dict):
         for key, part in value.items():
             yield from flat(part, f"{name}.{key}" if name else key)
@@ -62,8 +62,8 @@ def flat(value, name=""):
 
 
 class HighPass:
-    """Butterworth's filter of fourth order at 30 Hz, by the bilinear transform with prewarped cutoff. Its two sections
-    have the damping of the two pairs of poles."""
+    """Fourth-order Butterworth high-pass at 30 Hz, by the bilinear transform with prewarped cutoff. The damping of its
+    two sections is the damping of the two pairs of poles."""
 
     def __init__(self, dt):
         k = math.tan(math.pi * 30.0 * dt)
@@ -75,7 +75,7 @@ class HighPass:
             )
 
     def start(self, x):
-        """Steady state of the constant input x."""
+        """Sets the steady state of the constant input x."""
         self.inputs = [[x, x], [0.0 * x, 0.0 * x]]
         self.outputs = [[0.0 * x, 0.0 * x], [0.0 * x, 0.0 * x]]
 
@@ -88,7 +88,8 @@ class HighPass:
 
 
 def high_passed(signal, dt):
-    """The signal behind the filter, in steady state at the first sample; None where there is no filter."""
+    """Returns the high-passed signal, in steady state at the first sample; None if the sampling rate is too low for the
+    filter."""
     if 1.0 / dt <= 60.0:
         return None
     high_pass = HighPass(dt)
@@ -97,7 +98,7 @@ def high_passed(signal, dt):
 
 
 class Recomputed:
-    """The metrics of a run from its files."""
+    """The metrics of a run, recomputed from its files."""
 
     def __init__(self, folder):
         self.folder, self.known = folder, {}
@@ -326,7 +327,7 @@ class Recomputed:
         self.lag(m, f)
 
     def lag(self, early, late):
-        """Shifts of whole steps; the metric's tolerance holds what another spacing of the samples changes."""
+        """Compares shifts by whole steps. The metric's tolerance includes the effect of another sample spacing."""
         most = round(0.1 / self.dt)
         scores = []
         for shift in range(-most, most + 1):
@@ -421,10 +422,10 @@ class Metrics(unittest.TestCase):
         if name == "force_step_p99_N":
             allowed += BIN * abs(known)
         if name.startswith(("energy", "passivity")):
-            # Differences of energies, summed in another order.
+            # Differences of energies that are summed in another order.
             allowed += 1e-9 * found.energy_scale
         if name == "passivity.time_of_min_s":
-            # Of equal minima, rounding decides.
+            # Among equal minima, rounding decides.
             k = round(value / found.dt)
             self.assertAlmostEqual(found.held[k], found.held.min(), delta=1e-9 * found.energy_scale)
             return

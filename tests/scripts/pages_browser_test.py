@@ -1,6 +1,5 @@
-"""Both pages, that of own runs and that of the thesis, in a real headless Chromium: each fits, can
-be read in both themes and says nothing to the console; its replay, tables and figures answer the
-hand."""
+"""Both pages (runs of a user, and the thesis) in a real headless Chromium. Each fits, is legible in both themes and
+writes no message to the console; its replay, tables and figures respond to input."""
 import unittest
 from io import BytesIO
 
@@ -60,7 +59,7 @@ class EveryPage:
                     # Text alone has tens of shades of grey.
                     colours = Image.open(BytesIO(self.driver.get_screenshot_as_png())).getcolors(
                         20
-                    )  # None: there are more
+                    )  # None means that there are more colours
                     self.assertIsNone(colours, part)
         self.assertEqual(
             self.js(
@@ -102,11 +101,10 @@ class OfThesis(EveryPage, Page):
     PARTS = ("summary", "ledger", "replay", "figures")
 
     def test_the_points_in_the_tool_are_the_recorded_ones(self):
-        """Over rows of all recordings: how many points the page finds in the tool, at least and at
-        most, against the number recorded. Places are rounded to half a step of the packing, the
-        pose to single precision: only points within three steps of the surface may change sides. Of
-        a scene with more points than are drawn there may be more in the tool.
-        """
+        """Compares, over rows of all recordings, the smallest and largest possible number of points that the page finds
+        in the tool with the recorded number. Positions are rounded to half a quantisation step and the pose to single
+        precision, so only points within three steps of the surface may change sides. A scene with more points than the
+        page draws may have more points in the tool."""
         for scene in range(2):
             self.choose("#replay-scene", scene)
             self.assertEqual(

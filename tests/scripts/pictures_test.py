@@ -1,5 +1,5 @@
-"""The modules behind `hapbench plot`, `hapbench report` and the figures, and how algorithms look
-there: each its own way, readable on light and dark. Needs numpy."""
+"""Modules used by `hapbench plot`, `hapbench report` and the figures, and the looks of algorithms: each has its own,
+legible on light and dark ground. Needs numpy."""
 import json
 import re
 import shutil
@@ -37,8 +37,8 @@ from hapbench_report.recording import (
 
 
 def drawn(command, *words, expected=0):
-    """What `hapbench plot` or `report` prints, from this process, which has matplotlib loaded; on
-    standard error if input is refused."""
+    """Returns the output of `hapbench plot` or `report`, called in this process, which has loaded matplotlib; standard
+    error if input is refused."""
     status, said, error = in_process(pictures, command, *words, HAPBENCH_PROGRAM=str(PROGRAM))
     assert status == expected, (words, status, error)
     return error if expected == 2 else said
@@ -48,12 +48,12 @@ plotted = partial(drawn, "plot")
 
 
 def make_root():
-    """A folder for a module, as its setUpModule."""
+    """Creates the folder of a module; called by setUpModule."""
     Given.root = scratch_folder(unittest)
 
 
 def make_runs():
-    """Short runs, a comparison and a sweep, once for a module, as its setUpModule."""
+    """Computes short runs, a comparison and a sweep once for a module; called by setUpModule."""
     make_root()
     made(
         "mesh",
@@ -88,7 +88,7 @@ def make_runs():
 
 
 def made(name, *words):
-    """A folder, in which the program writes what these words ask for."""
+    """Runs the program with these arguments and returns the folder with its output."""
     hapbench(*words, "--out", Given.root / name, "--quiet")
     return Given.root / name
 
@@ -104,7 +104,7 @@ class Given(unittest.TestCase):
         self.assert_shows(folder / "plot.svg", *texts)
 
     def copy(self, name):
-        """A copy of a run to spoil."""
+        """Returns a copy of a run that the test may damage."""
         directory = Path(tempfile.mkdtemp(dir=self.root)) / name
         shutil.copytree(self.root / name, directory)
         return directory
@@ -168,7 +168,7 @@ class Reduction(unittest.TestCase):
 
 class Equal(Given):
     def test_equal_curves_take_turns(self):
-        """Stripes of n equal lines cover the line without meeting; others keep their style."""
+        """Stripes of n coinciding lines together cover the line without overlap; other lines keep their style."""
         a, b = np.arange(9.0), np.ones(9)
         self.assertEqual(style.equal_curves([(a, b), (a, a), (a, b)]), [(0, 2), (0, 1), (1, 2)])
         turns = [style.striped("-", place, 3) for place in range(3)]
@@ -212,10 +212,10 @@ class Equal(Given):
 
 class Moments(unittest.TestCase):
     def test_a_landing_is_what_follows_a_first_touch(self):
-        # Contact from 1 to 3 s, a gap of 0.2 s, then from 3.2 s on; free from 5 to 7 s, contact again.
+        # Contact from 1 to 3 s, a gap of 0.2 s, contact from 3.2 s on; free from 5 to 7 s, then contact again.
         t = np.arange(100) / 10
         touching = ((1 <= t) & (t < 3) | (3.2 <= t) & (t < 5) | (t >= 7)).astype(int)
-        # A gap shorter than the settling time is no landing.
+        # A gap shorter than the settling time does not cause a landing.
         rows = {"time_s": t, "colliding": touching}
         for metrics, settled in (
             ({"settling_s": 0.5}, (1.5 <= t) & (t < 3) | (3.2 <= t) & (t < 5) | (t >= 7.5)),
@@ -228,7 +228,8 @@ class Moments(unittest.TestCase):
         calm = np.arange(502) > 1
         low, high = settled_range([(calm, force, force)])
         self.assertTrue(0.7 < low < 0.9 and 1.1 < high < 1.3)
-        # All is shown where the peak is not far beyond, without settled contact, and where the run hammers to the end.
+        # The whole range is shown if the peak is not far above the settled range, without settled contact, and if the
+        # run bounces to the end.
         self.assertIsNone(settled_range([(calm, np.minimum(force, 3), np.minimum(force, 3))]))
         self.assertIsNone(settled_range([(calm & False, force, force)]))
         hammering = np.where(calm & (np.arange(502) % 2 > 0), 10.0, force)
@@ -251,7 +252,7 @@ class Shapes(unittest.TestCase):
                 **{f"f{a}_N": square * d for a, d in zip("xyz", direction)},
             }
         )
-        # A square wave of 100 Hz has little below 30 Hz: its rms of 1 stays within a few per cent.
+        # A square wave of 100 Hz has little power below 30 Hz: its rms of 1 changes by a few per cent.
         self.assertAlmostEqual(packed["rms"], 1, delta=0.05)
 
     def test_the_tool_is_a_cylinder_or_what_the_summary_says(self):
@@ -297,7 +298,7 @@ class Looks(unittest.TestCase):
 
     def test_an_algorithm_without_an_entry_has_a_look_by_its_name(self):
         looks = [hapbench_looks.look(f"law_{i}") for i in range(200)]
-        # The same in another process: nothing depends on the order of calls or on the seed of hashes.
+        # Another process gives the same result: nothing depends on the order of calls or on the hash seed.
         said = must(
             sys.executable,
             "-c",
@@ -306,7 +307,7 @@ class Looks(unittest.TestCase):
             PYTHONHASHSEED="1",
         )
         self.assertEqual(said.strip(), repr(looks[7]))
-        # Of 360 hues, 4 dashes and 7 markers, 200 names share few.
+        # With 360 hues, 4 dashes and 7 markers, few of 200 names have the same look.
         self.assertGreater(len({(look.colour, look.dash, look.marker) for look in looks}), 190)
 
     def test_colours_can_be_read(self):
@@ -330,11 +331,11 @@ class Looks(unittest.TestCase):
                 for ground in grounds:
                     self.assertGreaterEqual(
                         contrast(colour, ground), 4.5, (look.label, colour, ground)
-                    )  # WCAG 2.1, level AA, of text
+                    )  # required contrast of text, WCAG 2.1, level AA
 
     def test_colours_are_told_apart_with_every_kind_of_colour_vision(self):
-        """Simulated as by Machado, Oliveira and Fernandes (IEEE TVCG 15, 2009, severity 1). A CIEDE2000
-        difference of 1 is just noticed side by side; 6 is seen at once between lines of a figure.
+        """Simulated by the method of Machado, Oliveira and Fernandes (IEEE TVCG 15, 2009, severity 1). A CIEDE2000
+        difference of 1 is just noticeable side by side; 6 is clearly visible between lines of a figure.
         """
         algorithms, series = hapbench_looks.ALGORITHMS.values(), hapbench_looks.SERIES
         for among, smallest in ((algorithms, 6.0), (series, 12.0)):
@@ -344,14 +345,14 @@ class Looks(unittest.TestCase):
                     lab = rgb2lab(simulated(colours, matrix))
                     apart = deltaE_ciede2000(lab[:, None], lab[None]) + 99 * np.eye(len(lab))
                     self.assertGreaterEqual(apart.min(), smallest, (ground, vision))
-        # The second code: no two algorithms have the same marker, nor two series the same marker or dash.
+        # No two algorithms have the same marker, and no two series have the same marker or dash.
         for part, among in (("marker", algorithms), ("marker", series), ("dash", series)):
             found = [getattr(look, part) for look in among]
             self.assertEqual(len(set(found)), len(found), part)
 
     def test_own_laws_are_told_apart_from_the_others_of_a_picture(self):
-        """By the same measure, for two own laws beside six others; by their names alone many are not. APART, in
-        OKLab, is at least 5 by CIEDE2000."""
+        """By the same measure, for two user laws beside six other laws. By their names alone, many user laws would look
+        alike. APART, in OKLab, is at least 5 in CIEDE2000."""
         others = ("mean", "shaped_stiffness", "summation", "proxy", "least_squares", "tandpasta")
         too_close = 0
         for first in range(12):
@@ -378,7 +379,7 @@ class Looks(unittest.TestCase):
             self.assertEqual(of.rstrip("]"), unit, metric)
 
     def test_the_simulation_sees_what_is_known(self):
-        """A colour-blind eye sees grey as it is, and a red and an olive of one lightness much alike."""
+        """Colour blindness does not change grey, and makes a red and an olive of equal lightness look alike."""
         for matrix in hapbench_looks.VISIONS.values():
             # The published matrices have six digits.
             np.testing.assert_allclose(simulated(["#808080"], matrix), 128 / 255, atol=1e-5)
@@ -390,7 +391,7 @@ class Looks(unittest.TestCase):
 
 
 def closest(looks):
-    """The smallest CIEDE2000 difference of the colours, over all grounds and visions."""
+    """Returns the smallest CIEDE2000 difference of the colours, over all grounds and types of vision."""
     smallest = np.inf
     for ground in ("colour", "dark"):
         for matrix in hapbench_looks.VISIONS.values():
@@ -401,7 +402,7 @@ def closest(looks):
 
 
 def simulated(colours, matrix):
-    """sRGB, a row for each colour."""
+    """Returns the simulated sRGB values, with a row for each colour."""
     rgb = np.array([[int(colour[i : i + 2], 16) / 255 for i in (1, 3, 5)] for colour in colours])
     linear = np.where(rgb <= 0.04045, rgb / 12.92, ((rgb + 0.055) / 1.055) ** 2.4)
     seen = np.clip(linear @ matrix.T, 0, 1)

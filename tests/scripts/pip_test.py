@@ -1,5 +1,5 @@
-"""pip install ./scripts/python into a virtual environment, with the build of the tests. Arguments: the program, the folder
-of the built package."""
+"""Tests pip install ./scripts/python in a virtual environment, with the build of the tests. Arguments: the program, the
+folder of the built package."""
 import os
 import shutil
 import sys
@@ -34,7 +34,7 @@ class Pip(unittest.TestCase):
             tree,
             "the tree stays clean",
         )
-        # Program, package and files work from there alone.
+        # An environment in which program, package and files must work from the installation alone.
         clean = {
             name: value
             for name, value in os.environ.items()
@@ -73,7 +73,7 @@ class Pip(unittest.TestCase):
         self.assertFalse([file for file in after if "hapbench" in file])
 
     def test_says_how_long_it_takes_before_it_compiles(self):
-        """cmake is one that stops at once."""
+        """The test replaces cmake by a command that stops at once."""
         root = scratch_folder(self)
         (root / "bin").mkdir()
         (root / "bin/cmake").write_text("#!/bin/sh\necho cmake called >&2\nexit 1\n")

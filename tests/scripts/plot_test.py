@@ -58,7 +58,8 @@ class Plot(Given):
         plt.close(figure)
         for name in ("$a$ and $b$", r"$\bad{$", "$x$"):
             self.assertIn(f">{name}</text>", drawn_as)
-        self.assertNotIn("mathdefault", drawn_as)  # ticks of the logarithmic axis are formulas
+        # Tick labels of the logarithmic axis are formulas.
+        self.assertNotIn("mathdefault", drawn_as)
 
     def test_a_span_of_time_and_a_peak_that_is_cut_off(self):
         run = self.copy("mesh")
@@ -91,7 +92,7 @@ class Plot(Given):
         self.assertEqual(labels(runs), ["mean, 0/springs", "mean, 1/springs"])
 
     def variants(self, *changes, places="{}/springs"):
-        """Copies of a run whose scenarios have other values."""
+        """Returns copies of a run whose scenarios have other values."""
         folder = Path(tempfile.mkdtemp(dir=self.root))
         for i, change in enumerate(changes):
             shutil.copytree(self.root / "springs", folder / places.format(i))
@@ -173,11 +174,12 @@ class Plot(Given):
         path = max((line.get_xydata() for line in ax.lines if line.get_marker() == "None"), key=len)
         np.testing.assert_array_equal(marks["o"].get_xydata()[0], path[0])
         np.testing.assert_array_equal(marks["s"].get_xydata()[0], path[-1])
-        self.assertGreaterEqual(min(marks[m].get_markersize() for m in "os"), 6)  # points
+        self.assertGreaterEqual(min(marks[m].get_markersize() for m in "os"), 6)  # [points]
         plt.close(figure)
 
     def test_scenes_apart_have_panels_of_their_own(self):
-        """Two scenes; and one scene that is moved far away, but not one that is moved a little."""
+        """Two scenes have separate panels. A scene that is moved far away also has a separate panel; a scene that is
+        moved a little does not."""
         runs = given_runs([self.root / "mesh", self.root / "springs"])
         figure = draw_runs(runs, [], True, ALWAYS)
         self.assertEqual(
@@ -197,9 +199,10 @@ class Plot(Given):
             self.assertEqual(len(figure.axes), panels, away)
             plt.close(figure)
 
-    @mock.patch.dict(os.environ, {"HAPBENCH_PROGRAM": str(PROGRAM)})  # which has the surface
+    # The program provides the surface.
+    @mock.patch.dict(os.environ, {"HAPBENCH_PROGRAM": str(PROGRAM)})
     def test_an_open_scan_is_a_surface_and_no_solid(self):
-        """A molar without one of its triangles is open."""
+        """A molar without one of its triangles is an open surface."""
         closed = SOURCE / "scenarios/library/examples/data/molar.obj"
         lines = closed.read_text().splitlines(keepends=True)
         last = max(i for i, line in enumerate(lines) if line.startswith("f "))

@@ -1,4 +1,4 @@
-"""Force laws in Python, and modules beside them. Arguments: those of python_test.py."""
+"""Force laws in Python, and modules beside them. Arguments: the arguments of python_test.py."""
 import json
 import threading
 import traceback
@@ -11,7 +11,7 @@ import hapbench
 
 
 def summation(depths):
-    """All springs added."""
+    """The sum of all springs."""
     return np.ones(len(depths))
 
 
@@ -39,7 +39,7 @@ class Laws(Scratch):
 
         own = hapbench.run(PEG, {**SHORT, "rendering.algorithm": "test_force"})
         built_in = hapbench.run(PEG, {**SHORT, "rendering.algorithm": "summation"})
-        # Sums in another order: the first row differs by rounding, of at most some 30 terms.
+        # Sums in another order: the first row differs by the rounding of at most some 30 terms.
         np.testing.assert_allclose(
             own.trajectory.fx_N[0], built_in.trajectory.fx_N[0], rtol=1e-13, atol=1e-10
         )
@@ -178,7 +178,7 @@ class Laws(Scratch):
             else:
                 self.fail("no error")
         self.assertFalse((self.root / "out" / "test_raises" / "summary.json").exists())
-        # Nothing of it stays behind.
+        # The failed law has no effect on later runs.
         self.assertEqual(hapbench.run(PEG, SHORT).outcome, "completes")
 
     def test_answers_that_are_no_force(self):
@@ -228,15 +228,15 @@ def even(depths):
 
 
 class TheEndOfTheInterpreter(Scratch):
-    """A thread that waits for an interpreter that ends would end the process by an abort."""
+    """A thread that waits for the interpreter while the interpreter shuts down would abort the process."""
 
     def script(self, text):
         done = python("-c", LAW_OF_A_SCRIPT + text)
         self.assertEqual((done.returncode, done.stderr), (0, ""))
 
     def test_finds_threads_that_have_just_ended(self):
-        # The main thread holds the interpreter from the comparison to its end, so that many of 16
-        # threads still wait for it when they may no longer: three scripts in four were aborted.
+        # The main thread holds the interpreter from the comparison to its end, so that many of 16 threads still wait
+        # when the interpreter shuts down. Without the fix, three scripts in four were aborted.
         words = [
             "compare",
             WEDGE,

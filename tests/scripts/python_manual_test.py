@@ -1,4 +1,4 @@
-"""The manual of the Python package is executed, its types are checked, and results show themselves in notebooks.
+"""Executes the manual of the Python package, checks its types, and tests the display of results in notebooks.
 Arguments: the program, the folder of the built package."""
 import os
 import re
@@ -67,7 +67,7 @@ def setUpModule():
 
 
 def blocks_of(manual):
-    """The indented blocks, each without its indent."""
+    """Returns the indented blocks without their indentation."""
     return [
         re.sub(r"^    ", "", block, flags=re.M)
         for block in re.findall(
@@ -78,7 +78,7 @@ def blocks_of(manual):
 
 class Manual(unittest.TestCase):
     def test_examples_are_executed(self):
-        """In one interpreter and in their order, as who reads the page types them."""
+        """Executes all examples in one interpreter in their order, as a reader of the page would type them."""
         if not find_spec("pandas"):
             self.skipTest("no pandas (scripts/setup --tests installs it)")
         blocks = [b for b in blocks_of(MANUAL) if not b.lstrip().startswith(SHELL)]
@@ -104,7 +104,7 @@ class Manual(unittest.TestCase):
         words = ("--strict", "--follow-imports=silent", "--python-executable", sys.executable)
         done = ran(mypy, *words, "typed.py", env=env)
         self.assertEqual(done.returncode, 0, done.stdout)
-        # What is wrong is found: the names have types of their own.
+        # The type checker finds an error, because the names have types.
         Path("wrong.py").write_text(
             TYPED + "hapbench.runs('x')\nhapbench.run(3)\nlargest(report)\nrun.metrics.x\n",
             encoding="utf-8",

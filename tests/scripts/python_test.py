@@ -1,4 +1,4 @@
-"""Runs, studies and results by the Python package with its compiled module. Arguments: the program, the folder of the
+"""Runs, studies and results with the Python package and its compiled module. Arguments: the program, the folder of the
 built package."""
 import json
 import os
@@ -30,8 +30,8 @@ import hapbench  # noqa: E402  (the path comes first)
 from hapbench.columns import read_columns  # noqa: E402
 
 PEG = "peg_in_hole_2d_shaped_stiffness"
-WEDGE = "wedge_stiffness"  # in which a hand is free, so that --jitter may shift it
-# Short, and with contact from the first step on.
+WEDGE = "wedge_stiffness"  # a scene with a free hand, so that --jitter may shift it
+# Short runs with contact from the first step on.
 SHORT = {"time.steps": 300, "expect": "{}"}
 EVERYTHING = {
     "record.contacts": True,
@@ -60,7 +60,7 @@ class Scratch(unittest.TestCase):
 
 
 def without_diagnosis(run):
-    """The summary but for what the command alone adds."""
+    """Returns the summary without the fields that only the command adds."""
     return {key: value for key, value in run.summary.items() if key != "diagnosis"}
 
 
@@ -80,7 +80,7 @@ class Runs(Scratch):
             for column, values in written.items():
                 found = table[column]
                 self.assertEqual(found.dtype, np.float64)
-                # Equal bits, except that there are many NaN.
+                # Equal bits, except that NaN has several bit patterns.
                 np.testing.assert_array_equal(np.isnan(found), np.isnan(values), f"{name} {column}")
                 known = ~np.isnan(values)
                 np.testing.assert_array_equal(
@@ -131,7 +131,7 @@ class Runs(Scratch):
             run.energy
         with self.assertRaisesRegex(AttributeError, "tables: .*trajectory"):
             run.nothing
-        # The effective scenario is one that gives the same run.
+        # The effective scenario gives the same run.
         self.assertEqual(hapbench.run(run.scenario).state_hash, run.state_hash)
 
     def test_files_that_a_dict_names(self):
@@ -145,7 +145,7 @@ class Runs(Scratch):
         self.assertEqual(by_dict.state_hash, by_name.state_hash)
         self.assertEqual(
             by_dict.summary["provenance"], by_name.summary["provenance"]
-        )  # the scenario's hash in it
+        )  # contains the scenario's hash
 
     def test_threads_compute_at_once(self):
         stiffness = [2e4, 3e4, 4e4, 5e4]
@@ -250,7 +250,7 @@ class Studies(Scratch):
         self.assertIn("and columns ", left)
         alone = hapbench.run(PEG, {**SHORT, "rendering.algorithm": "mean"})
         mean = report.runs["mean"]
-        del report  # its folder stays as long as the run
+        del report  # the folder of the report exists as long as the run
         self.assertEqual(mean.state_hash, alone.state_hash)
         self.assertEqual(mean.trajectory.rows, 300)
         self.assertIn("and 280 more rows", str(mean.trajectory))
@@ -306,7 +306,7 @@ class Loop(Scratch):
         replay = json.loads(program("run", *words, "--json", "--out", str(self.root / "out")))
         self.assertEqual((replay["calls"], replay["equal_calls"]), (300, 300))
         self.assertGreater(replay["loop_force_max_N"], 0.01)
-        # A scenario in memory, a fault, and what is refused.
+        # A scenario in memory, a fault, and rejected input.
         renderer = hapbench.Renderer(wall, max_force_N=5)
         self.assertEqual(renderer.step(1, (float("nan"), 0, 0))["status"], "FAULT")
         self.assertIn("not finite", renderer.fault)
@@ -392,7 +392,8 @@ class Program(Scratch):
         self.assertEqual(comma, point)
 
     def test_ctrl_c_in_a_script(self):
-        """Ends within 0.2 s, also while a slow law is called. The fastest of three, because the machine may be busy."""
+        """Ctrl-C ends the script within 0.2 s, also during a call of a slow law. The fastest of three attempts counts,
+        because the machine may be busy."""
         code = (
             "import hapbench, os, signal, threading, time\n"
             "@hapbench.force_law('slow')\n"

@@ -1,4 +1,4 @@
-"""Comparisons with seeds: their ranking, its picture, and the page of many runs."""
+"""Comparisons with seeds: their ranking, the picture of the ranking, and the page of many runs."""
 import functools
 import json
 import re
@@ -27,7 +27,7 @@ METRICS = "force_max_N,force_step_p99_N,inside_max_m"
 
 
 def setUpModule():
-    """Two scenes of four laws and four seeds. Some runs of the drill in the hole fail."""
+    """Computes two scenes with four laws and four seeds. Some runs of the drill in the hole fail."""
     make_root()
     made(
         "many",
@@ -78,14 +78,14 @@ class Standings(WithRuns):
                     )
 
     def test_outcomes_that_fail_are_those_of_the_program(self):
-        """The table of results/summary/outcome.cpp marks them with true."""
+        """The table in results/summary/outcome.cpp marks these outcomes with true."""
         source = (SOURCE / "results/summary/outcome.cpp").read_text(encoding="utf-8")
         entries = re.findall(r'\{"(\w+)",\s*(?:"[^"]*"\s*)+(,\s*true)?(?:,[^}]*)?\}', source)
         self.assertGreater(len(entries), len(FAILURES))
         self.assertEqual({name for name, fails in entries if fails}, set(FAILURES))
 
     def test_numbers_within_their_errors_are_not_ranked(self):
-        """Values of 1 to 3 with errors of 5 each; then with errors of 0.1."""
+        """Values of 1 to 3, first with errors of 5 each, then with errors of 0.1."""
 
         class Run:
             scenario, outcome, path = {}, "completes", ""
@@ -152,7 +152,7 @@ class Picture(WithRuns):
                 np.testing.assert_allclose(
                     sorted(singles), sorted(factor * v for v in of.values.values()), rtol=1e-12
                 )
-                # The segments of the error bars: mean - spread to mean + spread.
+                # Segments of the error bars: mean - spread to mean + spread.
                 spans = [
                     segment[:, 0]
                     for lines in ax.collections
@@ -271,7 +271,7 @@ class Page(WithRuns):
         self.assertLess(len(page), 3e6)
 
     def test_what_many_runs_warn_of_stands_once(self):
-        """Warnings that differ in their numbers only are one entry with the number of runs."""
+        """Warnings that differ only in their numbers are one entry with the number of runs."""
         folder = self.copy("many")
         for i, file in enumerate(sorted(folder.rglob("summary.json"))):
             summary = json.loads(file.read_text()) | {

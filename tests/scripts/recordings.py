@@ -1,4 +1,4 @@
-"""Recordings for the tests of `import stroke`, and what the package reads of them."""
+"""Recordings for the tests of `import stroke`, and functions that import them with the package."""
 import json
 import struct
 import unittest
@@ -40,8 +40,8 @@ class Given(unittest.TestCase):
         return str(self.root / name)
 
     def report(self, data, columns="time=1,position=2", **options):
-        """The stroke of a recording with these contents, and what was found in it, by the package
-        that the command starts."""
+        """Returns the stroke of a recording with these contents and the import report, computed by the package of the
+        command."""
         words = [self.write(data)] + (["--columns", columns] if columns else [])
         for name, value in options.items():
             if name in ("floats", "force_by_tool", "max_gap", "max_speed", "shift", "tip_axis"):
@@ -56,7 +56,7 @@ class Given(unittest.TestCase):
         return self.report(data, columns, **options)[0]
 
     def refusal(self, data, columns="time=1,position=2", **options):
-        """What is refused, without the folder; empty when nothing is."""
+        """Returns the error message without the folder; empty if the recording is accepted."""
         try:
             self.report(data, columns, **options)
             return ""
@@ -64,7 +64,7 @@ class Given(unittest.TestCase):
             return "\n".join(faults.lines).replace(f"{self.root}/", "")
 
     def imported(self, *words):
-        """Report, columns and rows of the stroke that the command makes of the log."""
+        """Runs the command on the log. Returns report, columns and rows of the stroke."""
         file = self.root / "stroke.csv"
         report = json.loads(
             hapbench("import", "stroke", LOG, "--preset", "hapi", "--out", file, "--json", *words)
@@ -73,7 +73,7 @@ class Given(unittest.TestCase):
 
 
 def moved(time):
-    """Places of a tip [m] at the times [s]."""
+    """Returns positions of a tip [m] at the times [s]."""
     angle = 6.0 * time
     return np.column_stack(
         [0.004 * np.sin(angle), 0.0025 * (1 - np.cos(angle)), 0.0008 - 0.0002 * np.sin(angle)]

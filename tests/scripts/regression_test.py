@@ -1,4 +1,4 @@
-"""What `hapbench report --tolerance` says of two results."""
+"""The output of `hapbench report --tolerance` about two results."""
 import math
 
 import numpy as np

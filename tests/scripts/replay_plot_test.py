@@ -1,4 +1,4 @@
-"""`hapbench plot` of logs of a haptic loop, its options, and runs that would flatten all others."""
+"""`hapbench plot` of logs of a haptic loop, its options, and runs that would flatten all other runs."""
 import re
 import shutil
 
@@ -18,7 +18,7 @@ LOG = SOURCE / "tests/data/loop.csv"
 
 class Replays(Given):
     def other(self):
-        """A folder of a replay with another force in its last call and without the third call from the end."""
+        """Returns a folder of a replay whose last call has another force and which lacks the third-last call."""
         folder = self.root / "replay"
         folder.mkdir(exist_ok=True)
         about, names, *rows = LOG.read_text(encoding="utf-8").splitlines()
@@ -69,7 +69,7 @@ class Replays(Given):
             file = self.root / "a.png"
             plotted(folder, "--width", "single", "--out", file, *words)
             sizes.append(int.from_bytes(file.read_bytes()[16:20], "big"))
-        # 89 mm at 300 and at 150 pixels per inch, cut to whole pixels.
+        # 89 mm at 300 and at 150 pixels per inch, truncated to whole pixels.
         self.assertEqual(sizes, [1051, 525])
         plotted(folder, "--out", self.root / "a.pdf")
         found = set(
@@ -80,7 +80,7 @@ class Replays(Given):
 
 class Thrown(Given):
     def test_the_axis_belongs_to_the_other_runs(self):
-        """Peaks, which runs failed, and the largest peak that the axis shows."""
+        """Peaks, True for failed runs, and the expected largest peak that the axis shows."""
         fine = [False] * 4
         for peaks, failed, largest in (
             ([3, 5, 45, 14000], fine, 45),

@@ -1,4 +1,4 @@
-"""scripts/report, without a browser, on results made afresh by the built program."""
+"""scripts/report, without a browser, on results newly computed by the built program."""
 import base64
 import json
 import re
@@ -14,16 +14,16 @@ from hapbench_report.recording import CONTACT_COLUMNS, MEASURED_COLUMNS, Recordi
 from hapbench_report.replay import replays
 from hapbench_report.runs import load_runs
 
-report = partial(ran, SOURCE / "scripts" / "report")  # the finished process
+report = partial(ran, SOURCE / "scripts" / "report")  # returns the finished process
 SCENARIOS = ("peg_in_hole_2d_mean", "single_spring")
 SVG = '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 90 60"><path d="M5 55 L45 5 L85 55" stroke="black"/></svg>'
 
 
 def make_results(directory):
-    """Short runs, and the replay's recordings."""
+    """Computes short runs and the recordings of the replay."""
     for scenario in SCENARIOS:
         hapbench("run", scenario, "--quiet", "--out", directory / "thesis" / scenario)
-    # Every third algorithm and a quarter of the long scene: the page takes what there is.
+    # Every third algorithm and a quarter of the long scene: the page shows the available runs.
     few = [
         (scenario, ("time.duration_s=1.5",) if further else (), algorithms[::3])
         for scenario, further, algorithms in command.REPLAYED
@@ -152,7 +152,7 @@ class Page(WithResults):
         for id_, expected in (("C0", {"figure-f0"}), ("C1", {"figure-f1"}), ("C2", {"figure-f1"})):
             self.assertEqual(links(f'id="claim-{id_}"', "</tr>"), expected | {f"claim-{id_}"}, id_)
         self.assertEqual(links('id="figure-f1"', "</figure>"), {"claim-C1", "claim-C2"})
-        # The summary leads to the claims that are not confirmed; findings of ours are counted apart.
+        # The summary links to the claims that are not confirmed; findings of this project are counted separately.
         self.assertEqual(links("do not confirm", "</ul>"), {"claim-C2", "claim-C3"})
         self.assertIn("claim-C5", links('id="findings-table"', "</table>"))
         self.assertNotIn("claim-C5", links('id="ledger-table"', "</table>"))
@@ -201,7 +201,7 @@ class Page(WithResults):
                 )
                 self.assertEqual((len(steps), len(scales)), (len(flat), len(CONTACT_COLUMNS)))
                 for i, (step, value) in enumerate(zip(steps, flat)):
-                    # Half a step, and the rounding of the division.
+                    # Half a quantisation step, and the rounding of the division.
                     self.assertLessEqual(
                         abs(step * scales[i % len(scales)] - value),
                         0.5001 * scales[i % len(scales)],
@@ -221,7 +221,8 @@ class Page(WithResults):
                             dict(zip(MEASURED_COLUMNS, row))[name]
                             for name in ("ratio_min", "ratio_max")
                         )
-                        # Two sums of n products in different orders: n roundings each, of sums below the largest ratio.
+                        # Two sums of n products in different orders have n rounding errors each, of sums below the
+                        # largest ratio.
                         tolerance = 2 * (len(contacts) + 10) * 2.0**-53 * max(1.0, most)
                         self.assertAlmostEqual(min(ratios), least, delta=tolerance)
                         self.assertAlmostEqual(max(ratios), most, delta=tolerance)

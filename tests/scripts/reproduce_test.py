@@ -1,5 +1,5 @@
-"""How scripts/reproduce runs its parts, with a program that does nothing in place of hapbench, and
-what scripts/assumption_sets.py draws."""
+"""The order in which scripts/reproduce runs its parts, with a dummy program in place of hapbench, and the sets that
+scripts/assumption_sets.py draws."""
 import csv
 import json
 import math
@@ -50,7 +50,7 @@ class Reproduce(unittest.TestCase):
         status, out, _ = self.run_with(NOTHING)
         self.assertEqual(status, 1)
         self.assertIn("FAILED: Run time against error (exit status 7)", out)
-        self.assertIn("== Report", out)  # the others were done
+        self.assertIn("== Report", out)  # the other parts were run
 
     def test_a_second_call_has_nothing_to_do(self):
         self.put("scripts/report", "#!/bin/sh\n: >results/out/reproduce/report.html\n")
@@ -68,10 +68,10 @@ class Reproduce(unittest.TestCase):
         self.run_with(program)
         self.assertEqual(
             sorted((self.root / "ran").read_text().splitlines()), sorted(2 * made)
-        )  # two at a time
+        )  # two parts at a time
 
     def test_a_figure_after_what_it_needs(self):
-        """Figures that miss a scene of the thesis, and studies; the program writes what it is asked for."""
+        """Figures that need a scene of the thesis, and studies; the dummy program writes the requested files."""
         out = "results/out/reproduce"
         needs = {
             "2": "thesis/wedge/trajectory.csv",
@@ -104,12 +104,12 @@ class Reproduce(unittest.TestCase):
         self.assertEqual(status, 0, err)
         ran = (self.root / "ran").read_text().splitlines()
         self.assertIn(f"run wedge --out {out}/thesis/wedge", ran)
-        self.assertEqual(len(ran), 4, ran)  # each once, and nothing else
+        self.assertEqual(len(ran), 4, ran)  # each part once, and nothing else
         self.assertEqual(
             (self.root / "asked").read_text().splitlines(),
             2 * [f"{out} --out {out}/figures --only {','.join(needs)}"],
         )
-        # What nothing makes is told, and ends the attempts.
+        # A missing input that no part creates is reported and ends the attempts.
         self.put(
             "scripts/figures",
             '#!/bin/sh\necho "figures: skipped 2 (no nowhere/x.csv)" >&2\nexit 1\n',
@@ -130,11 +130,12 @@ class Reproduce(unittest.TestCase):
         self.assertIn(
             "drawn: results/out/reproduce --out results/out/reproduce/figures --only A.2,2\n", out
         )
-        # A claim that names none.
+        # A claim that names no figure.
         self.assertNotIn("drawn", self.run_with(NOTHING, "--only", "T4")[1])
 
     def test_a_signal_ends_its_parts(self):
-        # Without a program of its own that would outlive the shell and write while the folder is removed.
+        # The shell is replaced by sleep, because a child process would outlive the shell and write while the folder is
+        # removed.
         self.put("build/release/bin/hapbench", "#!/bin/sh\n: >began\nexec sleep 50\n")
         process = subprocess.Popen(
             [self.root / "scripts" / "reproduce"],
@@ -146,7 +147,7 @@ class Reproduce(unittest.TestCase):
             self.assertIsNone(process.poll())
             time.sleep(0.02)
         process.send_signal(signal.SIGTERM)
-        # Its pipes are closed when the parts are gone, too.
+        # Its pipes are closed once the parts have ended.
         process.communicate()
         self.assertEqual(process.returncode, 143)
 

@@ -1,5 +1,6 @@
-"""The force of a 6-DOF device (six_dof.csv) against an independent minimiser around scipy's NNLS, which shares no code with
-hapbench: signed distances of the shell's points to the drill and energies of the springs are written down anew."""
+"""Compares the force of a 6-DOF device (six_dof.csv) with an independent minimiser that uses scipy's NNLS and shares no
+code with hapbench. It recomputes the signed distances of the shell's points to the drill and the energies of the
+springs."""
 import csv
 import json
 import unittest
@@ -10,13 +11,14 @@ from scipy.spatial.transform import Rotation
 
 from fixture import PROGRAM, must, scratch_folder
 
-RADIUS, LENGTH = 0.5e-3, 0.01  # of the drill
-NEAR = 0.1e-3  # only points so near can hold it
-DOWN = np.array([0.0, 0.0, -1.0])  # its axis in its own frame
+RADIUS, LENGTH = 0.5e-3, 0.01  # radius and length of the drill [m]
+NEAR = 0.1e-3  # only points within this distance [m] can be in contact
+DOWN = np.array([0.0, 0.0, -1.0])  # axis of the drill in its own frame
 MM = 1e-3
-PASSES, LONGEST = 300, 0.02  # of the search, and the longest step [mm, rad]
-START = np.repeat([1e-4, 1e-5], [3, 6])  # spread of the starts about the known pose [mm, rad]
-# Of hand and coupling, with a grip beside the force point, so that the handle turns by the force, too.
+PASSES, LONGEST = 300, 0.02  # iterations of the search, and largest step [mm, rad]
+# Spread of the starting values around the known pose [mm, rad].
+START = np.repeat([1e-4, 1e-5], [3, 6])
+# Springs of hand and coupling. The grip is beside the force point, so that the force also rotates the handle.
 SPRINGS = {
     "hand_stiffness_N_per_m": 500,
     "hand_rotational_stiffness_N_m_per_rad": 0.2,
@@ -28,14 +30,15 @@ SPRINGS = {
 
 
 def shortest_turn(a, b):
-    """The rotation that takes the unit vector a to b."""
+    """Returns the smallest rotation from the unit vector a to b."""
     cross = np.cross(a, b)
     sine = np.linalg.norm(cross)
     return Rotation.from_rotvec(cross / sine * np.arctan2(sine, a @ b) if sine > 0 else np.zeros(3))
 
 
 def distances(points, tip, turn):
-    """Signed distance of each point to a drill with a flat tip, and the drill's normal there."""
+    """Returns the signed distance of each point to a drill with a flat tip, and the drill's normal at the closest
+    point."""
     axis = turn.apply(DOWN)
     q = points - tip
     s = q @ axis
@@ -54,8 +57,8 @@ def distances(points, tip, turn):
 
 
 class Problem:
-    """Tool and handle near a start: x = (shift of the tool's force point, turn of the tool, turn of the handle), in mm
-    and in rad times mm."""
+    """Tool and handle near a start pose. x = (displacement of the tool's force point, rotation of the tool, rotation of
+    the handle), in mm and in rad times mm."""
 
     def __init__(self, points, stiffness, tip, axis, intent_tip, intent_axis, handle_turn):
         self.points = points
@@ -79,7 +82,7 @@ class Problem:
         return self.stiffness * (position + SPRINGS["grip_m"] * handle.apply(DOWN) - self.grip)
 
     def energy(self, x):
-        """In uJ."""
+        """Returns the energy [uJ]."""
         _, tool, handle = self.poses(x)
         twist = (handle.inv() * tool).as_rotvec()
         yielded = (self.wanted.inv() * handle).as_rotvec()
@@ -90,16 +93,18 @@ class Problem:
         )
 
     def gaps(self, x):
-        """In mm."""
+        """Returns the gaps [mm]."""
         position, tool, _ = self.poses(x)
         tip = position + SPRINGS["force_point_m"] * tool.apply(DOWN)
         return distances(self.points, tip, tool)[0] / MM
 
     def solution(self, random):
-        """Sequential quadratic programs, each solved by scipy's NNLS (Lawson and Hanson's least distance programming)."""
+        """Solves by sequential quadratic programs. scipy's NNLS solves each (Lawson and Hanson's least distance
+        programming)."""
 
         def derivative(function, x, h=1e-5):
-            """Central differences: 1e-5 mm and rad leave 1e-10 of the third derivative and 1e-11 of rounding."""
+            """Central differences: a step of 1e-5 (mm or rad) has an error of 1e-10 of the third derivative and 1e-11
+            of rounding."""
             step = h * np.eye(9)
             return np.stack([(function(x + d) - function(x - d)) / (2 * h) for d in step], axis=-1)
 
@@ -165,7 +170,7 @@ class SixDof(unittest.TestCase):
                 )
                 x = problem.solution(random)
                 force = vector(rows[k], "reference", "_N")
-                # Steps end below 1e-10 mm. At 500 N/m, 1e-6 N is 2e-6 mm.
+                # Iterations end with a step below 1e-10 mm. At 500 N/m, 1e-6 N corresponds to 2e-6 mm.
                 error = np.linalg.norm(problem.force(x) - force)
                 self.assertLess(error, 1e-6, f"{scene} {k}")
                 compared += 1

@@ -46,7 +46,7 @@ class Sweeps(Given):
         )
 
     def test_what_matters_in_a_sample(self):
-        """Of a spring's oscillation the first force goes with the start alone."""
+        """The first force of a spring's oscillation depends on the start only."""
         folder = made(
             "sampled",
             "sweep",
@@ -73,9 +73,10 @@ class Sweeps(Given):
         some = plotted(folder, "--metric", "force_max_N", "--where", "rendering.mass_kg<0.15")
         self.assertIn(" over 20 runs", " ".join(some.split()))
 
-    @mock.patch.dict(os.environ, {"HAPBENCH_PROGRAM": str(PROGRAM)})  # which evaluates them
+    # The program evaluates the conditions.
+    @mock.patch.dict(os.environ, {"HAPBENCH_PROGRAM": str(PROGRAM)})
     def test_conditions_are_those_of_sweep(self):
-        """The same rows, and the same messages for what is no condition."""
+        """The conditions select the same rows as sweep and cause the same error messages."""
         folder = made(
             "conditions",
             "sweep",
@@ -119,9 +120,9 @@ class Sweeps(Given):
         )
 
     def test_first_order_indices_of_a_function_that_is_known(self):
-        """Ishigami's, whose third variable acts together with the first alone; the last one's place
-        is the logarithm's, and a list of texts adds to it. Analytic variances: Sobol and Levitan
-        1999."""
+        """Ishigami's function, whose third variable acts only together with the first. The last variable is varied
+        logarithmically, and a list of texts adds to the function. Analytic variances: Sobol and Levitan 1999.
+        """
         random, n, pi = np.random.default_rng(7), 1000, np.pi
         x = random.uniform(-pi, pi, (3, n))
         texts = [["low", "middle", "high"][i] for i in random.integers(0, 3, n)]
@@ -141,16 +142,16 @@ class Sweeps(Given):
         ]
         for (column, place), variance in zip(columns, own):
             found = sensitivity(column, place, y)
-            # Six cosines leave 0.1 % of sin(x) out. Of independent points the jackknife's standard
-            # error is about the true one.
+            # Six cosines miss 0.1 % of sin(x). For independent points, the jackknife's standard error is close to the
+            # true error.
             self.assertLess(abs(found.first_order - variance / total), 3 * found.error + 1e-3)
             self.assertLess(found.error, 0.035)
         self.assertIsNone(sensitivity(texts[:10], None, y[:10]))
         self.assertIsNone(sensitivity(x[0], columns[0][1], np.ones(n)))
 
     def test_outliers_do_not_hide_a_field(self):
-        """A metric falls as 1 / K over three decades; another field has no influence. Three runs are a million times
-        larger."""
+        """A metric falls as 1 / K over three decades; another field has no influence. The values of three runs are a
+        million times larger."""
         random, n = np.random.default_rng(11), 200
         field, idle = random.uniform(0, 1, n), random.uniform(0, 1, n)
         y = 10 ** (-3 * field) * random.lognormal(0, 0.2, n)
@@ -158,8 +159,8 @@ class Sweeps(Given):
         decides, other = sensitivity(field, field, y), sensitivity(idle, idle, y)
         self.assertLess(decides.rank, -0.93)
         self.assertLess(decides.first_order, 0.2)
-        # Variance of the logarithm by the field: (3 ln 10)^2 / 12 = 3.98; by noise 0.04, by the outliers
-        # 3/200 (6 ln 10)^2 = 2.86. Without outliers the share would be 0.99.
+        # Variance of the logarithm: (3 ln 10)^2 / 12 = 3.98 by the field, 0.04 by noise, 3/200 (6 ln 10)^2 = 2.86 by
+        # the outliers. Without outliers, the fraction of the field would be 0.99.
         self.assertGreater(
             decides.of_logarithm, 3.98 / (3.98 + 0.04 + 2.86) - 2 * decides.error_of_logarithm
         )
@@ -175,7 +176,7 @@ class Sweeps(Given):
         ):
             found = sensitivity(place, place, y)
             self.assertEqual(found.of_logarithm is not None, exists, y[-1])
-        # y is an exponential of the field: the logarithm is linear.
+        # y is an exponential function of the field: its logarithm is linear.
         found = sensitivity(place, place, np.exp(12 * place))
         self.assertGreater(found.of_logarithm, 0.998)
         self.assertLess(found.first_order, found.of_logarithm - 0.05)

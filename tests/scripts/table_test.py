@@ -10,13 +10,13 @@ from functools import cache
 from fixture import PROGRAM, must, ran, scratch_folder
 
 NASTY = r'50 % of {a_b} & #1 ~ $x^2$ \y |q| <z> "w" --n [s] é µ ≤ λ'
-LAWS = "mean,least_squares,summation"  # some of which fail in the hole
+LAWS = "mean,least_squares,summation"  # some of these laws fail in the hole
 PEG = "peg_in_hole_2d_shaped_stiffness"
 SHORT = ("--set", "time.steps=300", "--set", "expect={}")
 
 
 def markdown_rows(text):
-    """The cells of a Markdown table, without the line of rules."""
+    """Returns the cells of a Markdown table, without the separator line."""
     lines = [line for line in text.splitlines() if line.startswith("|")]
     rows = [[c.strip() for c in re.split(r"(?<!\\)\|", line)[1:-1]] for line in lines]
     return rows[:1] + rows[2:]
@@ -29,7 +29,7 @@ def setUpModule():
     (ROOT / "nasty.json").write_text(json.dumps(scene), encoding="utf-8")
 
 
-# Command lines that print tables, with failures, missing values, errors and texts from outside.
+# Command lines that print tables, with failures, missing values, errors and texts from files.
 COMMANDS = {
     "run": ("run", "nasty.json", "tap_wall", *SHORT),
     "latency": ("run", "nasty.json", "--latency"),

@@ -1,6 +1,5 @@
-"""Every tutorial runs from its first block of code to its last, in a folder that looks like a
-clone, and says no number that it does not show or print. Arguments: the program, the folder of the
-built Python package."""
+"""Runs the blocks of code of every tutorial in order, in a folder that looks like a clone. Every number in a sentence
+of the tutorial must be shown or printed by a block. Arguments: the program, the folder of the built Python package."""
 import json
 import re
 import sys
@@ -16,10 +15,9 @@ TUTORIALS = [
 ]
 CODE = re.compile(r"^```(bash|python)\n(.*?)^```\n", re.M | re.S)
 CHECKS = re.compile(r"^<!-- checked by .*?^-->\n", re.M | re.S)
-# A number in a sentence; not a part of a name, such as C5 or 2-D.
+# Matches a number in a sentence, but not a part of a name, such as C5 or 2-D.
 NUMBER = re.compile(r"(?<![\w.^-])\d+(?:\.\d+)?(?:e-?\d+)?(?![\w-]|\.\d)")
-# One interpreter has the blocks in Python of a tutorial; those for the shell are shells of their
-# own, in the same order.
+# One interpreter runs all Python blocks of a tutorial; each shell block runs in its own shell, in the same order.
 PLAYER = """
 import json, subprocess, sys
 names = {"__name__": "__main__"}
@@ -33,7 +31,7 @@ for number, (language, code) in enumerate(json.loads(sys.argv[1]), 1):
 
 
 def played(text, folder):
-    """What the blocks of the text print. A block that fails ends it with what it said."""
+    """Returns the output of the blocks of the text. A block that fails ends the run, with its error message."""
     clone = folder / "hapbench"
     clone.mkdir()
     for name in (
@@ -60,7 +58,7 @@ def played(text, folder):
 
 
 def unproven_numbers(text, printed):
-    """Numbers in sentences that no block shows or prints."""
+    """Returns the numbers in sentences that no block shows or prints."""
     shown = CHECKS.sub("", text)
     known = set(NUMBER.findall(printed)) | {
         number for _, code in CODE.findall(shown) for number in NUMBER.findall(code)

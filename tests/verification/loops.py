@@ -1,8 +1,7 @@
-"""Verification of linear limits: the eigenvalues of the loop of hand, device and contact, computed
-here with numpy from the description of the devices in the manual, against `limit` and against runs.
-Shares no code with hapbench.
+"""Verification of linear limits. Eigenvalues of the loop of hand, device and contact, computed here with numpy from the
+description of the devices in the manual, are compared with `limit` and with runs. Shares no code with hapbench.
 
-    python3 tests/verification/loops.py PROGRAM [COUNT]    # COUNT random loops of each pair, default 2
+  python3 tests/verification/loops.py PROGRAM [COUNT]    # COUNT random loops of each pair, default 2
 """
 import json
 import subprocess
@@ -17,16 +16,18 @@ from scipy.linalg import expm
 PROGRAM = Path(sys.argv[1]).resolve()
 COUNT = int(sys.argv[2]) if len(sys.argv) > 2 else 2
 RANDOM = np.random.default_rng(85)
-# `limit` bisects eigenvalues to 1e-11. A double eigenvalue is known to the square root of rounding, 1e-8.
+# `limit` bisects eigenvalues to 1e-11. A double eigenvalue has an error of the square root of rounding, 1e-8.
 SPRINGS_AGREE = 1e-7
-# The derivative of a rendered force is a difference with an error of 1e-7; the limit depends on it about linearly.
+# The derivative of a rendered force is a difference quotient with an error of 1e-7; the limit depends on it about
+# linearly.
 SURFACES_AGREE = 1e-5
-# K of the runs, relative to the limit. A run is long enough for an amplitude ratio of GROWN.
+# Distance of K in the runs from the limit (relative), the amplitude ratio that a run must reach, and the largest number
+# of steps.
 BESIDE, GROWN, MOST_STEPS = 0.05, 100.0, 200_000
 
 
 def map_of(step, n):
-    """The matrix of a linear function of n numbers."""
+    """Returns the matrix of a linear function of n numbers."""
     return np.column_stack([step(unit) for unit in np.eye(n)])
 
 
@@ -35,7 +36,7 @@ def radius(A):
 
 
 def held(rate, inputs, t):
-    """Maps of state and constant inputs of z' = rate z + inputs u after t."""
+    """Returns the maps of state and constant inputs of z' = rate z + inputs u over the time t."""
     n, m = rate.shape[0], inputs.shape[1]
     joint = np.zeros((n + m, n + m))
     joint[:n, :n], joint[:n, n:] = rate, inputs
@@ -44,7 +45,7 @@ def held(rate, inputs, t):
 
 
 class LowPass:
-    """Butterworth's filter of an input that is held over the period before its sample."""
+    """Butterworth low-pass with an input that is held over the period before its sample."""
 
     def __init__(self, given, T):
         if given is None:
@@ -65,7 +66,7 @@ class LowPass:
 
 
 def impedance_map(scene, K):
-    """Handle, or motors and handle, moves exactly between samples; the wall acts on the measured position."""
+    """The handle, or motors and handle, move exactly between samples. The wall acts on the measured position."""
     T, device, B = scene["time"]["step_s"], scene["device"], scene["rendering"]["damping_N_s_per_m"]
     hand = scene["hand"]
     m, b = device["handle_mass_kg"], device["viscous_N_s_per_m"]
@@ -104,7 +105,7 @@ def impedance_map(scene, K):
         z, last, of_position, of_velocity, forces = np.split(state, sizes[:-1])
         of_position, y = position.step(of_position, z[0])
         of_velocity, w = velocity.step(of_velocity, (z[0] - last[0]) / T)
-        forces = np.append(-K * y - B * w, forces)  # the newest first
+        forces = np.append(-K * y - B * w, forces)  # the newest force first
         force_of_hand = (
             -sampled.get("stiffness_N_per_m", 0.0) * z[-2]
             - sampled.get("damping_N_s_per_m", 0.0) * z[-1]
@@ -123,7 +124,8 @@ def leapfrog(x, v, f, M, dt):
 
 
 def admittance_map(scene, K):
-    """The virtual mass, then the servo of the carriage, then carriage and handle by the implicit midpoint rule."""
+    """Steps the virtual mass, then the servo of the carriage, then carriage and handle by the implicit midpoint
+    rule."""
     dt, r, device, hand = (scene[name] for name in ("time", "rendering", "device", "hand"))
     dt = dt["step_s"]
     servo, parts = device["servo"], device["mechanics"]
@@ -173,7 +175,7 @@ MAPS = {"impedance": impedance_map, "admittance": admittance_map, "ideal": ideal
 
 
 def between(low, high):
-    """A random number, even on a logarithmic scale."""
+    """Returns a random number, uniform on a logarithmic scale."""
     return float(np.exp(RANDOM.uniform(np.log(low), np.log(high))))
 
 
@@ -242,7 +244,7 @@ def random_device(kind):
 
 
 def random_scene(device, hand):
-    """One spring that pulls and pushes, along z."""
+    """Returns a scene with one bilateral spring along z."""
     return {
         "name": f"{device}_{hand}",
         "time": {"step_s": float(RANDOM.choice([0.00025, 0.0005, 0.001])), "steps": 16},
@@ -261,7 +263,8 @@ def random_scene(device, hand):
 
 
 def edge_of(stable, low=1e-3, high=1e9):
-    """The value up to which `stable` holds, if it holds from `low` on and then at no value up to 20 times the edge."""
+    """Returns the limit up to which `stable` holds. Requires that it holds from `low` on, and at no value between the
+    limit and 20 times the limit."""
     value, factor = low, 1.1
     while stable(value * factor):
         value *= factor
@@ -297,7 +300,8 @@ def limit(folder, scene, low, high, *words):
 
 
 def grows(folder, scene, A, K):
-    """True if the amplitude of a run at K grows, False if it decays; None if that would take too many steps."""
+    """Returns True if the amplitude of a run at K grows, False if it decays, and None if the decision would take too
+    many steps."""
     steps = int(np.log(GROWN) / abs(np.log(radius(A)))) + 100
     if steps > MOST_STEPS:
         return None
@@ -324,7 +328,7 @@ def check(name, got, known, within, faults):
 
 
 def check_springs(folder, faults):
-    """Each device with each hand on a spring, and runs beside the limit."""
+    """Checks each device with each hand on a spring, and runs on both sides of the limit."""
     pairs = [(device, hand) for device in MAPS for hand in ("none", "force", "impedance")]
     pairs.append(("impedance", "mass_spring_damper"))
     for device, hand in pairs:
@@ -352,7 +356,7 @@ def check_springs(folder, faults):
 
 
 def pressed(device, hand, tip, diameter):
-    """A tool that a hand presses on a plane."""
+    """Returns a scene in which a hand presses a tool on a plane."""
     scene = random_scene(device, "none")
     scene.update(
         time={"step_s": 0.001, "duration_s": 2},
@@ -366,8 +370,8 @@ def pressed(device, hand, tip, diameter):
 
 
 def slope_of_flat_tip(K, F, radius_of_tip, spacing=0.0005):
-    """dF/dz of equal weights under a flat tip that F presses down by z: the depth of a point at rho from the axis
-    is min(z, r - rho), the nearer of bottom and side."""
+    """Returns dF/dz of equal weights under a flat tip that F presses down by z. The depth of a point at distance rho
+    from the axis is min(z, r - rho), the smaller distance to bottom and side."""
     at = spacing * np.arange(-50, 51)
     rho = np.hypot(*np.meshgrid(at, at)).ravel()
     side = radius_of_tip - rho[rho <= radius_of_tip * (1 + 1e-12)]
@@ -379,7 +383,7 @@ def slope_of_flat_tip(K, F, radius_of_tip, spacing=0.0005):
 
 
 def check_surfaces(folder, faults):
-    """A flat tip, whose contact is softer than K, and a drag, whose damping along the normal is in the loop."""
+    """Checks a flat tip, whose contact is softer than K, and a drag, whose damping along the normal is in the loop."""
     for F in (0.5, 0.8):
         scene = pressed("impedance", {"type": "force", "z_N": -F}, "flat", 0.004)
         scene["device"] = {
@@ -410,7 +414,7 @@ def check_surfaces(folder, faults):
         scene["environment"]["spacing_m"] = 0.0002
         scene["rendering"][
             "depth_model"
-        ] = "normal_projection"  # one depth at all points of a plane
+        ] = "normal_projection"  # gives all points of a plane the same depth
         scene["device"] = {
             "type": "impedance",
             "handle_mass_kg": 0.2,

@@ -1,9 +1,10 @@
-"""Code verification: the observed order of convergence in the step against the formal one, for
-every integrator, device, hand and law, on motions that are known in closed form or by an
-independent computation. Without hapbench's code but for the runs.
+"""Code verification: the observed order of convergence in the time step, compared with the formal order, for every
+integrator, device, hand and law. The exact motions are known in closed form or from an independent computation. Uses
+hapbench only for the runs.
 
-    python3 tests/verification/orders.py PROGRAM           # recomputes every seventh row and compares it with the table
-    python3 tests/verification/orders.py PROGRAM --write   # makes the table anew"""
+  python3 tests/verification/orders.py PROGRAM           # recomputes every seventh row and compares it with the table
+  python3 tests/verification/orders.py PROGRAM --write   # writes the table again
+"""
 import json
 import math
 import subprocess
@@ -18,12 +19,12 @@ from scipy.linalg import expm
 
 PROGRAM = Path(sys.argv[1]).resolve()
 PAGE = Path(__file__).resolve().parent / "README.md"
-BETWEEN = " / "  # cases that share a line
+BETWEEN = " / "  # separates cases that share a line
 BEGIN, END = "<!-- orders -->\n", "<!-- /orders -->\n"
-END_S = 0.02  # of a run [s]: 1.4 periods of the spring
+END_S = 0.02  # duration of a run [s]: 1.4 periods of the spring
 STEPS = [1e-3 / 2**i for i in range(6)]
 K, M, X0, V0 = 20000.0, 0.1, 1e-3, 0.2
-# Order without damping, and with it. Any force that is sampled and held over a step makes it 1.
+# Order without damping, and order with damping. Any force that is sampled and held over a step reduces the order to 1.
 FORMAL = {
     "leapfrog": (1, 1),
     "velocity_verlet": (2, 1),
@@ -32,10 +33,12 @@ FORMAL = {
     "implicit_midpoint": (2, 2),
     "event": (4, 4),
 }
-# An error C h^p (1 + D h) with D h below 0.07 at the finest step but one moves the order by less than log2(1.07) = 0.1.
+# For an error C h^p (1 + D h) with D h below 0.07 at the second-finest step, the observed order deviates by less than
+# log2(1.07) = 0.1.
 WITHIN = 0.1
-NONLINEAR = {"static_coupling"}  # its spring softens: no closed form
-ROUNDING = 1e-11  # of the motion's size: smaller errors are none of the step
+NONLINEAR = {"static_coupling"}  # its spring softens, so that there is no closed form
+# Relative to the amplitude of the motion; smaller errors are not caused by the step.
+ROUNDING = 1e-11
 
 
 @dataclass
@@ -44,14 +47,14 @@ class Case:
     name: str
     formal: float
     scene: dict
-    exact: object  # step, phase -> (position, velocity) at END_S
+    exact: object  # function (step, phase) -> (position, velocity) at END_S
     why: str = ""
-    changes: object = field(default=lambda *_: {})  # of the scene, by step and phase
-    phases: int = 1  # starts within a step, of which the largest error counts
+    changes: object = field(default=lambda *_: {})  # function (step, phase) -> changes of the scene
+    phases: int = 1  # number of starting phases within a step; the largest error counts
 
 
 def linear(A, b=0.0, x=(X0, V0), t=END_S):
-    """State of x' = A x + b after t."""
+    """Returns the state of x' = A x + b after the time t."""
     n = len(x)
     joint = np.zeros((n + 1, n + 1))
     joint[:n, :n], joint[:n, n] = A, b
@@ -59,7 +62,8 @@ def linear(A, b=0.0, x=(X0, V0), t=END_S):
 
 
 def driven(K, B, force=0.0, k=0.0, b=0.0, amplitude=0.0, omega=0.0):
-    """M under a hand's force + amplitude sin(omega t) - k x - b v: the sine is two more states."""
+    """Returns the motion of M under a hand with force + amplitude sin(omega t) - k x - b v. The sine adds two
+    states."""
     A = np.array(
         [
             [0, 1, 0, 0],
@@ -72,8 +76,8 @@ def driven(K, B, force=0.0, k=0.0, b=0.0, amplitude=0.0, omega=0.0):
 
 
 def late(K, b, tau):
-    """M x'' = -b x' - K x(t - tau), the force 0 before tau: the motions during one tau after the
-    other are one linear system."""
+    """Returns the motion M x'' = -b x' - K x(t - tau), with zero force before tau. The motions in successive intervals
+    of length tau form one linear system."""
     whole, part = divmod(END_S, tau)
     begins = np.array([X0, V0])
     for n in range(1, int(whole) + 2):
@@ -88,11 +92,11 @@ MOTORS = {
     "motor_share": 0.4,
     "stiffness_N_per_m": 20000.0,
     "damping_N_s_per_m": 4.0,
-}  # on M, an elastic transmission
+}  # device that acts on M through an elastic transmission
 
 
 def geared(K, B, force=0.0, k=0.0, b=0.0, amplitude=0.0, omega=0.0):
-    """The same of motors at the spring, with the handle at the hand: the motors' motion."""
+    """Returns the motion of the motors as driven(), with the motors at the spring and the handle at the hand."""
     share, gear, loss = MOTORS.values()
     m, h = share * M, (1 - share) * M
     A = np.array(
@@ -127,7 +131,7 @@ def scene(integrator="leapfrog", B=0.0, law="summation", **parts):
     }
 
 
-# Name, the hand, and its force as driven() and geared() have it.
+# Name of the hand, its scenario fields, and the arguments of driven() and geared() for its force.
 HANDS = (
     ("none", {"type": "none"}, {}),
     ("force, constant", {"type": "force", "z_N": 3.0}, {"force": 3.0}),
@@ -152,12 +156,14 @@ GAP, BOUNCES = 4e-4, 32  # [m]
 
 
 def stiffness_of_bounce(phase):
-    """By which it ends anywhere in a step, as by chance; `phase` is the part of a step by which it begins later."""
+    """Returns a stiffness for which the bounce ends at an arbitrary point of a step. `phase` is the fraction of a step
+    by which the bounce begins later."""
     return K * (1.0 + 0.4 * (phase * 0.6180339887 * BOUNCES % 1.0))
 
 
 def bounce(step, phase):
-    """Off a unilateral spring without damping, which takes half a period: the tool leaves as fast as it came."""
+    """Returns the motion of a bounce off a unilateral spring without damping, which takes half a period: the tool
+    leaves with its initial speed."""
     t2 = GAP / V0 + phase * step + math.pi / math.sqrt(stiffness_of_bounce(phase) / M)
     return np.array([-V0 * (END_S - t2), -V0])
 
@@ -198,7 +204,7 @@ def cases(laws):
                 driven(K, 20.0, **force),
                 why,
             )
-        if name != "impedance":  # it pulls the handle, which lags behind the virtual tool
+        if name != "impedance":  # the device pulls the handle, which lags behind the virtual tool
             yield Case(
                 "device",
                 f"admittance; {name}",
@@ -251,8 +257,9 @@ def cases(laws):
     }
     for integrator, orders in FORMAL.items():
         finds = integrator == "event"
-        # The force is continuous where a spring begins, its slope is not: second order for all that are of second order
-        # without damping. Outside of contact a leapfrog step is one of velocity Verlet, and so is the bounce.
+        # At the onset of contact the force is continuous and its slope is not: methods that are of second order without
+        # damping stay of second order. Outside of contact, a leapfrog step equals a step of velocity Verlet, and so
+        # does the bounce.
         formal = orders[0] if finds else 1 if integrator == "implicit_euler" else 2
         yield Case(
             "switching",
@@ -267,7 +274,7 @@ def cases(laws):
 
 
 def last_row(content, step, rows):
-    """Of trajectory.csv of a run."""
+    """Returns the last row of trajectory.csv of a run."""
     with tempfile.TemporaryDirectory(prefix="hapbench-orders-") as folder:
         file = Path(folder) / "scene.json"
         file.write_text(
@@ -287,7 +294,8 @@ def last_row(content, step, rows):
 
 
 def error_at(case, step, phase):
-    """Distance of the last row from the exact motion, as the root of an energy over that of the start."""
+    """Returns the distance of the last row from the exact motion: the square root of an energy, relative to the initial
+    energy."""
     row = last_row(case.scene | case.changes(step, phase), step, round(END_S / step) + 1)
     x, v = case.exact(step, phase)
     energy = lambda x, v: 0.5 * (K * x * x + M * v * v)
@@ -295,12 +303,13 @@ def error_at(case, step, phase):
 
 
 def row(case):
-    """Part, case, formal and observed order, the errors at the coarsest and the finest step, verdict."""
+    """Returns part, case, formal and observed order, the errors at the coarsest and the finest step, and the
+    verdict."""
     errors = [
         max(error_at(case, step, i / case.phases) for i in range(case.phases)) for step in STEPS
     ]
     useful = [error for error in errors if error > ROUNDING]
-    # The largest error of some starts is by chance up to half larger or smaller: log2(1.5) / 3 over three steps.
+    # The largest error over a few starts scatters by a factor of up to 1.5: log2(1.5) / 3 over three steps.
     halvings, within = (3, 0.3) if case.phases > 1 else (1, WITHIN)
     observed = math.log2(useful[-1 - halvings] / useful[-1]) / halvings
     return (
@@ -316,7 +325,7 @@ def row(case):
 
 
 def table_of(rows):
-    """Rows of a part that agree in all but their case share a line."""
+    """Joins rows of a part that are equal except for their case in one line."""
     cases_of = {}
     for part, case, *rest in rows:
         cases_of.setdefault((part, *rest), []).append(case)

@@ -32,8 +32,8 @@ struct SettledState {
   bool is_held = false;  ///< true if dry friction of device or surface acts on the tool that rests
 };
 
-/// Returns true if the contact lasts over the last quarter of the run and has one linear loop: the same points touch.
-/// While a script or a hand moves the tool, other points may touch, as long as the stiff directions do not change.
+/// Returns true if the contact persists over the last quarter of the run and has a single linear loop, because the same
+/// points touch. While a script or a hand moves the tool, other points may touch if the stiff directions do not change.
 bool contact_lasts(const SettledState& settled, const Scenario& scenario);
 
 /// Records the end position of the tool, whether the tool was in contact, and the vibration and bounces over the

@@ -86,7 +86,7 @@ struct TuneTrial {
   std::optional<TuneFailure> failure = {};
   /// Largest eigenvalue of the mean stiffness tensor S at the end of the scene's run, in units of K.
   double lambda_max = 0.0;
-  ContactOfTrial contact = {};  ///< at the end of the scene's run at K
+  ContactOfTrial contact = {};  ///< contact at the end of the scene's run at K
 
   bool feasible() const { return binding.empty(); }
   /// Returns the largest rendered stiffness [N/m].

@@ -76,7 +76,7 @@ Trials::Trials(const TuneQuestion& question, const std::string& algorithm)
   if (has_permanent_springs(own.scenario)) springs_lambda_ = stiffness_eigenvalues(own.scenario)[2];
 }
 
-// ---- The question
+// ---- Scenarios and settings of the question
 
 std::vector<std::string> Trials::overrides(const TuneSetting& setting, double stiffness) const {
   std::vector<std::string> fields = question_.overrides;
@@ -285,8 +285,8 @@ std::vector<NamedLoop> Trials::loops_in_contact(const Scenario& scenario, const 
   return contact_loops(scenario, scaled(*contact.linear, contact.rendering, scenario.rendering), over_hands);
 }
 
-/// Returns the contact of a settled run, near the last step in which the tool was in contact. Without a contact that
-/// lasts there is no linear loop.
+/// Returns the contact of a settled run, near the last step in which the tool was in contact. Returns no contact if the
+/// contact does not persist, because there is then no linear loop.
 ContactOfTrial Trials::contact_of(const CheckedScenario& scene, const RunStability& run) const {
   ContactOfTrial contact;
   contact.rendering = scene.scenario().rendering;
@@ -320,7 +320,7 @@ std::optional<TuneFailure> Trials::loop_failure(const TuneTrial& trial, std::siz
 /// Runs the variants [first, last) at K and at G K. Records the first run that is not settled.
 void Trials::judge_motion(TuneTrial& trial, std::size_t first, std::size_t last) {
   std::vector<RunStability> judged(2 * (last - first));  // verdicts on each variant at K, then at G K
-  std::vector<ContactOfTrial> contacts(last - first);    // of each variant at K
+  std::vector<ContactOfTrial> contacts(last - first);    // contact of each variant at K
   in_parallel(&trial, judged.size(), [&](std::size_t job) {
     const double gain = job % 2 != 0 ? question_.margin : 1.0;
     const CheckedScenario scene = checked(load(trial.setting, gain * trial.stiffness, variants_[first + job / 2]));
@@ -378,7 +378,7 @@ void Trials::measure_scene(TuneTrial& trial) {
   for (const auto& [name, bound] : question_.limits) note_worst(trial, name, bound, {&trial.metrics, 1}, variants_);
 }
 
-/// Measures the limited metrics of the user in all variants.
+/// Measures in all variants the metrics for which the user has set limits.
 void Trials::measure_variants(TuneTrial& trial) {
   if (trial.is_complete) return;
   trial.is_complete = true;

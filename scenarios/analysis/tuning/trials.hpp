@@ -51,7 +51,7 @@ class Trials {
   /// `question` and `algorithm` must outlive this.
   Trials(const TuneQuestion& question, const std::string& algorithm);
 
-  // ---- The question
+  // ---- Scenarios and settings of the question
 
   const TuneQuestion& question() const { return question_; }
   const TuneRanges& ranges() const { return ranges_; }

@@ -176,8 +176,8 @@ class Motions {
   std::vector<SampledMotion> shifted_;  ///< shifted motions, by problem
 };
 
-/// Marks the Pareto front of a problem and its knee. Errors that are not resolved do not count, because their true
-/// value is unknown. Nor do runs with an unexpected outcome.
+/// Marks the Pareto front of a problem and its knee. Excludes unresolved errors, because their true value is unknown,
+/// and runs with an unexpected outcome.
 void mark_front(std::vector<WorkPrecisionSetting>& settings) {
   std::vector<CostAndError> points;
   std::vector<std::size_t> indices;

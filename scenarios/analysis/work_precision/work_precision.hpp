@@ -43,8 +43,8 @@ struct WorkPrecisionSetting {
   std::string problem;     ///< values of the axes that define the problem, such as the name of the law
   std::string integrator;  ///< name of the integrator
   double step_s = 0.0;     ///< time step [s]
-  Outcome outcome = {};    ///< of the run; of the first trial if the scenario has several
-  /// True if the scenario expects the outcome. The error of another run says nothing about the scene: a tool that does
+  Outcome outcome = {};    ///< outcome of the run, or of the first of several trials
+  /// True if the scenario expects the outcome. The error of a run with another outcome has no meaning: a tool that does
   /// not move has a small error.
   bool is_expected = true;
   std::optional<MotionDifference> error = {};  ///< empty if the run ended otherwise than the reference solution

@@ -81,8 +81,8 @@ Columns<RankingEntry> ranking_columns(bool seeds) {
       {"rank", "1",
        "rank of the algorithm in this scenario by this metric: 1 + the number of algorithms that are better by more "
        "than 0.1 % and by more than the sum of both errors; algorithms with failed runs come last, ordered by the "
-       "number of failed runs; empty if the metric has no better direction, if the error of the mean is not smaller than "
-       "the mean, or if all algorithms would have the same rank",
+       "number of failed runs; empty if the metric has no better direction, if the error of the mean is not smaller "
+       "than the mean, or if all algorithms would have the same rank",
        &Row::rank, under("rank")},
       {"common_seeds", "1",
        "number of seeds over which mean and spread are taken: seeds with which every algorithm succeeded that "

@@ -25,7 +25,8 @@ std::string metric_text(const RankingEntry& entry, double factor) {
   const auto scaled = [factor](const std::optional<double>& number) {
     return number ? std::optional(factor * *number) : std::nullopt;
   };
-  // Seeds that agree better than the resolution of the ranks do not make a number more precise.
+  // Agreement of the seeds below the resolution of the ranks does not make a number more precise: use at least this
+  // resolution as its error.
   const double resolution = kRankResolution * std::abs(*entry.mean);
   if (entry.spread && *entry.spread < resolution)
     return deserved(factor * *entry.mean, factor * std::max(entry.tolerance.value_or(0.0), resolution));

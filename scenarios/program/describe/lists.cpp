@@ -134,9 +134,9 @@ int list(const DescribeOptions& options, ProgramContext& context) {
     entry.update(item.more);
   }
   const char* more =
-      of_everything
-          ? ", \"hapbench describe KIND\" lists one kind with summaries; further kinds: metrics, claims, assumptions, terms"
-          : "";
+      of_everything ? ", \"hapbench describe KIND\" lists one kind with summaries; further kinds: metrics, claims, "
+                      "assumptions, terms"
+                    : "";
   print(context, options.output,
         list_text(all, of_everything, layout) + "\n" +
             layout.wrapped(fmt::format("\"hapbench describe NAME\" explains each{}.", more), 0),

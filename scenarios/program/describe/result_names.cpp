@@ -48,8 +48,8 @@ constexpr PrintedName kPrintedNames[] = {
      "assumptions: what the thesis leaves open, and the value that the reproduction uses; \"describe "
      "assumptions_schema\" explains the format"},
     {"sensitivity.json", kResultFile,
-     "written by reproduce --sensitivity: verdict and number of each claim for each plausible value of each assumption, "
-     "one at a time"},
+     "written by reproduce --sensitivity: verdict and number of each claim for each plausible value of each "
+     "assumption, one at a time"},
     {"quantum", "number of import",
      "resolution of a recording along an axis: smallest step between the recorded coordinates (quantum_m with "
      "--json); K times this step is the force step that the recording alone causes"}};

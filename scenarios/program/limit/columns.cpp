@@ -87,8 +87,7 @@ Columns<LimitRow> limit_value_columns(const LimitTable* table) {
        kOnlyCsv},
       {"quoted_limit", unit,
        "limit to quote, which a user may render: the linear or the simulated limit, whichever is reached first; empty "
-       "if "
-       "no limit was found within the range",
+       "if no limit was found within the range",
        [](const Row& r) { return r.limit.quoted.value; }, under("quote", 6),
        [](const Row& r) { return r.limit.quoted_tolerance(); }},
       {"quoted_reason", "", "reason why quoted_limit has this value or none",

@@ -34,8 +34,8 @@ int list_kinds(const OutputOptions& output, ProgramContext& context) {
   return kSuccess;
 }
 
-/// Runs the scene. If it does not end as a scene of its kind should, returns a warning, after the warnings of the run
-/// unless the start is `explained`.
+/// Runs the scene. If it does not end as intended for its kind, returns a warning. Also returns the warnings of the
+/// run, unless the start is `explained`.
 std::vector<std::string> outcome_warnings(const CheckedScenario& scene, bool explained) {
   const Result run = run_scenario(scene, std::nullopt, false);
   if (outcome_is_expected(scene.scenario().expect, run.end.outcome)) return {};

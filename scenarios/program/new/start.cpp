@@ -415,7 +415,7 @@ class Start {
   /// Prescribes the tip's positions: from above the surface down to the depth, and along the path at this depth.
   void place_path() {
     constexpr double kLanding = 0.25;     // duration of the approach [s]
-    constexpr double kMaxPoints = 400.0;  // of the path
+    constexpr double kMaxPoints = 400.0;  // largest number of points of the path
     const SurfacePath path = surface_path();
     const double depth = options_.depth.empty() ? 0.1 * diameter_ : parse_length("--depth", options_.depth);
     if (!(depth < 0.5 * diameter_))

@@ -1,11 +1,13 @@
-"""hapbench from Python: run scenes, compare, sweep, find their limits, with force laws of your own, and read results.
+"""hapbench from Python: runs scenes, compares, sweeps, searches limits, with user-defined force laws, and reads
+results.
 
-    import hapbench
-    r = hapbench.run("peg_in_hole_2d", {"rendering.stiffness_N_per_m": 4e4})
-    r.trajectory["fx_N"], r.summary["metrics"]["force_max_N"]
+  import hapbench
+  r = hapbench.run("peg_in_hole_2d", {"rendering.stiffness_N_per_m": 4e4})
+  r.trajectory["fx_N"], r.summary["metrics"]["force_max_N"]
 
-Reading results (`load`) needs numpy alone, `audit` also scipy and the program; everything else the compiled module
-that comes with the program."""
+Reading results (`load`) requires only numpy. `audit` also requires scipy and the program. Everything else requires the
+compiled module that is installed with the program.
+"""
 from typing import TYPE_CHECKING
 
 from .errors import InputError, ResultError, ScenarioError, ScenarioWarning
@@ -31,7 +33,7 @@ if TYPE_CHECKING:
     )
     from .laws import Parameter, force_law
 
-__version__ = "0.4.0"  # of CMakeLists.txt
+__version__ = "0.4.0"  # must equal the version in CMakeLists.txt
 
 __all__ = [
     "Folder",
@@ -64,10 +66,10 @@ __all__ = [
 _MODULES = {"Parameter": "laws", "audit": "auditing", "force_law": "laws"}
 
 
-if not TYPE_CHECKING:  # which knows the names by the imports above
+if not TYPE_CHECKING:  # the type checker knows the names from the imports above
 
     def __getattr__(name):
-        """Imports names when they are first used: most need the compiled module, or scipy."""
+        """Imports a name when it is first used, because most names need the compiled module or scipy."""
         if name not in __all__:
             raise AttributeError(f"module 'hapbench' has no attribute {name!r}")
         from importlib import import_module

@@ -1,11 +1,12 @@
-"""Where the program is, and the packages of its commands, which audit and plot need."""
+"""Finds the program and the packages of its commands, which audit and plot need."""
 import os
 import sys
 from pathlib import Path
 
 _HERE = Path(__file__)
-_PACKAGE = _HERE.absolute().parent  # of pip, with program and files in it
-_PREFIX = _HERE.absolute().parents[4]  # of a build or of cmake --install
+# Package installed by pip, with the program and its files inside.
+_PACKAGE = _HERE.absolute().parent
+_PREFIX = _HERE.absolute().parents[4]  # prefix of a build or of cmake --install
 
 
 def _program() -> Path:

@@ -15,12 +15,13 @@ def audit(
     force_by_tool: bool = False,
     touch: float | None = None,
 ) -> dict[str, Any]:
-    """Report energy, vibration and stiffness of a log, as `hapbench audit --json` does.
+    """Reports energy, vibration and stiffness of a log, as `hapbench audit --json` does.
 
-    `table`: columns of numbers by name, such as a Table, a dict of arrays or a pandas.DataFrame, with time, position
-    of the tool and force on it. `device`: a preset or FILE.json, with whose linear limit the stiffness is compared.
-    `columns`, `scale`: as the options of the command. `force_by_tool`: forces act on the object, and their sign is
-    changed. `touch`: force from which a row is in contact [N]; None: any force. Raises InputError.
+    `table`: columns of numbers by name, such as a Table, a dict of arrays or a pandas.DataFrame, with the time, the
+    position of the tool and the force on the tool. `device`: a preset or FILE.json; the stiffness is compared with the
+    linear limit of this device. `columns`, `scale`: like the options of the command. `force_by_tool`: the logged forces
+    act on the object, and their sign is changed. `touch`: force above which a row is in contact [N]; None: any force.
+    Raises InputError.
     """
     find_packages()
     from hapbench_audit.audit import audit_log

@@ -1,4 +1,4 @@
-"""Reads CSV files: columns of numbers by numpy, in pieces, so that a million rows take seconds; and rows of texts."""
+"""Reads CSV files: columns of numbers with numpy, in chunks, so that a million rows take seconds; and rows of texts."""
 import csv
 
 import numpy as np
@@ -6,7 +6,7 @@ import numpy as np
 from .errors import ResultError
 
 PIECE_BYTES = 1 << 25
-# Columns of texts, some of which look like numbers.
+# Columns that hold texts, although some of these texts look like numbers.
 TEXTS = ("state_hash",)
 
 
@@ -20,8 +20,8 @@ def header(file):
 
 
 def read_columns(file, names=None, may_be_empty=False):
-    """Arrays by name, of all columns or of those named; NaN for an empty field, which is how a row
-    without contact has no ratio."""
+    """Returns arrays by name, of all columns or of the columns `names`. An empty field becomes NaN, such as the ratio
+    of a row without contact."""
     every = header(file)
     names = every if names is None else list(names)
     absent = [name for name in names if name not in every]
@@ -42,7 +42,7 @@ def read_columns(file, names=None, may_be_empty=False):
 
 
 def numbers_in(lines, columns, wanted):
-    """The wanted columns of whole lines, a row for each. Raises ValueError."""
+    """Returns the `wanted` columns of complete lines, with one row for each line. Raises ValueError."""
     lines = lines.rstrip(b"\n")
     if lines.count(b",") != (lines.count(b"\n") + 1) * (columns - 1):
         raise ValueError
@@ -56,7 +56,7 @@ def numbers_in(lines, columns, wanted):
 
 
 def fault_of(file, names):
-    """What is wrong with a table whose named columns are not numbers."""
+    """Returns the error message for a table whose columns `names` are not numbers."""
     every, rows = read_rows(file)
     for line, row in enumerate(rows, start=2):
         for name in names:
@@ -103,7 +103,7 @@ def read_records(file):
 
 
 def read_mixed(file):
-    """All columns by name: of numbers where every field is one or empty, else of texts."""
+    """Returns all columns by name: as numbers if every field is a number or empty, else as texts."""
     try:
         return read_columns(file, may_be_empty=True)
     except ResultError:
@@ -120,5 +120,5 @@ def numbers_or_texts(name, texts):
 
 
 def numbers(records, name):
-    """A column of `records`, gaps as not-a-number."""
+    """Returns a column of `records` as numbers; a missing value becomes NaN."""
     return np.array([float(row[name]) if row[name] else np.nan for row in records])

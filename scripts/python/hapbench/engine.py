@@ -1,4 +1,4 @@
-"""Computing: what the program's commands do, with results in memory."""
+"""Runs the program's commands with results in memory."""
 import json
 import os
 import shutil
@@ -22,7 +22,8 @@ except ImportError as error:
     raise ImportError(
         "hapbench computes with its compiled module, which is not beside this package; "
         "hapbench.load works without it. To compile it, in the source tree: "
-        "pip install ./scripts/python, or scripts/build --python && export PYTHONPATH=$PWD/build/release/lib/python3/dist-packages"
+        "pip install ./scripts/python, or scripts/build --python && "
+        "export PYTHONPATH=$PWD/build/release/lib/python3/dist-packages"
     ) from error
 
 _hapbench.set_program(str(PROGRAM))
@@ -43,14 +44,15 @@ def run(
     record: Iterable[str] = (),
     progress: Progress = None,
 ) -> Run:
-    """Run a scenario and return its Run, all in memory: the same numbers as `hapbench run` writes.
+    """Run a scenario and return its Run in memory, with the same numbers as `hapbench run` writes.
 
-    `scenario`: a file, the name of a bundled one, or a dict; relative paths in a dict start from the working directory.
-    `overrides`: fields as in --set, {"rendering.stiffness_N_per_m": 4e4}. `record`: what to keep
-    beside the scenario's own choice: "contacts", "energy", "stiffness_tensor", "ideal_trajectory",
-    "force_reference", "six_dof", "timing". `progress`: None for a bar where standard error is a terminal,
-    False for none, or a function of (label, done, total). Ctrl-C ends it with KeyboardInterrupt.
-    Raises ScenarioError."""
+    `scenario`: a file, the name of a bundled scenario, or a dict; relative paths in a dict start from the working
+    directory. `overrides`: fields as in --set, such as {"rendering.stiffness_N_per_m": 4e4}. `record`: what to record
+    in addition to the scenario's own list: "contacts", "energy", "stiffness_tensor", "ideal_trajectory",
+    "force_reference", "six_dof", "timing". `progress`: None for a progress bar if standard error is a terminal, False
+    for no bar, or a function of (label, done, total). Ctrl-C stops the run with KeyboardInterrupt. Raises
+    ScenarioError.
+    """
     overrides = {**(overrides or {}), **{f"record.{what}": True for what in record}}
     with _Scratch() as scratch:
         found = scratch.call(_hapbench.run, scratch.file_of(scenario), _words(overrides), progress)
@@ -86,12 +88,13 @@ def compare(
     out: Place = None,
     progress: Progress = None,
 ) -> "Report":
-    """Run scenarios through several algorithms (default: all), as `hapbench compare` does.
+    """Run scenarios with several algorithms (default: all), as `hapbench compare` does.
 
-    Returns a Report: `runs` by their paths ("mean", of several scenarios and seeds
-    "drag_molar/mean/seed_0"), the tables `comparison` and, with several scenarios or seeds or `by`,
-    `ranking`. A run that fails ends there and has no metrics, unless `full`. `out` keeps the folder;
-    without it, it goes with the Report. `scenarios`, `overrides` and `progress` as in `run`."""
+    Returns a Report. `runs` has the runs by path: "mean", or "drag_molar/mean/seed_0" with several scenarios and seeds.
+    Its tables are `comparison` and, with several scenarios or seeds or with `by`, `ranking`. A run that fails ends at
+    its failure and has no metrics, unless `full`. `out` names the folder to keep; without `out`, the folder is deleted
+    with the Report. `scenarios`, `overrides` and `progress` as in `run`.
+    """
     return _report(
         ["compare"],
         scenarios,
@@ -121,11 +124,12 @@ def sweep(
     out: Place = None,
     progress: Progress = None,
 ) -> "Report":
-    """Run a scenario over a grid, or a sample, of values of any fields, as `hapbench sweep` does.
+    """Run a scenario over a grid or a sample of values of any fields, as `hapbench sweep` does.
 
-    `vary`: {"rendering.stiffness_N_per_m": [2e4, 4e4]}, of which a string is taken as --vary takes
-    it ("1e4:1e5:10:log"). A run that fails ends there and has no metrics, unless `full`. Returns a
-    Report whose table `sweep` has a row for each run."""
+    `vary`: values by field, such as {"rendering.stiffness_N_per_m": [2e4, 4e4]}; a string is interpreted as by --vary
+    ("1e4:1e5:10:log"). A run that fails ends at its failure and has no metrics, unless `full`. Returns a Report whose
+    table `sweep` has a row for each run.
+    """
     words = ["sweep"]
     for field, values in vary.items():
         words += [
@@ -162,8 +166,8 @@ def limit(
     out: Place = None,
     progress: Progress = None,
 ) -> "Report":
-    """How far a field may go, as `hapbench limit` finds it, for each value of other fields (`over`,
-    as --over takes them): a Report with the tables `limit` and `limit_runs`."""
+    """Search the stability limit of a field, as `hapbench limit` does, for each value of other fields (`over`, in the
+    syntax of --over). Returns a Report with the tables `limit` and `limit_runs`."""
     words = [
         "limit",
         *(word for path, values in (over or {}).items() for word in ("--over", f"{path}={values}")),
@@ -185,24 +189,24 @@ def limit(
 
 
 def command(*words: object, progress: Progress = None) -> Any:
-    """A command of the program by its words, as `hapbench.command("describe", "mean")`: what it
-    prints with --json, read; Empty where it prints nothing. Raises ScenarioError for what the
-    program refuses."""
+    """Run a command of the program, such as `hapbench.command("describe", "mean")`, and return the parsed output of
+    --json. Returns Empty if the command prints nothing. Raises ScenarioError if the program rejects the input.
+    """
     status, text, said, errors = _hapbench.command([*map(str, words), "--json"], progress)
     _warn(said + errors, status)
     return json.loads(text) if text else None
 
 
 class Text(str):
-    """Text that a notebook and an interactive Python show as it is, without quotes."""
+    """Text that a notebook and an interactive Python print without quotes and escapes."""
 
     def __repr__(self) -> str:
         return str(self)
 
 
 def describe(name: str = "") -> Text:
-    """Explain a name of hapbench (a law, field, metric, column, device, claim or term), as `hapbench describe` does; or
-    list what there is. `hapbench.command("describe", name)` returns the same as data."""
+    """Explain a name of hapbench (a law, field, metric, column, device, claim or term), as `hapbench describe` does, or
+    list all names. `hapbench.command("describe", name)` returns the same as data."""
     words = ["describe", *([name] if name else [])]
     status, text, said, errors = _hapbench.command(words, False)
     _warn(said + errors, status)
@@ -221,7 +225,7 @@ def columns_of(file: str) -> list[dict[str, str]]:
 
 
 def algorithms() -> list[str]:
-    """The names of all algorithms there are, own ones among them."""
+    """The names of all algorithms, including user-defined laws."""
     return _hapbench.algorithms()
 
 
@@ -242,8 +246,9 @@ def allow_modules() -> None:
 
 
 def main(words: Sequence[str] | None = None) -> int:
-    """Be the program with these words (default: those of the command line) and return its exit status. At the end of a
-    script that defines force laws, it lets them take part in every command."""
+    """Run the program with these arguments (default: the arguments of the command line) and return its exit status. At
+    the end of a script that defines force laws, `main` makes these laws available in every command.
+    """
     sys.stdout.flush()
     try:
         return _hapbench.main(list(map(str, sys.argv[1:] if words is None else words)))
@@ -252,35 +257,34 @@ def main(words: Sequence[str] | None = None) -> int:
 
 
 class Report(Folder):
-    """The folder that a command wrote: its tables and runs. `report` is what the command prints
-    with --json, `status` its exit status: 0, or 3 when a run did not end as its scenario
-    expects."""
+    """The folder that a command wrote, with its tables and runs. `report` is the parsed output of --json. `status` is
+    the exit status: 0, or 3 if a run did not end as its scenario expects."""
 
     def __init__(
         self, folder: Path, status: int, report: Any, scratch: "_Scratch | None" = None
     ) -> None:
         super().__init__(folder)
         self.status, self.report = status, report
-        self._scratch = scratch  # removed with this object
+        self._scratch = scratch  # deleted with this object
 
 
 class Simulation(_hapbench.Simulation):
-    """One run of a scenario, step by step, for loops of your own. `scenario` and `overrides` as in `run`.
+    """One run of a scenario, computed step by step, for loops of your own. `scenario` and `overrides` as in `run`.
 
-        simulation = hapbench.Simulation("drag_molar")
-        while simulation.step():
-            print(simulation.state["force_N"], len(simulation.contacts["depths_m"]))
+      simulation = hapbench.Simulation("drag_molar")
+      while simulation.step():
+          print(simulation.state["force_N"], len(simulation.contacts["depths_m"]))
 
-    `step()` computes the next row: False, and nothing done, once the run has ended.
-    `advance(steps)` computes up to so many rows, the interpreter released, and returns how many.
-    `reset()` goes back to the start, bit for bit. `rows` are those computed so far, `steps` those
-    of the whole run, `time_step_s` the time from row to row [s]; `outcome` is how the run ended,
-    "completes" while it goes on.
+    `step()` computes the next row; it returns False and computes nothing if the run has ended. `advance(steps)`
+    computes at most `steps` rows while other Python threads can run, and returns their number. `reset()` restores the
+    start, bit for bit. `rows` is the number of computed rows, `steps` the number of rows of the whole run, and
+    `time_step_s` the time between rows [s]. `outcome` says how the run ended; it is "completes" while the run
+    continues.
 
-    `state` is the last row as a dict, everything before the integrator moved the tool: step,
-    time_s, position_m, velocity_m_per_s, axis, force_N, spring_force_N, stiffness_tensor (in units
-    of K), measured_force_N, input_force_N, handle_m, colliding, depth_max_m. `contacts` are its
-    rendered ones as a dict of arrays: index, points_m, normals, depths_m, gradients, weights.
+    `state` is the last row as a dict, with the values before the integrator moved the tool: step, time_s, position_m,
+    velocity_m_per_s, axis, force_N, spring_force_N, stiffness_tensor (in units of K), measured_force_N, input_force_N,
+    handle_m, colliding, depth_max_m. `contacts` has the rendered contacts of this row as a dict of arrays: index,
+    points_m, normals, depths_m, gradients, weights.
     """
 
     def __init__(self, scenario: Scenario, overrides: Overrides = None) -> None:
@@ -289,20 +293,21 @@ class Simulation(_hapbench.Simulation):
 
 
 class Renderer(_hapbench.Renderer):
-    """The force of a scenario in a haptic loop of your own: hapbench_renderer.h, which documents it, for Python.
+    """The force of a scenario in a haptic loop of your own: Python interface of hapbench_renderer.h, which documents
+    it.
 
-        renderer = hapbench.Renderer("drag_molar", {"time.step_s": 0.001}, max_force_N=3)
-        out = renderer.step(time.monotonic_ns(), position, velocity_m_per_s=velocity)
-        out["force_N"], out["status"]
+      renderer = hapbench.Renderer("drag_molar", {"time.step_s": 0.001}, max_force_N=3)
+      out = renderer.step(time.monotonic_ns(), position, velocity_m_per_s=velocity)
+      out["force_N"], out["status"]
 
-    `mode`: "impedance" or "admittance". `world_from_device`, `handle_from_tip`: (position [m],
-    quaternion w, x, y, z). `torque` computes out["torque_N_m"]. `allow_modules` allows libraries
-    that the scenario names. Raises ScenarioError.
+    `mode`: "impedance" or "admittance". `world_from_device`, `handle_from_tip`: (position [m], quaternion w, x, y, z).
+    `torque` computes out["torque_N_m"]. `allow_modules` allows libraries that the scenario names. Raises ScenarioError.
 
-    `step` returns a dict: force_N, torque_N_m, set_position_m, set_velocity_m_per_s, gain, dt_s, call, status ("WAITING",
-    "RAMPING", "ON", "CLAMPED", "STALE", "FAULT"), contacts, limited. `period_s` is the time with which to call,
-    `inspection` what was opened, `fault` why the last FAULT happened. `log_header()`, and `log_row()` after each step, are
-    the lines of a log for `hapbench run SCENARIO --replay`. Python has no real time: for a device, use C or C++.
+    `step` returns a dict: force_N, torque_N_m, set_position_m, set_velocity_m_per_s, gain, dt_s, call, status
+    ("WAITING", "RAMPING", "ON", "CLAMPED", "STALE", "FAULT"), contacts, limited. `period_s` is the time between two
+    calls [s], `inspection` describes the scenario that was opened, and `fault` is the reason of the last FAULT.
+    `log_header()`, and `log_row()` after each step, return the lines of a log for `hapbench run SCENARIO --replay`.
+    Python has no real-time guarantees: for a device, use C or C++.
     """
 
     def __init__(
@@ -359,7 +364,7 @@ class Renderer(_hapbench.Renderer):
 
 
 class _Scratch:
-    """A folder that goes with this object, for scenarios that are dicts and for results."""
+    """A folder that is deleted with this object, for scenarios that are dicts and for results."""
 
     def __init__(self):
         self.path = Path(tempfile.mkdtemp(prefix="hapbench-"))
@@ -372,14 +377,14 @@ class _Scratch:
         self._remove()
 
     def file_of(self, scenario):
-        """The word by which the engine finds a scenario."""
+        """Returns the argument by which the engine finds a scenario."""
         if not isinstance(scenario, dict):
             return os.fspath(scenario)
         scenario = json.loads(json.dumps(scenario, default=_plain))
         extended = scenario.get("extends")
         if (
             isinstance(extended, str) and Path(extended).is_file()
-        ):  # else it may be the name of a bundled scenario
+        ):  # otherwise the text may be the name of a bundled scenario
             scenario["extends"] = str(Path(extended).absolute())
         _name_files(scenario)
         name = str(scenario.get("name") or "scenario").replace("/", "_")
@@ -388,7 +393,8 @@ class _Scratch:
         return str(file)
 
     def call(self, function, *arguments):
-        """Errors name a dict's place alone, because its file is gone."""
+        """Calls a function of the engine. For a scenario that is a dict, errors name only the field, because the
+        temporary file no longer exists."""
         try:
             return function(*arguments)
         except ScenarioError as error:
@@ -400,7 +406,7 @@ class _Scratch:
 
 
 def _name_files(part):
-    """Makes the paths in a scenario absolute: a field "file", wherever it stands, is one, and no other field is."""
+    """Makes the paths in a scenario absolute. Exactly the fields named "file", at any depth, hold paths."""
     for key, value in part.items() if isinstance(part, dict) else enumerate(part):
         if key == "file" and isinstance(value, str):
             part[key] = str(Path(value).absolute())
@@ -445,12 +451,12 @@ def _words(overrides):
 
 
 def _value(value):
-    """The word that --set takes for a value: text as it is, all else as JSON."""
+    """Returns the argument of --set for a value: a text unchanged, everything else as JSON."""
     return value if isinstance(value, str) else json.dumps(value, default=_plain)
 
 
 def _plain(value):
-    """Numbers and arrays of numpy, for JSON."""
+    """Converts numbers and arrays of numpy to values that JSON can hold."""
     return value.tolist()
 
 

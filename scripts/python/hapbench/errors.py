@@ -7,14 +7,15 @@ class InputError(Exception):
 
 
 class ResultError(InputError):
-    """A result file that is not there or cannot be understood."""
+    """A result file that is missing or that cannot be parsed."""
 
 
 class ScenarioError(InputError):
-    """A scenario or an argument that the engine refuses: the message stands for the first of `faults`.
+    """A scenario or an argument that the engine rejects. The message describes the first of `faults`.
 
-    `file` is the scenario's file ("" for none), `pointer` the JSON pointer of the field ("" for the whole), `problem`
-    what is wrong with it and what is allowed, `nearest` the valid name nearest to the one given, or None.
+    `file` is the scenario's file ("" for none), `pointer` the JSON pointer of the field ("" for the whole scenario),
+    `problem` states what is wrong and what is allowed, and `nearest` is the valid name that is most similar to the
+    given name, or None.
     """
 
     def __init__(self, faults):

@@ -13,7 +13,7 @@ _ARGUMENTS = ("depths", "gradients", "points", "normals", "stiffness")
 
 @dataclass(frozen=True)
 class Parameter:
-    """A parameter of a law: what scenarios may set as rendering.parameters.LAW.NAME."""
+    """A parameter of a law, which scenarios set as rendering.parameters.LAW.NAME."""
 
     default: float
     least: float
@@ -105,7 +105,7 @@ def _arguments(name, law, own):
 
 
 def _origin(law):
-    """The file and the text of a law, for the provenance of results."""
+    """Returns the file and the source text of a law, for the provenance of results."""
     try:
         return Path(inspect.getsourcefile(law) or "").name or "Python", inspect.getsource(law)
     except (OSError, TypeError):

@@ -1,4 +1,4 @@
-"""Figures of results: those of `hapbench plot`, as matplotlib's Figure."""
+"""Figures of results: the pictures of `hapbench plot` as matplotlib Figures."""
 import argparse
 import json
 import tempfile
@@ -25,7 +25,7 @@ def plot(
     where: str | Iterable[str] = (),
     width: str = "double",
 ) -> Any:
-    """The figure that `hapbench plot` draws of a result. Options as those of the command."""
+    """Returns the figure that `hapbench plot` draws of a result. The options are the options of the command."""
     if width not in WIDTHS:
         raise ValueError(f"width: got {width!r}; allowed: {', '.join(WIDTHS)}")
     find_packages()
@@ -48,7 +48,7 @@ def plot(
 
 
 def plot_table(table: "Table", y: Iterable[str], x: str | None, width: str) -> Any:
-    """Columns of a table over another one."""
+    """Draws columns of a table over another column."""
     if width not in WIDTHS:
         raise ValueError(f"width: got {width!r}; allowed: {', '.join(WIDTHS)}")
     find_packages()
@@ -61,7 +61,7 @@ def plot_table(table: "Table", y: Iterable[str], x: str | None, width: str) -> A
         raise ValueError(f"{table.name} has no column of numbers")
     x = x or ("time_s" if "time_s" in of_numbers else of_numbers[0])
     others = [name for name in of_numbers if name != x and name != "step"]
-    # Without names: the columns that share the first one's unit.
+    # Without names, draw the columns that have the same unit as the first column.
     shown = list(y) or [n for n in others if table.units[n] == table.units[others[0]]]
     units = {table.units[name] for name in shown}
 
@@ -89,12 +89,13 @@ def _names(given: str | Iterable[str]) -> list[str]:
 
 
 def _import_pyplot() -> None:
-    """The pictures choose a backend without windows unless pyplot is there already: a notebook has chosen its own."""
+    """Imports pyplot. The pictures choose a backend without windows, unless pyplot is already imported: a notebook has
+    then chosen its own backend."""
     import matplotlib.pyplot  # noqa: F401
 
 
 def _for_notebooks(draw: Callable[[], Any]) -> Any:
-    """A figure that a notebook shows once, where it is the value of a cell."""
+    """Draws a figure that a notebook shows exactly once, as the value of a cell."""
     from hapbench_style import SCREEN_DPI, picture, plt
 
     figure = draw()
@@ -104,7 +105,7 @@ def _for_notebooks(draw: Callable[[], Any]) -> Any:
 
 
 def _write(run: "Run", folder: Path) -> Path:
-    """Writes the files of a run in memory that pictures read."""
+    """Writes those files of a run in memory that the pictures read."""
     if run.trials:
         raise ValueError(
             f"{run.name} has {len(run.trials)} trials; allowed: a table of one, as run.trials[0].trajectory.plot()"

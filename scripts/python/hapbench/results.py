@@ -1,4 +1,4 @@
-"""Results: of a run, of a folder of them, and single files below a folder. Needs no compiled module."""
+"""Results: a run, a folder of runs, and single files below a folder. Does not need the compiled module."""
 import html
 import json
 import math
@@ -19,7 +19,7 @@ KINDS = {dict: "an object", list: "an array", str: "a string"}
 
 
 def read_json(file, **how):
-    """The content of a JSON file; `how` as of json.loads. Raises ResultError."""
+    """Returns the content of a JSON file; `how` are keyword arguments of json.loads. Raises ResultError."""
     try:
         return json.loads(file.read_text(encoding="utf-8"), **how)
     except (OSError, UnicodeDecodeError) as error:
@@ -29,7 +29,7 @@ def read_json(file, **how):
 
 
 def read_object(file, **how):
-    """An object; `how` as of json.loads. Raises ResultError."""
+    """Returns the object in a JSON file; `how` are keyword arguments of json.loads. Raises ResultError."""
     value = read_json(file, **how)
     if not isinstance(value, dict):
         raise ResultError(f"{file}: /: got {shown(value)}; allowed: an object")
@@ -42,7 +42,8 @@ def shown(value):
 
 
 def member(value, key, kind, file, place="", default=None):
-    """value[key], which must be of that kind (object, array, string) where it is there. Raises ResultError."""
+    """Returns value[key], or `default` if the key is missing. Raises ResultError if the member is not of this kind
+    (object, array, string)."""
     found = value.get(key, default)
     if found is not default and not isinstance(found, kind):
         raise ResultError(f"{file}: {place}/{key}: got {shown(found)}; allowed: {KINDS[kind]}")
@@ -50,7 +51,7 @@ def member(value, key, kind, file, place="", default=None):
 
 
 def objects(value, key, file):
-    """The array of objects value[key]; empty where it is absent."""
+    """Returns value[key], which must be an array of objects; empty if the key is missing."""
     found = member(value, key, list, file, default=[])
     for i, entry in enumerate(found):
         if not isinstance(entry, dict):
@@ -59,7 +60,7 @@ def objects(value, key, file):
 
 
 def at(value, pointer):
-    """The value that a JSON pointer names, or None."""
+    """Returns the value at a JSON pointer, or None."""
     for key in pointer.strip("/").split("/"):
         if isinstance(value, list):
             value = value[int(key)] if key.isdecimal() and int(key) < len(value) else None
@@ -69,7 +70,7 @@ def at(value, pointer):
 
 
 def objects_in(value):
-    """Every object in a value of JSON, itself first."""
+    """Yields every object in a JSON value, outermost first."""
     if isinstance(value, dict):
         yield value
     for part in (
@@ -79,7 +80,7 @@ def objects_in(value):
 
 
 def number_or_none(value):
-    """A finite number, else None. Booleans are not numbers here."""
+    """Returns a finite number unchanged, and None for anything else. A boolean is not a number."""
     if isinstance(value, bool) or not isinstance(value, (int, float)):
         return None
     try:
@@ -89,7 +90,7 @@ def number_or_none(value):
 
 
 class Tables(Mapping[str, Table]):
-    """Tables by name, each read when it is first asked for."""
+    """Tables by name; each table is read at its first use."""
 
     def __init__(self, readers: Mapping[str, Callable[[], Table]]) -> None:
         self._readers = {name: cache(read) for name, read in readers.items()}
@@ -105,7 +106,7 @@ class Tables(Mapping[str, Table]):
 
 
 class _WithTables:
-    """Tables as attributes: `run.trajectory` is `run.tables["trajectory"]`."""
+    """Base class that offers tables as attributes: `run.trajectory` is `run.tables["trajectory"]`."""
 
     tables: Mapping[str, Table]
 
@@ -126,12 +127,13 @@ class _WithTables:
 class Run(_WithTables):
     """One run.
 
-    `summary`, `scenario` (with every default filled in) and `timing` are dicts as in summary.json,
-    scenario.effective.json and timing.json. What the scenario records are tables: `trajectory`, and where it asks for
-    them `contacts`, `stiffness_tensor`, `ratios`, `energy`, `ideal_trajectory`, `force_reference`, `six_dof`, `targets`;
-    `tables` has them by name. Of a scenario of several trials, each of `trials` has its own tables. `folder`
-    is None for a run in memory, `unmet` says which expectations of its scenario a run in memory
-    missed."""
+    `summary`, `scenario` (with every default filled in) and `timing` are dicts, the contents of summary.json,
+    scenario.effective.json and timing.json. The recorded tables are attributes: `trajectory`, and if the scenario
+    requests them `contacts`, `stiffness_tensor`, `ratios`, `energy`, `ideal_trajectory`, `force_reference`, `six_dof`,
+    `targets`; `tables` has them by name. In a scenario with several trials, each element of `trials` has its own
+    tables. `folder` is None for a run in memory. `unmet` lists the expectations of the scenario that a run in memory
+    did not meet.
+    """
 
     def __init__(
         self,
@@ -161,7 +163,7 @@ class Run(_WithTables):
 
     @property
     def expected(self) -> bool:
-        """True when the run ended as its scenario expects."""
+        """True if the run ended as its scenario expects."""
         return bool(self.summary.get("expected"))
 
     @property
@@ -176,20 +178,20 @@ class Run(_WithTables):
 
     @property
     def state_hash(self) -> str | None:
-        """Over the bit patterns of position, velocity and force of every row: equal for runs that are the same."""
+        """Hash of the bit patterns of position, velocity and force in every row. Identical runs have equal hashes."""
         return self.summary.get("state_hash")
 
     def plot(
         self, y: str | Iterable[str] = (), metric: str | Iterable[str] = (), width: str = "double"
     ) -> Any:
-        """The matplotlib Figure that `hapbench plot` draws of this run. `y`: quantities, `metric`: metrics, `width`:
-        "single" or "double" column of a journal, or "slide"."""
+        """Returns the matplotlib Figure that `hapbench plot` draws of this run. `y`: quantities, `metric`: metrics,
+        `width`: "single" or "double" column of a journal, or "slide"."""
         from .pictures import plot
 
         return plot(self, metric=metric, y=y, width=width)
 
     def _repr_html_(self) -> str:
-        """Outcome, metrics with units and warnings for a notebook."""
+        """Returns outcome, metrics with units, and warnings as HTML for a notebook."""
         rows = "".join(
             f"<tr><td>{html.escape(name)}</td><td>{value:.5g}</td><td>{html.escape(unit_of(name))}</td></tr>"
             for name, value in self.metrics.items()
@@ -222,9 +224,11 @@ class Run(_WithTables):
 
 
 class Folder(_WithTables):
-    """A folder that sweep, compare, limit … wrote: `tables` of its CSV files by their paths, those of its runs
-    aside, `runs` below it by theirs, `json` of its other files. `folder.sweep` is the table of sweep.csv. A comparison of
-    several scenarios has a table for each; `folder.comparison` joins them, with a column for the scenario.
+    """A folder that a command such as sweep, compare or limit wrote.
+
+    `tables` has its CSV files by path, without the files of its runs. `runs` has the runs below it by path. `json` has
+    its other files. `folder.sweep` is the table of sweep.csv. A comparison of several scenarios has a table for each
+    scenario; `folder.comparison` joins these tables and adds a column for the scenario.
     """
 
     def __init__(self, folder: str | os.PathLike[str]) -> None:
@@ -250,7 +254,8 @@ class Folder(_WithTables):
             file.parent.relative_to(self.folder).as_posix(): load_run(file.parent) for file in files
         }
         for run in found.values():
-            run.part_of = self  # whose files may go with it
+            # Keeps this folder alive, because its files may be deleted with this object.
+            run.part_of = self
         return found
 
     @cached_property
@@ -264,14 +269,16 @@ class Folder(_WithTables):
         where: str | Iterable[str] = (),
         width: str = "double",
     ) -> Any:
-        """The matplotlib Figure that `hapbench plot` draws of this folder. `metric`: metrics by law, or of a sweep one
-        column; `y`: quantities over time; `where`: rows of a sweep; `width` as of Run.plot."""
+        """Returns the matplotlib Figure that `hapbench plot` draws of this folder. `metric`: metrics by law, or one
+        column of a sweep; `y`: quantities over time; `where`: rows of a sweep; `width` as of Run.plot.
+        """
         from .pictures import plot
 
         return plot(self, metric=metric, y=y, where=where, width=width)
 
     def _repr_html_(self) -> str:
-        """For a notebook: the ranking or else the first table, and the names of the others."""
+        """Returns the ranking, or the first table if there is no ranking, and the names of the other tables, as HTML
+        for a notebook."""
         first = next(
             (name for name in (RANKING, COMPARISON, *self.tables) if name in self.tables), None
         )
@@ -286,7 +293,8 @@ class Folder(_WithTables):
 
 
 def load(folder: str | os.PathLike[str]) -> "Run | Folder":
-    """Reads a folder of results: a Run, or else a Folder of tables and runs. Raises ResultError."""
+    """Reads a folder of results. Returns a Run if the folder holds a run, else a Folder of tables and runs. Raises
+    ResultError."""
     folder = Path(folder)
     if not folder.is_dir():
         raise ResultError(
@@ -301,7 +309,7 @@ def load(folder: str | os.PathLike[str]) -> "Run | Folder":
 
 
 def load_run(folder, kind=Run):
-    """The run of one folder, of a class derived from Run."""
+    """Returns the run in a folder as an object of the class `kind`, which is Run or derived from Run."""
     folder = Path(folder)
     trials = sorted(
         folder.glob("subject_*_trial_*"),
@@ -339,7 +347,8 @@ def _tables_of(folder, described=None):
 
 
 def _columns_of(file):
-    """What `hapbench describe` says of the columns of a file with this name; nothing without the compiled module."""
+    """Returns what `hapbench describe` says about the columns of a file with this name; an empty list without the
+    compiled module."""
     try:
         from .engine import columns_of
     except ImportError:
@@ -348,8 +357,8 @@ def _columns_of(file):
 
 
 def _reader(file, described=None):
-    """`described`: entries of the columns with name, unit and meaning, or a function of the file that returns them for a
-    table which may have texts."""
+    """Returns a function that reads a table. `described`: name, unit and meaning of each column, or a function of the
+    file that returns them; the table may then contain texts."""
 
     def read():
         if not described or callable(described):
@@ -380,12 +389,12 @@ def _optional(file):
 
 
 class MissingResult(Exception):
-    """A file that is not there."""
+    """Raised if a result file does not exist."""
 
 
 class Files:
-    """Tables and JSON files below a directory, by their paths. `sources` are those that were read
-    since it was emptied."""
+    """Tables and JSON files below a directory, by path. `sources` are the files that were read since `sources` was last
+    cleared."""
 
     def __init__(self, directory):
         self.directory, self.sources = Path(directory), set()
@@ -414,4 +423,5 @@ class Files:
         return read(self.directory / path)
 
 
-_columns = lru_cache(maxsize=16)(read_columns)  # several figures show one table
+# Cached, because several figures draw the same table.
+_columns = lru_cache(maxsize=16)(read_columns)

@@ -1,4 +1,4 @@
-"""A table of results, and the units of columns by their names."""
+"""A table of results, and the units of its columns, which follow from the names of the columns."""
 import html
 import textwrap
 from collections.abc import ItemsView, Iterable, Iterator, KeysView, Mapping, ValuesView
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 Column = npt.NDArray[Any]
 
-# Ending of a name -> unit; the longest that fits.
+# Units by ending of a name; the longest ending that fits decides.
 UNITS = {
     "N_per_m": "N/m",
     "N_s_per_m": "N s/m",
@@ -35,25 +35,28 @@ UNITS = {
     "bytes": "bytes",
 }
 MOST_NAMED = 16
-MOST_PRINTED, WIDEST = 20, 100  # rows and characters of a printed table
+# Largest numbers of rows and of characters per line in a printed table.
+MOST_PRINTED, WIDEST = 20, 100
 
 
 def ending_of(name: str) -> str:
-    """The end of a name that says its unit, "" where it has none."""
+    """Returns the ending of a name that states its unit; "" if it has no such ending."""
     return max((ending for ending in UNITS if name.endswith("_" + ending)), key=len, default="")
 
 
 def unit_of(name: str) -> str:
-    """The unit of a column, "" where its name says none."""
+    """Returns the unit of a column by its name; "" if the name states no unit."""
     return UNITS.get(ending_of(name), "")
 
 
 class Table(Mapping[str, Column]):
-    """Columns by name: numpy arrays of float64, NaN where a field is empty; in some tables of sweeps, of texts.
+    """Columns by name: numpy arrays of float64, in which an empty field is NaN. Some tables of sweeps have columns of
+    texts.
 
-    `units` and `meanings` have an entry for each column as far as they are known. `table["time_s"]` and `table.time_s`
-    are the same column. `len(table)` is the number of rows, `to_pandas()` a DataFrame. A notebook shows the first rows
-    with units."""
+    `units` and `meanings` have an entry for each column whose unit or meaning is known. `table["time_s"]` and
+    `table.time_s` are the same column. `len(table)` is the number of rows, `to_pandas()` returns a DataFrame. A
+    notebook shows the first rows with units.
+    """
 
     def __init__(
         self,
@@ -106,7 +109,8 @@ class Table(Mapping[str, Column]):
         return len(next(iter(self._columns.values()), ()))
 
     def to_pandas(self) -> "pandas.DataFrame":
-        """A DataFrame with these columns. `frame.attrs["units"]` has the units, `frame.attrs["meanings"]` the meanings."""
+        """Returns a DataFrame with these columns. `frame.attrs["units"]` has the units, `frame.attrs["meanings"]` the
+        meanings."""
         import pandas
 
         frame = pandas.DataFrame(dict(self._columns))
@@ -114,13 +118,13 @@ class Table(Mapping[str, Column]):
         return frame
 
     def plot(self, *y: str, x: str | None = None, width: str = "double") -> Any:
-        """A matplotlib Figure of the columns `y` over the column `x` (default: the first column of numbers)."""
+        """Returns a matplotlib Figure of the columns `y` over the column `x` (default: the first column of numbers)."""
         from .pictures import plot_table
 
         return plot_table(self, y, x, width)
 
     def where(self, **chosen: object) -> "Table":
-        """The rows whose columns have these values: `table.where(algorithm="mean")`."""
+        """Returns the rows whose columns have these values: `table.where(algorithm="mean")`."""
         found = self
         for column, value in chosen.items():
             rows = found[column] == value
@@ -138,7 +142,7 @@ class Table(Mapping[str, Column]):
         return f"<{self.name}: {self.rows} rows of {', '.join(names[:MOST_NAMED])}{more}>"
 
     def __str__(self) -> str:
-        """The first rows, aligned, of as many columns as fit; below them what is left out."""
+        """Returns the first rows, aligned, with as many columns as fit, and a note about what was omitted."""
         shown, width = [], 0
         for name, values in self._columns.items():
             cells = [name, *map(_cell, values[:MOST_PRINTED])]
@@ -155,7 +159,7 @@ class Table(Mapping[str, Column]):
         return "\n".join(lines)
 
     def _repr_html_(self) -> str:
-        """The first rows for a notebook, with the units below the names of the columns."""
+        """Returns the first rows as HTML for a notebook, with the units below the names of the columns."""
         heads = "".join(
             f"<th title=\"{html.escape(self.meanings.get(name, ''))}\">{html.escape(name)}"
             + (f"<br><small>{html.escape(unit)}</small>" if unit not in ("", "1") else "")
@@ -173,8 +177,8 @@ class Table(Mapping[str, Column]):
 
 
 def joined(tables: Mapping[str, Table], column: str, name: str) -> Table:
-    """The rows of several tables below each other, after a first column with the key of each table. A table without a
-    column has NaN there."""
+    """Concatenates the rows of several tables. The first column holds the key of each table. If a table lacks a column,
+    its rows have NaN in this column."""
     names = list(dict.fromkeys(own for table in tables.values() for own in table))
     keys = [key for key, table in tables.items() for _ in range(len(table))]
     columns: dict[str, Column] = {column: np.array(keys, dtype=object)}
@@ -186,7 +190,7 @@ def joined(tables: Mapping[str, Table], column: str, name: str) -> Table:
 
 
 def _cell(value: Any) -> str:
-    """A number in short, a count in full, nothing for NaN."""
+    """Formats a number with few digits, an integer with all digits, and NaN as an empty text."""
     if isinstance(value, str):
         return value
     return (

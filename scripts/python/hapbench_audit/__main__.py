@@ -1,4 +1,4 @@
-"""python -m hapbench_audit WORDS…; the program calls it for `hapbench audit`: what a log of any engine shows."""
+"""python -m hapbench_audit WORDS…: analyses a log of any engine. The program calls it for `hapbench audit`."""
 import sys
 from pathlib import Path
 
@@ -28,8 +28,8 @@ NOTES = [
     'engine gives to the hand; the largest sum is the net created energy. "Along the path" the force changes '
     "linearly between rows, without the effect of holding it. The error follows from the resolution of the log.",
     "Contacts: from touch to release. The first 0.05 s are a landing, the rest is settled contact, as in `run`.",
-    "Stiffness: regression of the force on position and velocity, along the normal of the surface, over delays of whole "
-    "rows; the weighted median of the contacts. Where the log does not determine a number, it is not stated.",
+    "Stiffness: regression of the force on position and velocity, along the normal of the surface, over delays of "
+    "whole rows; the weighted median of the contacts. Where the log does not determine a number, it is not stated.",
     "Expectations: any number of audit.json, such as energy_mJ=1, force_rms_above_30Hz_N=0.1 or "
     "stiffness_N_per_m=900:1100.",
     "Files: audit.json, audit.svg and audit.html in results/out/audit_LOG. They replace earlier ones.",
@@ -101,7 +101,7 @@ def command_line():
 
 
 def run(options):
-    # These modules load numpy, scipy and matplotlib, which the help does without.
+    # Imported here, because these modules load numpy, scipy and matplotlib, which the help does not need.
     import json
 
     from hapbench_import.stroke import columns_text

@@ -1,5 +1,5 @@
-"""The audit of a log: numbers of clock, energy, force and stiffness, the limit of a device, diagnosis, and what is
-missing."""
+"""The audit of a log: metrics of clock, energy, force and stiffness, the limit of a device, the diagnosis, and the
+quantities that the log does not determine."""
 import numpy as np
 from hapbench_import.stroke import likely_unit
 
@@ -14,7 +14,7 @@ from .stiffness import FEWEST, evidence_of, springs_of
 
 
 def audit_log(log, device=None):
-    """(numbers for the JSON, Contacts, spectrum). `device`: a preset or FILE.json."""
+    """Returns (numbers for the JSON, Contacts, spectrum). `device`: a preset or FILE.json."""
     contacts = contacts_of(log)
     clock, port = clock_of(log), Port(log, contacts)
     force, spectrum = force_of(log, contacts), spectrum_of(log, contacts)
@@ -43,12 +43,13 @@ def audit_log(log, device=None):
 
 
 def loop_interval(log):
-    """Seconds from one new position or force to the next: the period of a loop slower than the log."""
+    """Returns the mean time between two new positions or forces [s]: the period of the loop if the loop is slower than
+    the log."""
     return log.interval * max([1.0] + [one.rows for one in (log.held, log.held_force) if one])
 
 
 def energy_by_contact(log, contacts, every):
-    """Means over the contacts, and the contact that created the most."""
+    """Returns the mean energies over the contacts, and the contact that created the most energy."""
     known = [one for one in every if one["created_J"] is not None]
     seconds = contacts.in_contact.sum() * log.interval
     created = sum(one["created_J"] for one in known)
@@ -62,7 +63,7 @@ def energy_by_contact(log, contacts, every):
 
 
 def each_contact(log, contacts):
-    """Time, force and spring of each contact."""
+    """Returns time, force and spring of each contact."""
     found = []
     for first, after in contacts.runs.tolist():
         rows = np.arange(first, after)
@@ -80,8 +81,8 @@ def each_contact(log, contacts):
 
 
 def with_springs(log, contacts, every):
-    """Adds `spring` to the numbers of each contact and returns the spring of the log, or None. Of contacts that are too
-    short, all rows of the longest stretch of contacts determine it."""
+    """Adds `spring` to the numbers of each contact and returns the spring of the log, or None. If the contacts are too
+    short, the rows of the longest stretch of contacts determine the spring together."""
     evidences = [
         evidence_of_run(log, contacts, np.arange(first, after)) if after - first >= FEWEST else None
         for first, after in contacts.runs.tolist()
@@ -114,13 +115,14 @@ def has_stiffness(spring):
 
 
 def stiffness_range(every):
-    """Smallest and largest stiffness of contacts that determine it."""
+    """Returns the smallest and largest stiffness of the contacts that determine a stiffness."""
     values = [one["spring"]["stiffness_N_per_m"] for one in every if has_stiffness(one["spring"])]
     return [min(values), max(values)] if values else None
 
 
 def measured_lag(log, contacts):
-    """How a measured force follows the commanded one: delay in rows by the largest correlation, and gain."""
+    """Compares a measured force with the commanded force. Returns the delay in rows, at which the correlation is
+    largest, and the gain."""
     if log.measured is None or not contacts.in_contact.any():
         return None
     a, b = log.force - log.force.mean(axis=0), log.measured - log.measured.mean(axis=0)
@@ -134,7 +136,7 @@ def measured_lag(log, contacts):
 
 
 def doubts(log, audit):
-    """Warnings about units and signs."""
+    """Returns warnings about units and signs that are probably wrong."""
     found = []
     speeds = np.linalg.norm(np.diff(log.position, axis=0), axis=1) / np.diff(log.time)
     fast = float(np.percentile(speeds, 90))
@@ -164,7 +166,7 @@ def disagreement(springs):
         return []
     ends = np.array([one["stiffness_interval"] for one in springs])
     values = [one["stiffness_N_per_m"] for one in springs]
-    # The share of the stiffness that is of no interest, such as the effect of the sampling of a velocity.
+    # Relative differences of the stiffness below this are ignored, such as the effect of the sampling of a velocity.
     share = 0.02
     common = max(
         np.sum((ends[:, 0] <= (1.0 + share) * x) & (x * (1.0 - share) <= ends[:, 1]))
@@ -173,31 +175,15 @@ def disagreement(springs):
     if common > 0.75 * len(springs):
         return []
     return [
-        f"the contacts disagree by more than their intervals: {min(values):.4g} to {max(values):.4g} N/m. The stiffness "
-        "is not linear, or the tool touches several surfaces; audit.json has each contact"
+        f"the contacts disagree by more than their intervals: {min(values):.4g} to {max(values):.4g} N/m. The "
+        "stiffness is not linear, or the tool touches several surfaces; audit.json has each contact"
     ]
 
 
 def missing(log, audit, device):
-    """What the log cannot show, and what would."""
-    found = []
-    if not len(audit["contacts"]):
-        found.append("contact: no row has a force")
-    if audit["stiffness"] is None and audit["contacts"]:
-        whys = [
-            one["spring"]["why"]
-            for one in audit["contacts"]
-            if one["spring"] and "why" in one["spring"]
-        ]
-        why = whys[0] if whys else f"no contact has {FEWEST} rows"
-        found.append(f"stiffness: {why}; tap, and press to several depths at several speeds")
-    elif audit["stiffness"] and audit["stiffness"].get("why_no_damping"):
-        found.append(
-            f"damping: {audit['stiffness']['why_no_damping']}; taps and quick presses, more digits, or a column of "
-            "velocities"
-        )
-    elif audit["stiffness"] and audit["stiffness"]["delay_s"] is None:
-        found.append("delay: the log does not separate it from damping; taps and quick presses")
+    """Returns what the log cannot determine, and which column or test would determine it."""
+    found = [] if len(audit["contacts"]) else ["contact: no row has a force"]
+    found += missing_of_spring(audit)
     if device is None:
         found.append("whether the device can render this stiffness: --device FILE.json or a preset")
     elif audit["device"] is None:
@@ -226,3 +212,23 @@ def missing(log, audit, device):
     if audit["clock"]["rate_Hz"] <= 60.0:
         found.append("vibration above 30 Hz: a log of more than 60 Hz")
     return found
+
+
+def missing_of_spring(audit):
+    """Returns which of stiffness, damping and delay the log does not determine, and what would determine it."""
+    if audit["stiffness"] is None and audit["contacts"]:
+        whys = [
+            one["spring"]["why"]
+            for one in audit["contacts"]
+            if one["spring"] and "why" in one["spring"]
+        ]
+        why = whys[0] if whys else f"no contact has {FEWEST} rows"
+        return [f"stiffness: {why}; tap, and press to several depths at several speeds"]
+    if audit["stiffness"] and audit["stiffness"].get("why_no_damping"):
+        return [
+            f"damping: {audit['stiffness']['why_no_damping']}; taps and quick presses, more digits, or a column of "
+            "velocities"
+        ]
+    if audit["stiffness"] and audit["stiffness"]["delay_s"] is None:
+        return ["delay: the log does not separate it from damping; taps and quick presses"]
+    return []

@@ -3,11 +3,12 @@ import numpy as np
 
 from .log import LONG_INTERVALS
 
-JITTER = 0.05  # of the interval, standard deviation: above, the clock is warned about
+# Standard deviation, relative to the interval, above which the clock causes a warning.
+JITTER = 0.05
 
 
 def clock_of(log):
-    """A dictionary of numbers."""
+    """Returns the numbers of the clock as a dictionary."""
     steps, interval = np.diff(log.time), log.interval
     missing = np.maximum(np.rint(steps / interval).astype(int) - 1, 0)
     usual = steps[missing == 0]

@@ -1,26 +1,32 @@
-"""Contacts of a log, from touch to release, and the rows of landings and of settled contact as `run` has them."""
+"""Contacts of a log, from touch to release, and the rows of landings and of settled contact by the rules of `run`."""
 from dataclasses import dataclass
 
 import numpy as np
 
 from .log import LONG_INTERVALS
 
-SETTLING = 0.05  # [s], as metrics.settling_s of a scenario
-SOME_ZEROS = 0.01  # share of rows without force from which any force is a contact
-TOUCH_SHARE = 0.05  # of the 99th percentile of the force; where the force is never zero
+SETTLING = 0.05  # [s], default of metrics.settling_s of a scenario
+# If at least this fraction of the rows has exactly zero force, every other row is in contact.
+SOME_ZEROS = 0.01
+# Threshold of contact relative to the 99th percentile of the force; used if the force is hardly ever zero.
+TOUCH_SHARE = 0.05
 
 
 @dataclass
 class Contacts:
-    in_contact: np.ndarray  # by row
-    runs: np.ndarray  # first row, and row after the last, of each contact
-    stretches: list  # (first, after the last) contact of contacts that follow each other within SETTLING
-    landings: np.ndarray  # first rows of contacts after at least SETTLING without contact
-    landing: np.ndarray  # by row: within SETTLING of a landing
-    settled: np.ndarray  # by row: in contact, and no landing
-    touch_N: float  # force from which a row is in contact; 0: any force, or the log counts contacts
-    rule: str  # how contact was found
-    gap: np.ndarray  # by interval: so long that a contact ends in it
+    in_contact: np.ndarray  # for each row
+    runs: np.ndarray  # for each contact, the first row and the row after the last
+    # (first contact, contact after the last) of each sequence of contacts separated by less than SETTLING
+    stretches: list
+    # First row of each contact that begins after at least SETTLING without contact.
+    landings: np.ndarray
+    landing: np.ndarray  # for each row, true if it is within SETTLING of a landing
+    settled: np.ndarray  # for each row, true if it is in contact and not part of a landing
+    # Force above which a row is in contact [N]; 0 if any force counts, or if the log counts contacts.
+    touch_N: float
+    rule: str  # how contact was detected, in words
+    # For each interval between rows, true if it is so long that a contact ends in it.
+    gap: np.ndarray
 
     @property
     def lost(self):
@@ -29,7 +35,7 @@ class Contacts:
 
 
 def contacts_of(log):
-    """Contacts by Log.touch, or as the log shows."""
+    """Finds the contacts by Log.touch, or by the rule that fits the log."""
     size = np.linalg.norm(log.force, axis=1)
     in_contact, threshold, rule = rows_in_contact(log, size)
     interval = log.interval
@@ -38,7 +44,7 @@ def contacts_of(log):
     settling = round(SETTLING / interval)
     landings, stretches, before = [], [], -settling - 1
     for number, (first, after) in enumerate(runs.tolist()):
-        # After a gap of the clock the rows say nothing about the time without contact.
+        # After a gap of the clock, the time without contact is unknown.
         away = first - before if before >= 0 else settling
         new = away >= settling and (away > 0 or number == 0)
         if new or gap[before - 1 : first].any():
@@ -65,7 +71,7 @@ def contacts_of(log):
 
 
 def rows_in_contact(log, size):
-    """(in contact by row, threshold [N], the rule in words)."""
+    """Returns (in contact by row, threshold [N], the rule in words)."""
     if log.touch is not None:
         return size > log.touch, log.touch, f"force above {log.touch:g} N (touch_N)"
     if log.contacts is not None:
@@ -82,7 +88,7 @@ def rows_in_contact(log, size):
 
 
 def runs_of(flags, gap):
-    """First row, and row after the last, of each run of True; a gap between two rows ends a run."""
+    """Returns the first row, and the row after the last, of each run of True. A gap between two rows ends a run."""
     edges = np.diff(np.concatenate([[False], flags, [False]]).astype(int))
     starts, ends = np.flatnonzero(edges == 1), np.flatnonzero(edges == -1)
     cuts = np.flatnonzero(gap & flags[1:] & flags[:-1]) + 1

@@ -1,16 +1,16 @@
-"""The rendered stiffness against the linear limit of a device, which the program computes."""
+"""Compares the rendered stiffness with the linear limit of a device, which the program computes."""
 import json
 
 import numpy as np
 from hapbench_command import asked_of_program
 
-MOST_DELAYS = 5  # that are compared
+MOST_DELAYS = 5  # largest number of delays for which the limit is computed
 
 
 def device_limit(device, interval, contact):
-    """Limit and frequency of the loop of the device [SI units] at the period `interval` [s] with the contact's
-    stiffness, damping and delay, and the range of the limit over the dampings and delays that the log allows; None if
-    the contact has no stiffness. Where the log does not determine damping or delay, the limit itself is None.
+    """Returns limit and frequency of the loop of the device [SI units] at the period `interval` [s], with the contact's
+    stiffness, damping and delay, and the range of the limit over the dampings and delays that the log allows. Returns
+    None if the contact has no stiffness. If the log does not determine damping or delay, the limit itself is None.
     """
     if not contact:
         return None
@@ -67,7 +67,7 @@ def device_limit(device, interval, contact):
 
 
 def loop_of(device, interval, stiffness, damping, delay):
-    """The loop of the device at a wall."""
+    """Returns the closed loop of the device at a wall."""
     answer = asked_of_program(
         "knows devices and their linear limits",
         "audit",

@@ -1,4 +1,4 @@
-"""What is wrong, in the words and with the thresholds of the diagnosis of `run`, and what to try in another engine."""
+"""The diagnosis of a log, with the texts and thresholds of the diagnosis of `run`, and advice for another engine."""
 import json
 from functools import lru_cache
 
@@ -7,22 +7,24 @@ from hapbench_command import asked_of_program
 
 from .text import HAMMERS, expected_text
 
-AT_LIMIT = 0.999  # of the largest force
-CONSTANT = 0.9  # share of the rows at the largest force from which the force is constant
-FLAT = 20  # rows at the largest force from which it is a limit
-HAS_BUZZ = 0.1  # of the mean force; as in the rule "edge" of the program
+AT_LIMIT = 0.999  # fraction of the largest force from which a row counts as saturated
+CONSTANT = 0.9  # fraction of the rows at the largest force from which the force counts as constant
+FLAT = 20  # number of rows at the largest force from which this force counts as a limit
+# Vibration relative to the mean force; the threshold of the rule "edge" of the program.
+HAS_BUZZ = 0.1
 GAIN_MARGIN = 2.0
 
 
 @lru_cache
 def rules():
-    """Rules of the program by name: number, unit, threshold and says (with {} for the number)."""
+    """Returns the rules of the program by name: number, unit, threshold, and sentence `says` (with {} for the
+    number)."""
     answer = asked_of_program("has the rules of the diagnosis", "describe", "diagnosis", "--json")
     return {rule["rule"]: rule for rule in json.loads(answer)}
 
 
 class Findings:
-    """Rules whose number is above the threshold, in the order of the program."""
+    """The rules whose number is above the threshold, in the order of the program."""
 
     def __init__(self):
         self._found = {}
@@ -50,7 +52,7 @@ def share(value, of):
 
 
 def findings_of(log, contacts, audit):
-    """The list for the JSON. `audit`: what was measured so far."""
+    """Returns the findings as a list for the JSON. `audit`: the numbers measured so far."""
     found, force = Findings(), audit["metrics"]
     mean, device = force["force_mean_in_contact_N"], audit["device"]
     vibration = share(force["force_rms_above_30Hz_N"], mean)
@@ -184,11 +186,11 @@ def against_encoder(audit):
 
 
 def saturated_share(log, contacts):
-    """Share of the rows in contact at the largest force; None if too few rows are there to be a limit, or if nearly
-    all are there: the force is then constant."""
+    """Returns the fraction of the rows in contact that have the largest force. Returns None if too few rows have it, so
+    that it is not a limit, or if nearly all have it, so that the force is constant."""
     size = np.linalg.norm(log.force, axis=1)
     at = contacts.in_contact & (size >= AT_LIMIT * size.max())
-    # A limit cuts peaks flat: consecutive rows have the same force.
+    # A limit cuts off peaks: consecutive rows then have the same force.
     flat = at[1:] & at[:-1] & (np.abs(np.diff(size)) <= 1e-6 * size.max())
     part = share(float(at.sum()), float(contacts.in_contact.sum()))
     return part if flat.sum() >= FLAT and part < CONSTANT else None
@@ -208,7 +210,7 @@ def lag_text(stiffness):
 
 
 def half_hold(stiffness, interval):
-    """Damping that pays for the energy which holding the force of a spring over an interval creates [N s/m]."""
+    """Returns the damping that dissipates the energy created by holding a spring force over an interval [N s/m]."""
     return 0.5 * stiffness["stiffness_N_per_m"] * interval
 
 

@@ -13,7 +13,7 @@ class Port:
         moved[contacts.gap] = 0.0
         self.held = work(f[:-1], moved)
         self.path = work(0.5 * (f[:-1] + f[1:]), moved)
-        # Positions are off by at most half their resolution, and so are forces.
+        # The error of a position is at most half its resolution, and so is the error of a force.
         changes = np.abs(np.diff(f, axis=0, prepend=np.zeros((1, 3))))
         self._of_positions = np.append(changes @ (0.5 * log.quantum_m), 0.0)
         self._of_forces = np.append(np.abs(moved) @ (0.5 * log.quantum_N), 0.0)
@@ -35,8 +35,8 @@ def work(force, way):
 
 
 def stored_at(log, contacts, row, spring):
-    """Energy that the spring stores where the log, or the clock after a gap, begins in contact [J]; 0 elsewhere, None
-    if the stiffness is unknown."""
+    """Returns the energy stored in the spring at a row where the log, or the clock after a gap, begins in contact [J].
+    Returns 0 for other rows, and None if the stiffness is unknown."""
     if not contacts.in_contact[row] or (row > 0 and not contacts.gap[row - 1]):
         return 0.0
     stiffness = (spring or {}).get("stiffness_N_per_m", 0.0)
@@ -44,12 +44,13 @@ def stored_at(log, contacts, row, spring):
 
 
 def created(given, stored):
-    """Energy that was given beyond what was stored at the start; None if that is unknown."""
+    """Returns the energy given to the hand beyond the energy stored at the start; None if the stored energy is
+    unknown."""
     return None if stored is None else float(max(given.max() - stored, 0.0))
 
 
 def energy_of(log, port, stored):
-    """Numbers of the whole log. `stored`: stored_at() the first row."""
+    """Returns the numbers of the whole log. `stored`: stored_at() the first row."""
     held = np.concatenate([[0.0], np.cumsum(port.held)])
     path = np.concatenate([[0.0], np.cumsum(port.path)])
     worst = int(np.argmax(held))
@@ -68,11 +69,11 @@ def energy_of(log, port, stored):
 
 
 def contact_energy(port, first, after, stored):
-    """Numbers of one contact. Work that it has given at any time, beyond the energy `stored` at its start, is
-    created."""
+    """Returns the numbers of one contact. If the work given to the hand exceeds the energy `stored` at the start at any
+    time, the excess is created energy."""
     last = min(after, len(port.held))
     given = np.cumsum(port.held[first:last]) if last > first else np.zeros(1)
-    # The path begins and ends outside, where the force is zero.
+    # The path begins and ends outside of the contact, where the force is zero.
     path = np.cumsum(port.path[max(first - 1, 0) : last]) if last > first else np.zeros(1)
     return {
         "work_J": float(given[-1]),

@@ -1,11 +1,11 @@
-"""Bounds on the numbers of an audit, for a check in somebody's continuous integration."""
+"""Bounds on the numbers of an audit, for checks in continuous integration."""
 import math
 
 from hapbench_command import fail, finite_number, quoted, require_name
 
 
 def metrics_of(audit):
-    """All numbers of an audit by name; None without a value."""
+    """Returns all numbers of an audit by name; None for a number without a value."""
     found = {
         name: value
         for section in ("clock", "metrics", "energy")
@@ -27,7 +27,8 @@ def metrics_of(audit):
 
 
 def expectations(words, audit):
-    """Each bound "metric=max" or "metric=min:max" with the value and whether it is met. A missing value meets none."""
+    """Returns each bound "metric=max" or "metric=min:max" with the value and True if the bound is met. A missing value
+    does not meet a bound."""
     metrics, found = metrics_of(audit), []
     for word in words:
         name, equals, bound = word.partition("=")

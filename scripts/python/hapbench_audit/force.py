@@ -1,4 +1,4 @@
-"""Steps, vibration and frequencies of the force. Metrics have the names and definitions of `run`."""
+"""Steps, vibration and frequencies of the force. The metrics have the names and definitions of `run`."""
 import math
 
 import numpy as np
@@ -6,20 +6,21 @@ from scipy.signal import sosfilt
 
 from .contacts import SETTLING
 
-CUTOFF = 30.0  # of the high-pass [Hz], kVibrationCutoff of the program
-LEAST_SETTLED = 1.0 / CUTOFF  # [s]
-STEP_SHARE = 0.1  # of the mean force: steps above it are counted
+CUTOFF = 30.0  # cutoff of the high-pass filter [Hz]; equals kVibrationCutoff of the program
+LEAST_SETTLED = 1.0 / CUTOFF  # shortest settled contact that has metrics [s]
+STEP_SHARE = 0.1  # steps above this fraction of the mean force are counted
 MOST_PEAKS = 3
-SMALLEST_PEAK = 0.1  # of the amplitude of the strongest peak
-LOWEST_PEAK = 10.0  # [Hz]; voluntary motion of a hand is slower
-HARMONIC = 0.02  # relative: multiples of a stronger peak
-LEAST_PEAK = 0.01  # amplitude of the strongest peak, as a share of the mean force
-SHORTEST_SPECTRUM = 64  # rows
+SMALLEST_PEAK = 0.1  # smallest reported peak, relative to the amplitude of the strongest peak
+LOWEST_PEAK = 10.0  # lowest reported frequency [Hz]; voluntary motion of a hand is slower
+# Relative distance within which a frequency counts as a multiple of a stronger peak.
+HARMONIC = 0.02
+LEAST_PEAK = 0.01  # smallest reported amplitude of the strongest peak, relative to the mean force
+SHORTEST_SPECTRUM = 64  # smallest number of rows of a spectrum
 
 
 def high_pass(rate):
-    """Second-order sections of the Butterworth high-pass of order 4, prewarped, as class HighPass of the program; None
-    at 60 Hz or less."""
+    """Returns the second-order sections of a prewarped Butterworth high-pass of order 4, as class HighPass of the
+    program; None if the rate is 60 Hz or less."""
     if rate <= 2.0 * CUTOFF:
         return None
     k, sections = math.tan(math.pi * CUTOFF / rate), []
@@ -31,15 +32,15 @@ def high_pass(rate):
 
 
 def filtered(sections, values):
-    """The output for rows of components, started in the steady state of the first row."""
+    """Filters rows of components. The filter starts in the steady state of the first row."""
     state = np.zeros((2, 2, values.shape[1]))
     state[0, 0], state[0, 1] = -sections[0, 0] * values[0], sections[0, 0] * values[0]
     return sosfilt(sections, values, axis=0, zi=state)[0]
 
 
 def even(log, contacts):
-    """(force, settled rows, landing rows) at even times: as they are, or where the clock is not even or rows are
-    missing with the force on lines between rows."""
+    """Returns (force, settled rows, landing rows) at equidistant times. If the clock is irregular or rows are missing,
+    the force is interpolated linearly between rows."""
     interval, steps = log.interval, np.diff(log.time)
     if np.abs(steps - interval).max() <= 0.05 * interval:
         return log.force, contacts.settled, contacts.landing
@@ -94,7 +95,8 @@ def nearest_rank(values, fraction):
 
 
 def lost_per_s(log, contacts):
-    """Contacts that were lost for less than SETTLING, per second from touch to final release."""
+    """Returns the number of contacts that were lost for less than SETTLING, per second from first touch to final
+    release."""
     if not len(contacts.runs):
         return None
     seconds = sum(
@@ -124,7 +126,8 @@ def rms_above_cutoff(log, contacts):
 
 
 def longest_stretch(log, contacts):
-    """First row, and row after the last, of the longest time in contact; without landings where enough rows remain."""
+    """Returns the first row, and the row after the last, of the longest time in contact. Landings are excluded if
+    enough rows remain."""
     if not contacts.stretches:
         return None
     spans = [
@@ -137,8 +140,8 @@ def longest_stretch(log, contacts):
 
 
 def spectrum_of(log, contacts):
-    """(frequencies [Hz], amplitudes [N], duration [s]) of the force less its mean in the longest contact, with a Hann
-    window; None without enough rows."""
+    """Returns (frequencies [Hz], amplitudes [N], duration [s]) of the force minus its mean in the longest contact, with
+    a Hann window; None if there are too few rows."""
     span = longest_stretch(log, contacts)
     if span is None or span[1] - span[0] < SHORTEST_SPECTRUM:
         return None
@@ -156,18 +159,18 @@ def spectrum_of(log, contacts):
 
 
 def is_same(frequency, other, resolution):
-    """True for a frequency within the resolution of another, or of a multiple of it."""
+    """Returns True if a frequency equals another frequency, or a multiple of it, within the resolution."""
     times = max(round(frequency / other), 1)
     return abs(frequency - times * other) <= max(resolution, HARMONIC * frequency)
 
 
 def peaks_of(spectrum, mean):
-    """The strongest oscillations above LOWEST_PEAK, largest first: frequency and amplitude. A peak stands out from the
-    median of its neighbourhood by a factor of 4 and is no multiple of a stronger one."""
+    """Returns frequency and amplitude of the strongest oscillations above LOWEST_PEAK, largest first. A peak exceeds
+    the median of its neighbourhood by a factor of 4 and is no multiple of a stronger peak."""
     if spectrum is None or not mean:
         return []
     frequency, amplitude, seconds = spectrum
-    resolution = 4.0 / seconds  # width of a peak of the Hann window
+    resolution = 4.0 / seconds  # width of a peak with the Hann window [Hz]
     above = frequency > max(LOWEST_PEAK, resolution)
     top = np.r_[
         False, (amplitude[1:-1] > amplitude[:-2]) & (amplitude[1:-1] >= amplitude[2:]), False
@@ -183,7 +186,7 @@ def peaks_of(spectrum, mean):
         if is_peak and not any(
             is_same(frequency[i], one["frequency_Hz"], resolution) for one in found
         ):
-            # At half the rate both halves of the spectrum are one line.
+            # At half the sampling rate, positive and negative frequency coincide in one line.
             both = 0.5 if i == len(frequency) - 1 else 1.0
             found.append(
                 {"frequency_Hz": float(frequency[i]), "amplitude_N": float(both * amplitude[i])}

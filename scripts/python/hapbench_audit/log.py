@@ -1,4 +1,4 @@
-"""A log of any engine: times, positions and forces in SI units, and whatever else its columns hold."""
+"""A log of any engine: times, positions and forces in SI units, and the other quantities that its columns hold."""
 import re
 from dataclasses import dataclass, field
 from types import SimpleNamespace
@@ -12,11 +12,11 @@ from hapbench_import.recording import EXACT, Recording, open_recording
 from hapbench_import.samples import read_samples
 from hapbench_import.stroke import resolution_of
 
-FEWEST = 20  # samples
-LONG_INTERVALS = 10.0  # median intervals; a longer gap ends a contact
-LATEST_START = 1e6  # first time that is kept [s]
-FASTEST = 5.0  # of a hand [m/s]
-# Names of the first column of each quantity in usual logs: lower case, without units, signs and blanks.
+FEWEST = 20  # smallest number of samples
+LONG_INTERVALS = 10.0  # in median intervals; a longer gap ends a contact
+LATEST_START = 1e6  # largest first time that is kept; later clocks are shifted to start at 0 [s]
+FASTEST = 5.0  # largest plausible speed of a hand [m/s]
+# Usual names of the first column of each quantity, in lower case, without units, signs and blanks.
 USUAL = {
     "time": "time times t ts timestamp stamp secs simtime headerstamp clock",
     "position": "px posx positionx poseposition posepositionx tipx toolx tcpx eex hipx pos0 p0 position0 x",
@@ -26,11 +26,11 @@ USUAL = {
     "contacts": "colliding contacts ncontacts ncon numcontacts contactcount",
     "orientation": "qw qx quatw quatx orientationw orientationx poseorientationx",
 }
-# Of a log of one axis.
+# Usual names in a log of one axis.
 ALONE = {"position": "position pos x y z", "force": "force f", "velocity": "velocity vel v"}
 ALONE["measured"] = "measured measuredforce forcemeasured"
-TOUCH = "touch_N="  # field of --set
-EXTRA = ("velocity", "measured", "contacts")  # quantities that an import does not read
+TOUCH = "touch_N="  # prefix of the field touch_N in --set
+EXTRA = ("velocity", "measured", "contacts")  # quantities that the imports do not read
 ALL = [name for name in QUANTITIES] + list(EXTRA)
 
 
@@ -38,28 +38,30 @@ ALL = [name for name in QUANTITIES] + list(EXTRA)
 class Log:
     file: str
     time: np.ndarray  # [s], increasing
-    position: np.ndarray  # rows of x, y, z [m]
-    force: np.ndarray  # on the tool, held or continuous from row to row [N]
-    turn: object = None  # Rotation of each row, or None
+    position: np.ndarray  # rows of x, y, z of the tool [m]
+    force: np.ndarray  # on the tool [N]; held, or continuous, from row to row
+    turn: object = None  # Rotation of the tool in each row, or None
     velocity: np.ndarray | None = None  # [m/s]
     measured: np.ndarray | None = None  # force that a sensor measured [N]
     contacts: np.ndarray | None = None  # number of contacts in each row
-    axes: int = 3  # 1: a log of one axis
-    columns: dict = field(default_factory=dict)  # by quantity, as those of import stroke
+    axes: int = 3  # 1 for a log of one axis
+    # Columns by quantity, in the form of `import stroke`.
+    columns: dict = field(default_factory=dict)
     columns_not_read: list = field(default_factory=list)
-    scales: dict = field(default_factory=dict)  # by quantity
+    scales: dict = field(default_factory=dict)  # factors to SI units by quantity
     notes: list = field(default_factory=list)
     quantum_m: np.ndarray | None = (
         None  # resolution of each position component [m]; 0: full precision
     )
-    quantum_N: np.ndarray | None = None  # of each force component [N]
-    held: object = None  # Hold of the positions, or None
-    held_force: object = None  # Hold of the forces, or None
-    touch: float | None = None  # force from which a row is in contact [N]; None: as the log shows
+    quantum_N: np.ndarray | None = None  # resolution of each force component [N]; 0: full precision
+    held: object = None  # Hold of the positions, or None if positions are not held
+    held_force: object = None  # Hold of the forces, or None if forces are not held
+    # Force above which a row is in contact [N]; None: found from the log.
+    touch: float | None = None
 
     @property
     def interval(self):
-        """Seconds from row to row: the mean, without steps over missing rows."""
+        """Mean time between consecutive rows [s], without the steps over missing rows."""
         steps = np.diff(self.time)
         mean = (self.time[-1] - self.time[0]) / len(steps)
         off = self.time - self.time[0] - np.arange(len(self.time)) * mean
@@ -70,7 +72,7 @@ class Log:
 
 
 def read_log(options):
-    """The log that the command line names (__main__)."""
+    """Reads the log that the command line names (__main__)."""
     layout, wanted, touch = layout_of(options)
     log = log_of(open_recording(options.log, layout), layout, wanted)
     log.touch = touch
@@ -78,7 +80,8 @@ def read_log(options):
 
 
 def layout_of(options):
-    """(options of an import, names of columns by quantity of EXTRA, force from which a row is in contact or None)."""
+    """Returns (options of an import, names of columns by quantity of EXTRA, force above which a row is in contact or
+    None)."""
     touches = [word for word in options.set if word.startswith(TOUCH)]
     own = [word for word in options.columns if word.partition("=")[0] in EXTRA]
     asked = SimpleNamespace(
@@ -100,7 +103,7 @@ def layout_of(options):
 
 
 def touch_of(word):
-    """The force of the field touch_N."""
+    """Parses the value of the field touch_N [N]."""
     force = finite_number(word.removeprefix(TOUCH).encode("utf-8", "surrogateescape"))
     if not force >= 0.0:
         fail(f"--set: got {quoted(word)}; allowed: touch_N=FORCE, a number >= 0")
@@ -108,8 +111,8 @@ def touch_of(word):
 
 
 def log_of_table(table, columns, scale, force_by_tool, touch):
-    """The log in a mapping of names to arrays, such as a Table or a pandas.DataFrame. `columns` and `scale`: by
-    quantity, as the options of the command line."""
+    """Returns the log in a mapping of names to arrays, such as a Table or a pandas.DataFrame. `columns` and `scale`: by
+    quantity, like the options of the command line."""
     asked = SimpleNamespace(
         log=None,
         columns=[f"{quantity}={column}" for quantity, column in columns.items()],
@@ -125,7 +128,7 @@ def log_of_table(table, columns, scale, force_by_tool, touch):
 
 
 def recording_of(table):
-    """The table's columns of numbers as a recording."""
+    """Returns the table's columns of numbers as a Recording."""
     columns = {str(name): np.asarray(table[name]) for name in table}
     numeric = {
         name: (values - values[0] if is_large(values) else values).astype(float)
@@ -140,14 +143,16 @@ def recording_of(table):
 
 
 def is_large(values):
-    """True for whole numbers that a double does not hold, such as nanoseconds since 1970. They count from the first."""
+    """Returns True if the values are integers too large for a double, such as nanoseconds since 1970. Times of this
+    kind are taken relative to the first row."""
     return (
         np.issubdtype(values.dtype, np.integer) and len(values) > 0 and abs(int(values[-1])) > EXACT
     )
 
 
 def log_of(recording, options, wanted):
-    """`options`: those of an import. `wanted`: names of columns by quantity of EXTRA."""
+    """Builds a Log from a recording. `options`: the options of an import. `wanted`: names of columns by quantity of
+    EXTRA."""
     recording, axes = with_usual_columns(recording, options)
     read = read_samples(recording, options)
     samples, kept = read.samples, read.kept
@@ -203,7 +208,8 @@ def log_of(recording, options, wanted):
 
 
 def times_of(read):
-    """Times of the rows; of a clock that counts from long before the log, since the first row."""
+    """Returns the times of the rows [s]. If the clock starts long before the log, the times are relative to the first
+    row."""
     start = read.origin + read.samples.time[0]
     if start < LATEST_START:
         return read.origin + read.samples.time
@@ -212,14 +218,14 @@ def times_of(read):
 
 
 def vector(values, frame):
-    """Rows of three components in the frame of the scene; those that a log of one axis lacks are 0."""
+    """Returns rows of three components in the frame of the scene. Components that a log of one axis lacks are 0."""
     if values is None:
         return None
     return np.pad(values, ((0, 0), (0, 3 - values.shape[1]))) @ frame
 
 
 def quanta(values):
-    """The resolution of each column, 0 where its numbers have full precision or do not change."""
+    """Returns the resolution of each column; 0 if its numbers have full precision or do not change."""
     return np.array([resolution_of(column) or 0.0 for column in values.T])
 
 
@@ -228,14 +234,14 @@ def key_of(name):
 
 
 class UsualNames:
-    """Columns by usual names."""
+    """Finds columns by their usual names."""
 
     def __init__(self, names):
         self._keys = {}
         for name, bare, unit in zip(names.names, names.bare, names.units):
             for text in (name, bare, bare.removesuffix(f"_{unit.text}") if unit else bare):
                 key = key_of(text)
-                for ending in ("", "mpers", "m", "s", "n"):  # SI units in names such as px_m
+                for ending in ("", "mpers", "m", "s", "n"):  # units of SI in names such as px_m
                     if ending == "" or re.search(r"_(m|s|N|m_per_s)$", text):
                         self._keys.setdefault(key.removesuffix(ending) or key, name)
 
@@ -244,8 +250,8 @@ class UsualNames:
 
 
 def with_usual_columns(recording, options):
-    """(recording, number of axes). Completes options.columns by usual names. A log of one axis gets columns of
-    zeros."""
+    """Completes options.columns by usual names. Returns (recording, number of axes). A log of one axis gets columns of
+    zeros for the missing axes."""
     names = Names(recording)
     usual = UsualNames(names)
     parts = {"position": ("px", "py", "pz"), "force": ("mfx", "mfy", "mfz")}
@@ -283,7 +289,7 @@ def with_usual_columns(recording, options):
 
 
 def alone_columns(names, options, parts):
-    """By quantity: its only column, or None where it has three."""
+    """Returns for each quantity its only column; None for a quantity with three columns."""
     found = {
         quantity: names.find(
             "", options.columns[quantity], ("_x", ".x", "x", "[0]", "_0", ".0", "0")
@@ -292,7 +298,7 @@ def alone_columns(names, options, parts):
         if quantity in options.columns
     }
     numbers = [column for column, by_number in found.values() if by_number]
-    # Three columns from each number would overlap or end beyond the file.
+    # If every number stood for three columns, the columns would overlap or lie beyond the last column.
     are_alone = len(numbers) > 0 and (
         max(numbers) + 3 > len(names.names)
         or (len(numbers) == 2 and abs(numbers[0] - numbers[1]) < 3)
@@ -309,7 +315,7 @@ def alone_columns(names, options, parts):
 
 
 def with_zeros(recording, count):
-    """The recording with so many columns of zeros."""
+    """Returns the recording with `count` additional columns of zeros."""
     added = [f"{ABSENT}_{i}" for i in range(count)]
     if recording.is_binary:
         zeros = [np.zeros(len(recording.rows))] * count
@@ -330,7 +336,8 @@ def with_zeros(recording, count):
 
 
 def extra_columns(names, quantity, word, axes):
-    """The columns of a quantity of EXTRA, by the name that the user gave or by a usual name; None without them."""
+    """Returns the columns of a quantity of EXTRA, by the name that the user gave or by a usual name; None if there are
+    none."""
     if word is not None:
         column, by_number = names.find(quantity, [word], ("_x", ".x", "x", "[0]", "_0", ".0", "0"))
         if column is None:

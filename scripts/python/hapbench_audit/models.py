@@ -1,39 +1,41 @@
-"""Models of a contact's force: a spring and a damper on the position of some rows before, with the velocity as the
-engine may compute it; and their least-squares fits."""
+"""Models of a contact's force, and their least-squares fits. A model is a spring and a damper at the position `delay`
+rows earlier. Models differ in the way in which the engine may compute the velocity."""
 from dataclasses import dataclass
 
 import numpy as np
 from scipy.signal import lfilter
 from scipy.stats import t as student
 
-MOST_DELAY = 50  # rows
-FEWEST = 10  # rows of a fit
-JITTER = 1e-3  # of the interval: below, both clocks give the same velocities
-LONGEST_MEMORY = 1000  # rows
+MOST_DELAY = 50  # largest delay [rows]
+FEWEST = 10  # smallest number of rows of a fit
+JITTER = 1e-3  # jitter relative to the interval; below it, both clocks give the same velocities
+LONGEST_MEMORY = 1000  # largest correlation length of a residual [rows]
 LOW_PASSES = (1, 2, 4, 8, 16)  # time constants of a filtered velocity [rows]
-LOW_PASS = "low-pass "  # begins their kinds
-EVEN = "even "  # begins the kinds of a clock without jitter
-BEFORE = MOST_DELAY + 10 * max(LOW_PASSES)  # rows that a filter needs to forget how it started
-BLOCKS = 10  # of the jackknife
-COLLINEAR = 1e-9  # smallest share of a column that the other columns do not explain
+LOW_PASS = "low-pass "  # prefix of the kinds of filtered velocity
+EVEN = "even "  # prefix of the kinds that assume a clock without jitter
+BEFORE = MOST_DELAY + 10 * max(LOW_PASSES)  # rows after which the start of a filter has no effect
+BLOCKS = 10  # number of blocks of the jackknife
+# Smallest fraction of a column's norm that the other columns must leave unexplained.
+COLLINEAR = 1e-9
 
 
 @dataclass(frozen=True, order=True)
 class Model:
-    delay: int  # rows
-    kind: str  # how the velocity is computed, a key of speeds()
+    delay: int  # [rows]
+    kind: str  # how the velocity is computed; a key of speeds()
 
 
 @dataclass
 class Fit:
     model: Model
-    values: np.ndarray  # of the columns: position, velocity, (sign)
+    values: np.ndarray  # coefficients of the columns: position, velocity, (sign of the velocity)
     halves: np.ndarray  # half-widths of 95 % intervals
     squares: float  # sum of squared residuals
-    explained: float  # share of the variance
+    explained: float  # explained fraction of the variance
     rows: int
-    independent: float  # rows divided by the memory of the residuals
-    speed: float  # root mean square of the velocity that the position does not explain [m/s]
+    independent: float  # number of independent rows: rows divided by the memory of the residuals
+    # Root mean square of the part of the velocity that is not proportional to the position [m/s].
+    speed: float
 
     @property
     def stiffness(self):
@@ -63,16 +65,18 @@ class Motion:
         }
 
     def sampling_of(self, kind, within):
-        """Mean square error of a velocity that is not exactly the velocity of the engine [m^2/s^2]."""
+        """Returns the mean square error of a velocity that only approximates the engine's velocity [m^2/s^2]."""
         if kind == "logged":
             return 0.0
         backward = self.speeds["backward"][within]
-        # At touch the acceleration changes between two rows: an error of half the difference of the velocities.
+        # At touch, the acceleration changes between two rows, which causes an error of half the difference of the
+        # velocities.
         change = np.abs(self.speeds["central"][within] - backward).max()
         found = (0.5 * change) ** 2 / len(backward)
         constant = low_pass_of(kind)
         if constant:
-            # The time constant lies at most half way to the next one. Position and velocity absorb most of the error.
+            # The time constant differs by at most half the distance to the next time constant. Position and velocity
+            # absorb most of the error.
             kinds = (f"{LOW_PASS}{constant // 2}" if constant > 1 else "backward", kind)
             near, own = (self.speeds[one][within] for one in kinds)
             place = self.place[within]
@@ -84,7 +88,7 @@ class Motion:
         return float(found)
 
     def rounding(self, model, stiffness, damping):
-        """Mean square of the force that the resolution of the position causes in a model [N^2]."""
+        """Returns the mean square of the force error that the resolution of the position causes in a model [N^2]."""
         of_speed = damping / self.interval
         kind = model.kind.removeprefix(EVEN)
         if kind == "logged":
@@ -101,8 +105,8 @@ class Motion:
         return gain * self.resolution**2 / 12.0
 
     def models(self):
-        """All models, of which a forward difference stands for an implicit step: with a delay it would equal a
-        backward difference with one row less."""
+        """Returns all models. There is a forward difference only for an implicit step: with a delay, a forward
+        difference would equal a backward difference with one row less delay."""
         return [
             Model(delay, kind)
             for kind in self.speeds
@@ -110,11 +114,11 @@ class Motion:
         ]
 
     def usable(self):
-        """True for rows with a delayed row in every model. The first speed has no row before it."""
+        """Returns True for rows whose delayed row exists in every model. The first velocity has no row before it."""
         return self.rows > self.most
 
     def columns(self, model, with_sign=False):
-        """Centred columns and force of the rows that every model explains."""
+        """Returns the centred columns and the force of the rows that every model explains."""
         keep = self.usable()
         before = self.rows[keep] - model.delay
         x, v, f = self.place[before], self.speeds[model.kind][before], self.force[keep]
@@ -126,31 +130,33 @@ class Motion:
 
 
 def low_pass_of(kind):
-    """Time constant of a backward difference [rows]; 0: not filtered."""
+    """Returns the time constant of a low-pass filtered backward difference [rows]; 0 if it is not filtered."""
     kind = kind.removeprefix(EVEN)
     return int(kind.removeprefix(LOW_PASS)) if kind.startswith(LOW_PASS) else 0
 
 
 def speeds(log, part, place, direction):
-    """Velocities along the direction in these rows by the way in which an engine may compute them."""
+    """Returns the velocities along the direction in these rows, keyed by the method by which an engine may compute
+    them."""
     time = log.time[part]
     fresh = np.arange(len(place)) if log.held is None else np.flatnonzero(log.held.fresh[part])
     if len(fresh) < 3:
         return {}
-    # Each fresh sample keeps its velocity until the next.
+    # Each new sample keeps its velocity until the next new sample.
     sample = np.maximum(np.searchsorted(fresh, np.arange(len(place)), side="right") - 1, 0)
     found = {} if log.velocity is None else {"logged": log.velocity[part] @ direction}
     steps = np.diff(time[fresh])
     found |= differences(np.diff(place[fresh]) / steps, sample, "")
     even = np.diff(fresh) * log.interval
     if np.std(steps - even) > JITTER * log.interval:
-        # The engine may count steps, whatever the clock of the log says.
+        # The engine may assume a constant step, even if the clock of the log has jitter.
         found |= differences(np.diff(place[fresh]) / even, sample, EVEN)
     return found
 
 
 def differences(rates, sample, clock):
-    """Velocities by kind from the changes between samples [m/s]. `sample`: number of each row's sample."""
+    """Returns velocities by kind, computed from the differences between samples [m/s]. `sample`: number of each row's
+    sample."""
     backward = np.concatenate([rates[:1], rates])
     forward = np.concatenate([rates, rates[-1:]])
     found = {
@@ -173,7 +179,8 @@ def five_point(rates):
 
 
 def neighbours_of(model, kinds):
-    """Models whose velocity is one step of approximation away, between which the velocity of an engine may lie."""
+    """Returns the models whose velocity differs by one approximation step. The engine's velocity may lie between
+    `model` and these neighbours."""
     clock = EVEN if model.kind.startswith(EVEN) else ""
     kind = model.kind.removeprefix(EVEN)
     constant = low_pass_of(kind)
@@ -189,16 +196,16 @@ def neighbours_of(model, kinds):
 
 @dataclass
 class Residual:
-    """What a model leaves unexplained. Mean squares are per row [N^2]."""
+    """The part of the force that a model leaves unexplained. Mean squares are per row [N^2]."""
 
     mean_square: float
-    rounding: float  # mean square that the resolution of the position may cause
-    sampling: float  # mean square that the sampling of the velocity may cause
-    total: float  # mean square of the force less its mean
+    rounding: float  # mean square error that the resolution of the position may cause
+    sampling: float  # mean square error that the sampling of the velocity may cause
+    total: float  # variance of the force: mean square of the difference from its mean
 
 
 def residual_of(motion, model):
-    """The Residual of a model, or None where its columns are collinear."""
+    """Returns the Residual of a model; None if its columns are collinear."""
     keep = motion.usable()
     before, force = motion.rows[keep] - model.delay, motion.force[keep]
     if len(before) < FEWEST:
@@ -233,8 +240,8 @@ def residual_of(motion, model):
 
 
 def factors(matrix):
-    """(q, r, sizes) with matrix = q r diag(sizes) and an orthonormal q, or None where a column is constant or explained
-    by the others."""
+    """Returns (q, r, sizes) with matrix = q r diag(sizes) and orthonormal q; None if a column is constant or a linear
+    combination of the others."""
     sizes = np.linalg.norm(matrix, axis=0)
     if len(matrix) < FEWEST or not (sizes > 0.0).all():
         return None
@@ -243,10 +250,10 @@ def factors(matrix):
 
 
 def fit_of(motion, model, with_sign=False):
-    """The Fit of a model; None where its columns are collinear.
+    """Returns the Fit of a model; None if its columns are collinear.
 
-    The intervals are the larger of two: least squares with the memory of the residuals, and a jackknife over
-    consecutive blocks, which also covers residuals that are correlated with the motion.
+    Each interval is the larger of two: the least-squares interval with the memory of the residuals, and the interval of
+    a jackknife over consecutive blocks, which also covers residuals that are correlated with the motion.
     """
     matrix, target = motion.columns(model, with_sign)
     found = factors(matrix)
@@ -276,7 +283,7 @@ def fit_of(motion, model, with_sign=False):
 
 
 def jackknife(q, inverse, residual):
-    """Half-widths of 95 % intervals by leaving out one of BLOCKS consecutive blocks after another."""
+    """Returns half-widths of 95 % intervals from fits that each omit one of BLOCKS consecutive blocks."""
     count = min(BLOCKS, len(residual) // 4)
     changes = []
     for block in np.array_split(np.arange(len(residual)), count):
@@ -290,7 +297,8 @@ def jackknife(q, inverse, residual):
 
 
 def memory(residual):
-    """Rows that one independent residual stands for: 1 + 2 times the sum of the autocorrelations above 0.05."""
+    """Returns the number of rows for one independent residual: 1 + 2 times the sum of the autocorrelations up to the
+    first below 0.05."""
     power, total = float(residual @ residual), 1.0
     if power == 0.0:
         return 1.0

@@ -1,4 +1,4 @@
-"""The HTML page of an audit, in the look of `hapbench report`."""
+"""The HTML page of an audit, in the style of `hapbench report`."""
 from pathlib import Path
 
 from hapbench_import.stroke import columns_text
@@ -10,11 +10,11 @@ from hapbench_report.page import whole_page
 from .picture import colours_of
 from .text import table_rows
 
-MOST_CONTACTS = 200  # in the table of the page; audit.json has all
+MOST_CONTACTS = 200  # largest number of contacts in the table of the page; audit.json has all
 
 
 def page_of(log, audit, drawing, line):
-    """`line`: the command that made the page."""
+    """Returns the page. `line`: the command line that made the page."""
     sections = (
         ("summary", "Summary", "Summary", summary(log, audit)),
         ("warnings", "Warnings", "Warnings", listed(map(text, audit["warnings"]))),
@@ -64,7 +64,7 @@ def diagnosis(audit):
 
 
 def curves(drawing):
-    """Each panel, on light and on dark ground."""
+    """Draws each panel on light and on dark ground."""
 
     def drawn(title, part):
         return run_report.drawing(

@@ -5,21 +5,21 @@ from hapbench_style import SETTINGS, curve, lettered, panels, picture, plt
 
 from .energy import Port
 
-SPANS = 1200  # of a curve over time
-MOST_POINTS = 4000  # of the force against the position
-MOST_SHADED = 200  # contacts
-SMALL = 5e-5  # travel that is drawn in micrometres [m]
+SPANS = 1200  # number of time spans of a curve
+MOST_POINTS = 4000  # largest number of points of force against position
+MOST_SHADED = 200  # largest number of shaded contacts
+SMALL = 5e-5  # a smaller travel is drawn in micrometres [m]
 
 
 class Drawing:
-    """The panels of an audit, in the colours of a paper."""
+    """The panels of an audit, in the colours of a `paper`, light or dark."""
 
     def __init__(self, log, audit, contacts, spectrum):
         self.log, self.audit, self.contacts, self.spectrum = log, audit, contacts, spectrum
         self.time = log.time
 
     def panels(self):
-        """(title, draw(ax, colours)) of what the log shows."""
+        """Returns (title, draw(ax, colours)) for each panel that the log allows."""
         found = [("force over time", self.force), ("energy given to the hand", self.energy)]
         if self.audit["stiffness"]:
             found.append((self.spring_title(), self.spring))
@@ -122,7 +122,7 @@ class Drawing:
 
 
 def energy_curve(log, contacts):
-    """Work of the held force on the tool since the start [mJ], by row."""
+    """Returns the work of the held force on the tool since the start, by row [mJ]."""
     return 1e3 * np.concatenate([[0.0], np.cumsum(Port(log, contacts).held)])
 
 
@@ -131,7 +131,7 @@ def colours_of(dark=False):
 
 
 def draw(drawing, kind="svg"):
-    """The bytes of the picture with all panels."""
+    """Returns the bytes of the picture with all panels."""
     with plt.rc_context(SETTINGS):
         parts = drawing.panels()
         figure, grid = panels(2, 2, 4.6)

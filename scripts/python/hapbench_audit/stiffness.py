@@ -1,4 +1,4 @@
-"""Stiffness, damping and delay that a log determines: of each contact, and combined over the contacts."""
+"""Stiffness, damping and delay that a log determines, for each contact and combined over the contacts."""
 import math
 from dataclasses import dataclass, field
 
@@ -7,55 +7,65 @@ from scipy.stats import t as student
 
 from .models import Motion, fit_of, low_pass_of, neighbours_of, residual_of
 
-FEWEST = 20  # rows of a contact
-FEWEST_NEW = 15  # of these, rows with a new force above 0 and below the largest force
-LANDING = 10.0  # residuals of a landing by residuals of the rest: an impact is more than a spring
-EXACT = 0.01  # of the largest change of the force: residuals of a landing that is no impact
-FEWEST_COUNTS = 10  # travel in steps of the position's resolution
-EXPLAINED = 0.5  # share of the variance that a spring must explain
-WELL_KNOWN = 0.25  # half-width of the interval as a share: values known worse are not stated
-UNLIKELY = 5.0  # logarithm of a likelihood ratio: models below it are as good as the best one
-EXACTLY = 1e-9  # share of the variance: an engine whose law the model is leaves less unexplained
+FEWEST = 20  # smallest number of rows of a contact
+# Smallest number of these rows with a new force above 0 and below the largest force.
+FEWEST_NEW = 15
+# Ratio of the rms residual in a landing to the residual elsewhere up to which the landing is no impact.
+LANDING = 10.0
+# Rms residual of a landing, relative to the range of the force, up to which the landing is no impact.
+EXACT = 0.01
+FEWEST_COUNTS = 10  # smallest travel, in steps of the position's resolution
+EXPLAINED = 0.5  # smallest fraction of the variance that a spring must explain
+WELL_KNOWN = 0.25  # largest relative half-width of the interval with which a value is stated
+# Difference of log-likelihood within which a model counts as equally good as the best model.
+UNLIKELY = 5.0
+# Unexplained fraction of the variance below which the engine's law is exactly the model.
+EXACTLY = 1e-9
 SAMPLED = (
-    2e-3  # share of a value that sampling may change otherwise: (2 pi f T)^2 / 6 at 17 Hz and 1 kHz
+    # Relative change of a value by sampling that is allowed: (2 pi f T)^2 / 6 at 17 Hz and 1 kHz.
+    2e-3
 )
-MOST_TRIED = 60  # models with negative damping before one without
-CERTAIN = 20.0  # the logarithm that one contact contributes at most
-SIMILAR = 0.1  # share by which mean squares must differ: the residuals are no white noise
-MOST_EXCUSED = 2.0  # times the smallest mean square: what the sampling of a velocity excuses
-NEGLIGIBLE = 1e-12  # share of the variance that rounding may leave unexplained
-TYPICAL = 10.0  # times the unexplained share of a typical contact
-DRY_GAIN = 0.7  # the sign of the velocity must lower the sum of squares below this share
-DRY_SHARE = 0.02  # and be at least this share of the mean force
-AT_LIMIT = 0.999  # of the largest force
-TILTS = 8  # steps of the search for the normal
-MOST_ROWS = 500  # of the search
-SEARCHED = ("logged", "backward", "central", "low-pass 4")  # velocities of the search
+MOST_TRIED = 60  # largest number of models tried in the search for a model without negative damping
+CERTAIN = 20.0  # largest log-likelihood difference that one contact contributes
+# Relative difference below which two mean squares count as equal, because the residuals are not white noise.
+SIMILAR = 0.1
+# Largest factor, over the smallest mean square, that the sampling of the velocity may explain.
+MOST_EXCUSED = 2.0
+NEGLIGIBLE = 1e-12  # fraction of the variance that rounding may leave unexplained
+TYPICAL = 10.0  # factor over the unexplained fraction of a typical contact
+# Dry friction is reported if the sign of the velocity reduces the sum of squares below this fraction.
+DRY_GAIN = 0.7
+DRY_SHARE = 0.02  # and if it is at least this fraction of the mean force
+AT_LIMIT = 0.999  # fraction of the largest force from which a row counts as saturated
+TILTS = 8  # number of steps of the search for the normal
+MOST_ROWS = 500  # largest number of rows in the search for the normal
+# Kinds of velocity in the search for the normal.
+SEARCHED = ("logged", "backward", "central", "low-pass 4")
 
 
 @dataclass
 class Evidence:
-    """What one contact says about each model."""
+    """What one contact contributes to the choice of each model."""
 
-    motion: object  # Motion along the direction, or None
+    motion: object  # Motion along the fitted direction, or None
     found: dict  # numbers for the JSON
-    likelihood: dict = field(default_factory=dict)  # logarithm below the best model, by Model
+    # Difference of log-likelihood to the best model, by Model.
+    likelihood: dict = field(default_factory=dict)
     place: np.ndarray | None = None  # positions of the rows along the direction [m]
-    resolution: float = 0.0  # [m]
-    rows: np.ndarray | None = None  # row numbers
+    resolution: float = 0.0  # resolution of the position along the direction [m]
+    rows: np.ndarray | None = None  # row numbers of the contact
 
 
 def main_direction(force):
-    """Unit vector along which the forces are largest, pointing with them."""
+    """Returns the unit vector along which the forces are largest, with the sign of the forces."""
     _, vectors = np.linalg.eigh(force.T @ force)
     direction = vectors[:, -1]
     return direction if (force @ direction).sum() >= 0.0 else -direction
 
 
 def evidence_of(log, rows, settled):
-    """Evidence of the contact in these rows. `settled`: of these, those after a landing. Landings count if the model
-    that explains them and the rest explains the rest as well as a model of the rest alone.
-    """
+    """Returns the Evidence of the contact in these rows. `settled`: the rows after a landing. The rows of the landing
+    are used only if the best model explains them nearly as well as the settled rows."""
     rows, settled = pushing(log, rows), pushing(log, settled)
     if len(rows) < FEWEST_NEW:
         return Evidence(
@@ -68,7 +78,7 @@ def evidence_of(log, rows, settled):
 
 
 def explains_landing(evidence, rows, settled):
-    """True if the best model explains the landing nearly as well as the rows after it."""
+    """Returns True if the best model explains the landing nearly as well as the settled rows."""
     if not evidence.likelihood:
         return False
     best = min(evidence.likelihood, key=evidence.likelihood.get)
@@ -82,12 +92,12 @@ def explains_landing(evidence, rows, settled):
 
 
 def unexplained(evidence):
-    """Share of the variance of the force that no model explains; 1 for a contact without a spring."""
+    """Returns the fraction of the variance of the force that no model explains; 1 for a contact without a spring."""
     return 1.0 - evidence.found.get("explained", 0.0)
 
 
 def pushing(log, rows):
-    """The rows whose force is neither zero nor cut off at the largest force of the log, and new in the row."""
+    """Returns the rows whose force is new in this row, not zero, and not limited to the largest force of the log."""
     size = np.linalg.norm(log.force, axis=1)
     flat = np.append(np.abs(np.diff(size)) <= 1e-6 * size.max(), False)
     at_limit = (size >= AT_LIMIT * size.max()) & (flat | np.append(False, flat[:-1]))
@@ -98,7 +108,7 @@ def pushing(log, rows):
 
 
 def evidence_of_rows(log, rows, given=None):
-    """Evidence of these rows along the normal of the surface, or along a `given` direction."""
+    """Returns the Evidence of these rows along the normal of the surface, or along a `given` direction."""
     force = log.force[rows]
     direction = main_direction(force) if given is None else given
     motion, better = Motion(log, rows, direction), None
@@ -131,15 +141,15 @@ def evidence_of_rows(log, rows, given=None):
     found["explained"] = 1.0 - known[best].mean_square / max(known[best].total, 1e-300)
     if found["explained"] < EXPLAINED:
         found["why"] = (
-            f"a spring and a damper explain {100.0 * max(found['explained'], 0.0):.0f} % of the force's variance, as in "
-            "a rigid contact, or with friction along the force"
+            f"a spring and a damper explain {100.0 * max(found['explained'], 0.0):.0f} % of the force's variance, as "
+            "in a rigid contact, or with friction along the force"
         )
         return Evidence(None, found, rows=rows)
     return Evidence(motion, found, likelihoods(motion, known, best), place, resolution, rows)
 
 
 def residuals(motion):
-    """(Residual by Model, Model with the smallest residual or None)."""
+    """Returns (Residual by Model, Model with the smallest residual or None)."""
     found = {}
     for model in motion.models():
         residual = residual_of(motion, model)
@@ -149,11 +159,11 @@ def residuals(motion):
 
 
 def likelihoods(motion, found, best):
-    """Logarithms of the likelihood below the likelihood of the best Model.
+    """Returns for each Model the log-likelihood of the best Model minus the log-likelihood of this Model.
 
-    A model whose residual is as large as rounding and sampling make it is as good as the best one, although its sum of
-    squares may be larger. An engine that renders the rounded positions themselves leaves smaller residuals than
-    rounding: `share` of the expected ones.
+    If rounding and sampling explain the residual of a model, the model counts as equally good as the best model,
+    although its sum of squares may be larger. An engine that renders the rounded positions themselves leaves smaller
+    residuals than rounding would: `share` is the measured fraction of the expected residuals.
     """
     least = found[best]
     floor = NEGLIGIBLE * least.total
@@ -161,7 +171,7 @@ def likelihoods(motion, found, best):
     independent = fit_of(motion, best).independent
 
     def below(one):
-        # Rounding is known exactly, the error of a sampled velocity only roughly.
+        # The effect of rounding is known exactly; the error of a sampled velocity is known only roughly.
         usual = least.mean_square + share * (one.sampling - least.sampling)
         usual = float(np.clip(usual, least.mean_square, MOST_EXCUSED * least.mean_square))
         usual += share * max(one.rounding - least.rounding, 0.0) + floor
@@ -171,9 +181,9 @@ def likelihoods(motion, found, best):
 
 
 def normal_of(log, rows, direction, motion):
-    """(normal, Motion along it) of a surface over which the tool slides with friction, or None if the main direction
-    of the force explains the force as well. A force that depends on the depth has its gradient along the normal. The
-    force along the normal is free of friction."""
+    """Returns (normal, Motion along it) of a surface on which the tool slides with friction; None if the main direction
+    of the force explains the force equally well. The gradient of a force that depends on the depth points along the
+    normal, and the force along the normal does not contain friction."""
     known, best = residuals(motion)
     if best is None:
         return None
@@ -198,8 +208,8 @@ def normal_of(log, rows, direction, motion):
 
 
 def gradient_of(log, rows, normal, space, model):
-    """(direction in which the force along `normal` grows the most, Model), or (None, None). `space`: Motion along each
-    axis. `model`: None for the best one."""
+    """Returns (direction in which the force along `normal` grows fastest, Model), or (None, None). `space`: Motion
+    along each axis. `model`: None for the best model."""
     keep = space[0].usable()
     force = (log.force[rows] @ normal)[keep]
     some = np.linspace(0, keep.sum() - 1, min(keep.sum(), MOST_ROWS)).astype(int)
@@ -218,7 +228,7 @@ def gradient_of(log, rows, normal, space, model):
         residual = force - columns / sizes @ slopes
         best = min(best, (float(residual @ residual), one, slopes / sizes), key=lambda it: it[0])
     _, model, slopes = best
-    # Components in which the tool does not move keep their share of the direction of the force.
+    # Along axes in which the tool does not move, keep the components of the force's direction.
     gradient, size = normal.copy(), np.linalg.norm(slopes[::2])
     if not size > 0.0:
         return None, None
@@ -228,8 +238,8 @@ def gradient_of(log, rows, normal, space, model):
 
 
 def as_good(evidences):
-    """Models that explain all contacts nearly as well as the best one, the best first. A contact that is too short for
-    a long delay counts as with its longest."""
+    """Returns the models that explain all contacts nearly as well as the best model, best first. If a contact is too
+    short for a long delay, the score of its longest possible delay is used."""
     models = sorted({model for one in evidences for model in one.likelihood})
     if not models:
         return []
@@ -249,15 +259,16 @@ def as_good(evidences):
     calm = [model for model in found if not is_negative(evidences, model)]
     if calm:
         return calm
-    # Neither negative damping nor the next model without it is certain where no model fits well.
+    # If no model fits well, neither negative damping nor the next model without negative damping is certain.
     near = [m for m in order if scores[m] <= least + 0.5 * CERTAIN * len(evidences)]
     best = next((m for m in near[:MOST_TRIED] if not is_negative(evidences, m)), None)
     return found if best is None else [*found, best]
 
 
 def is_negative(evidences, model):
-    """True if the damping of a model is negative in most contacts. A delay d of a stiffness K looks like a damping of
-    -K d: of this, a quarter of the damping of one row is zero."""
+    """Returns True if the damping of a model is negative in most contacts. A delay d of a stiffness K has the effect of
+    a damping of -K d; a negative damping smaller than a quarter of the effect of one row counts as zero.
+    """
     fits = [(one, fit_of(one.motion, model)) for one in evidences if model in one.likelihood]
     signs = [
         fit.damping + fit.halves[1] < -0.25 * fit.stiffness * one.motion.interval < 0.0
@@ -268,14 +279,14 @@ def is_negative(evidences, model):
 
 
 def well_explained(evidences):
-    """The contacts that a spring and a damper explain about as well as they explain the median contact."""
+    """Returns the contacts that a spring and a damper explain about as well as the median contact."""
     usual = float(np.median([unexplained(one) for one in evidences])) if evidences else 0.0
     return [one for one in evidences if unexplained(one) <= TYPICAL * usual + NEGLIGIBLE]
 
 
 def with_shared_normal(log, evidences):
-    """The evidences, where contacts that a spring explains worse than the best contact use its direction if that
-    explains them better: most logs have one flat surface."""
+    """Returns the evidences. If a spring explains a contact worse than the best contact, and the direction of the best
+    contact explains it better, this direction is used: most logs have one flat surface."""
     known = [one for one in evidences if one is not None and one.likelihood]
     if log.axes == 1 or len(known) < 2:
         return evidences
@@ -293,7 +304,7 @@ def with_shared_normal(log, evidences):
 
 @dataclass
 class Estimate:
-    """A number with its 95 % interval over several models, of which the first is the best."""
+    """A number with its 95 % interval over several models; the first model is the best."""
 
     value: float
     low: float
@@ -305,7 +316,8 @@ class Estimate:
 
 
 def numbers_of(log, evidence, models):
-    """Numbers for the JSON of one contact, with intervals over these models; `why`: why it has no stiffness."""
+    """Returns the numbers of one contact for the JSON, with intervals over these models. `why`: the reason if it has no
+    stiffness."""
     fits = [
         fit
         for model in models
@@ -334,7 +346,7 @@ def numbers_of(log, evidence, models):
     damping = spanned(
         best.damping, fits, lambda fit: (fit.damping, damping_half(log, evidence, fit))
     )
-    # Slow motion shows B - K d only.
+    # Slow motion determines only B - K d.
     slow = spanned(
         best.damping - best.stiffness * best.model.delay * interval,
         fits,
@@ -361,19 +373,20 @@ def numbers_of(log, evidence, models):
 
 
 def widen(motion, fit, with_sign):
-    """Adds the distance to the fits of neighbouring velocities to the intervals."""
+    """Extends the intervals by the distance to the fits with neighbouring velocities."""
     near = [fit_of(motion, model, with_sign) for model in neighbours_of(fit.model, motion.speeds)]
     distances = [np.abs(one.values - fit.values) for one in near if one is not None]
     if fit.explained < 1.0 - EXACTLY:
         fit.halves = fit.halves + SAMPLED * np.abs(fit.values)
     if distances:
-        # A filter's time constant lies at most half way to the next one.
+        # The time constant of a filter differs by at most half the distance to the next time constant.
         share = 0.5 if low_pass_of(fit.model.kind) else 1.0
         fit.halves = fit.halves + share * np.max(distances, axis=0)
 
 
 def likely(fits):
-    """The first fit without negative damping, which a delay causes; else the first."""
+    """Returns the first fit without negative damping, which is an effect of a delay; if there is none, the first
+    fit."""
     return next(
         (fit for fit in fits if fit.stiffness > 0.0 and fit.damping + fit.halves[1] >= 0.0), fits[0]
     )
@@ -390,7 +403,7 @@ def why_unknown(fits, stiffness, delays, interval):
 
 
 def spanned(value, fits, ends):
-    """The Estimate that spans the intervals of all fits."""
+    """Returns the Estimate whose interval contains the intervals of all fits."""
     pairs = [ends(fit) for fit in fits]
     return Estimate(
         float(value),
@@ -400,8 +413,8 @@ def spanned(value, fits, ends):
 
 
 def noise_share(evidence, fit, interval):
-    """Share of the residuals' variance that the resolution of the position may have caused, at most 1. An engine that
-    renders the resolved position leaves no residuals."""
+    """Returns the fraction of the residuals' variance that the resolution of the position may have caused, at most 1.
+    An engine that renders the resolved position leaves no residuals."""
     q = evidence.resolution
     if q == 0.0:
         return 0.0
@@ -410,13 +423,13 @@ def noise_share(evidence, fit, interval):
 
 
 def stiffness_half(evidence, fit):
-    # Rounding of the position makes a slope smaller, by its share of the variance.
+    # Rounding of the position reduces a slope by the ratio of the rounding's variance to the position's variance.
     shrink = evidence.resolution**2 / 12.0 / max(float(np.var(evidence.place)), 1e-300)
     return fit.halves[0] + (1e-6 + shrink) * abs(fit.stiffness)
 
 
 def clock_error(log):
-    """Relative error of the interval, from the jitter of the first and the last row."""
+    """Returns the relative error of the mean interval, caused by the jitter of the first and the last row."""
     steps = np.diff(log.time)
     return (
         3.0 * float(np.std(steps[steps < 1.5 * log.interval])) / float(log.time[-1] - log.time[0])
@@ -440,7 +453,7 @@ def damping_half(log, evidence, fit):
 
 
 def dry_friction(motion, best):
-    """True if the sign of the velocity explains much of what the spring and the damper leave."""
+    """Returns True if the sign of the velocity explains much of the residual of spring and damper."""
     if best.explained >= 1.0 - 1e-6:
         return False
     fit = fit_of(motion, best.model, True)
@@ -452,14 +465,15 @@ def dry_friction(motion, best):
 
 
 def combined(estimates):
-    """Median of the estimates, weighted by the inverse squares of their intervals. Its interval is as wide as the median
-    interval, and at least as the scatter between the estimates makes it."""
+    """Returns the weighted median of the estimates, with weights of the inverse squared interval widths. The half-width
+    of its interval is the larger of two values: the median half-width, and the value that follows from the scatter of
+    the estimates."""
     values = np.array([one.value for one in estimates])
     halves = np.array([max(one.half, 1e-9 * abs(one.value), 1e-300) for one in estimates])
     weights = halves**-2.0
     middle = weighted_median(values, weights)
     share = weights / weights.sum()
-    count = 1.0 / float(np.sum(share**2))  # contacts of equal weight
+    count = 1.0 / float(np.sum(share**2))  # effective number of contacts with equal weights
     scatter = 0.0
     if len(values) > 1:
         # The median distance times 1.4826 is the standard deviation of normal errors.
@@ -478,7 +492,8 @@ def weighted_median(values, weights):
 
 
 def linearity(motion, fit):
-    """Stiffness of the deeper half of the travel divided by the stiffness of the other half, or None; 1: linear."""
+    """Returns the stiffness in the deeper half of the travel divided by the stiffness in the other half, or None. The
+    value is 1 for a linear spring."""
     if fit.model.delay:
         return None
     keep = motion.usable()
@@ -490,13 +505,13 @@ def linearity(motion, fit):
         if half.sum() < FEWEST or np.ptp(place[half]) == 0.0:
             return None
         slopes.append(-np.polyfit(place[half] - middle, force[half], 1)[0])
-    # The force points out of the surface, so deeper is the smaller position.
+    # The force points out of the surface, so the deeper half has the smaller positions.
     deep, shallow = slopes
     return float(deep / shallow) if shallow > 0.0 else None
 
 
 def stated(log, numbers):
-    """The JSON of one contact's numbers_of()."""
+    """Returns the JSON of one contact's numbers_of()."""
     found = {key: numbers[key] for key in ("why", "apparent_stiffness_N_per_m") if key in numbers}
     if "stiffness" not in numbers or "why" in numbers:
         return found
@@ -506,7 +521,7 @@ def stated(log, numbers):
 
 
 def values_of(log, stiffness, damping, slow, numbers):
-    """The JSON of estimates. Delay and damping are None where the log does not determine them."""
+    """Returns the JSON of estimates. Delay and damping are None if the log does not determine them."""
     first, last = numbers["delay_rows_interval"]
     is_known = first == last
     found = {
@@ -520,7 +535,7 @@ def values_of(log, stiffness, damping, slow, numbers):
         "explained": numbers["explained"],
         "dry_friction_N": numbers["dry_friction_N"],
     }
-    # Half a sampling period of the spring: damping below it does not matter to the sampled loop.
+    # An error of the damping below K T / 2, with the sampling period T, does not matter to the sampled loop.
     enough = max(WELL_KNOWN * abs(damping.value), 0.5 * stiffness.value * log.interval)
     if damping.half <= enough:
         return found | {
@@ -538,8 +553,8 @@ def values_of(log, stiffness, damping, slow, numbers):
 
 
 def springs_of(log, evidences):
-    """(JSON of each contact, JSON of the log or None). `evidences`: of each contact, None for a contact of few rows.
-    The contacts share their models: a delay that one contact excludes is the delay of no contact.
+    """Returns (JSON of each contact, JSON of the log or None). `evidences`: for each contact, None for a contact with
+    too few rows. All contacts share one delay: if one contact excludes a delay, the delay is excluded for all.
     """
     evidences = with_shared_normal(log, evidences)
     known = [one for one in evidences if one is not None and one.likelihood]
@@ -569,7 +584,8 @@ def springs_of(log, evidences):
 
 
 def loops_of(log, stiffness, numbers):
-    """(delay [s], damping) of each delay that the log allows, with both ends of the interval of the damping."""
+    """Returns (delay [s], damping [N s/m]) for each delay that the log allows, at both ends of the interval of the
+    damping."""
     found = []
     for delay in sorted({fit.model.delay for its in numbers for fit in its["fits"]}):
         dampings = [

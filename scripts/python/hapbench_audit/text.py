@@ -1,8 +1,8 @@
-"""An audit as rows of a table: subject, quantity and its numbers in words; and the lines below the table."""
+"""An audit as rows of a table (subject, quantity, numbers in words), and the lines below the table."""
 from hapbench_import.text_table import counted
 
 
-HAMMERS = 1.0  # contacts lost per second
+HAMMERS = 1.0  # threshold of contacts lost per second
 
 
 def number(value, digits=3, none="-"):
@@ -36,7 +36,7 @@ def rows_of(audit):
 
 def clock_rows(clock):
     interval, jitter = clock["interval_s"], clock["jitter_s"]
-    # Rounding of the times themselves is no jitter.
+    # Jitter below the rounding of the times is printed as none.
     shown = "none" if jitter < 1e-6 * interval else f"{1e6 * jitter:.3g} us rms"
     rows = [
         ("rate", f"{clock['rate_Hz']:.6g} Hz, {clock['rows']} rows in {clock['duration_s']:.4g} s"),
@@ -186,7 +186,7 @@ def delay_text(spring):
 
 
 def ends_text(interval, digits=4):
-    """The two ends, with as many more digits as it takes to tell them from each other."""
+    """Returns both ends of an interval, with more digits if the ends would otherwise look equal."""
     low, high = interval
     while digits < 7 and f"{low:.{digits}g}" == f"{high:.{digits}g}":
         digits += 1
@@ -231,7 +231,7 @@ def device_rows(audit):
 
 
 def range_rows(audit):
-    """Of a log that does not determine damping or delay."""
+    """Returns the rows for a log that does not determine damping or delay."""
     device = audit["device"]
     return [
         (
@@ -258,7 +258,7 @@ def ratios_text(device):
 
 
 def expected_text(audit):
-    """What the linear loop predicts, beside what the log shows."""
+    """Returns the prediction of the linear loop beside the measured value."""
     buzz, lost = audit["buzz"], audit["metrics"]["contacts_lost_per_s"] or 0.0
     text = f"expect a buzz near {audit['device']['expected_frequency_Hz']:.0f} Hz; the log "
     if not buzz:
@@ -280,7 +280,7 @@ def measured_rows(measured):
 
 
 def table_rows(audit):
-    """rows_of() with each subject once."""
+    """Returns the rows of rows_of(), where each subject is printed only once."""
     shown, last = [], None
     for subject, *rest in rows_of(audit):
         shown.append(["" if subject == last else subject, *rest])
@@ -289,7 +289,7 @@ def table_rows(audit):
 
 
 def below_table(audit):
-    """Lines below the table: diagnosis, and what is missing."""
+    """Returns the lines below the table: diagnosis, and quantities that the log does not determine."""
     lines = ["diagnosis" if audit["diagnosis"] else "diagnosis: no rule exceeds its threshold"]
     for one in audit["diagnosis"]:
         lines += [f"  {one['rule']}: {one['says']}", f"    try: {one['try']}"]

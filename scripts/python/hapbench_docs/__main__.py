@@ -20,7 +20,7 @@ from .manuals import (
 )
 
 GALLERY = ROOT / "results" / "reference" / "gallery"
-# Commands, the last of which plots, and below them the picture.
+# Matches commands, of which the last one plots, followed by the picture.
 ILLUSTRATED = re.compile(r"((?:^    hapbench .*\n)+)\n!\[[^]]*\]\([^)]*/gallery/(\w+\.svg)\)", re.M)
 
 DESCRIPTION = """Renews what is generated in the manuals: sessions (commands with their output),
@@ -53,7 +53,7 @@ def arguments(words):
 
 
 def draw_gallery(program, scratch):
-    """The pictures that manuals show below the commands that draw them."""
+    """Draws the pictures that manuals show below the commands."""
     pictures = [
         found for manual in map(Manual, manuals()) for found in ILLUSTRATED.findall(manual.text)
     ]

@@ -1,6 +1,6 @@
-"""The manuals: where they are, the commands they document, their links, and their generated parts, which stand between
-`<!-- generated: NAME -->` and `<!-- /generated -->`: sessions, and tables of the ledger
-(claims.json) and of its robustness as results/reference holds them."""
+"""The manuals: their files, the commands that they document, their links, and their generated parts between `<!--
+generated: NAME -->` and `<!-- /generated -->`. Generated parts are sessions, and tables of the ledger (claims.json) and
+of its robustness in results/reference."""
 import csv
 import datetime
 import json
@@ -19,11 +19,11 @@ NOT_OURS = ("build", "results/out")
 COMMAND = re.compile(r"^\s*(?:\$ )?((?:build/\S+/hapbench|hapbench|scripts/[a-z]+)(?:\s.*)?)$")
 LINK = re.compile(r"\]\(([^)\s]+)\)")
 HEADING = re.compile(r"^#{1,6} (.+)$", re.M)
-# Words that end a command of the shell.
+# Matches words that end a command of the shell.
 ENDS = re.compile(r"^(?:\||&&|;|\d?>.*|<.*)$")
 BLOCK = re.compile(r"(<!-- generated: (\S+)[^\n]*-->\n)(.*?)(<!-- /generated -->)", re.S)
 BEGIN = "<!-- generated:"
-COLUMNS = 100  # of a session in a manual
+COLUMNS = 100  # terminal width of a session in a manual
 STARTED = ROOT / "scenarios" / "GETTING_STARTED.md"
 REFERENCE = ROOT / "results" / "reference"
 TASKS = {
@@ -32,12 +32,13 @@ TASKS = {
     "D3": "turning, 3 mm high",
     "D4": "turning, 4 mm high",
 }
-STAMP = re.compile(r"hapbench \d[\w.]*, \d{4}-\d\d-\d\d, [^\n]+\.")  # see Program.provenance()
+# Matches the line of Program.provenance().
+STAMP = re.compile(r"hapbench \d[\w.]*, \d{4}-\d\d-\d\d, [^\n]+\.")
 PAIR = re.compile(r"success(?: rate)? (.+?) vs ([^;(]+)")
 
 
 def manuals():
-    """Every Markdown file of the tree."""
+    """Returns every Markdown file of the source tree."""
     for file in sorted(ROOT.rglob("*.md")):
         where = file.relative_to(ROOT)
         hidden = any(part.startswith(".") for part in where.parts)
@@ -61,7 +62,7 @@ class Manual:
         self.text = self.file.read_text(encoding="utf-8")
 
     def code(self):
-        """Number and text of the lines in fences, or indented by four and more."""
+        """Yields number and text of the code lines: in fences, or indented by four or more blanks."""
         fenced = False
         for number, line in enumerate(self.text.splitlines(), 1):
             if line.lstrip().startswith("```"):
@@ -70,8 +71,8 @@ class Manual:
                 yield number, line
 
     def commands(self):
-        """The commands that begin with hapbench, build/…/hapbench or scripts/…; a backslash at the
-        end joins the next line."""
+        """Returns the commands that begin with hapbench, build/…/hapbench or scripts/…. A backslash at the end joins
+        the next line."""
         lines = list(self.code())
         while lines:
             number, line = lines.pop(0)
@@ -84,7 +85,7 @@ class Manual:
                 yield Command(self.file, number, tuple(words[:end]))
 
     def anchors(self):
-        """Anchors of its headings, as GitHub makes them."""
+        """Returns the anchors of the headings in GitHub's form."""
         return {
             re.sub(r"[^\w\- ]", "", title.strip().lower()).replace(" ", "-")
             for title in HEADING.findall(self.text)
@@ -92,7 +93,7 @@ class Manual:
 
 
 def broken_links(manual):
-    """Relative links that lead nowhere."""
+    """Returns the relative links whose target does not exist."""
     for link in LINK.findall(manual.text):
         if re.match(r"^[a-z]+:", link):
             continue
@@ -108,7 +109,8 @@ def broken_links(manual):
 
 
 def renewed(text, makers):
-    """The text with each block made anew by `makers[NAME](old)`; blocks without a maker stay."""
+    """Returns the text with each generated block replaced by `makers[NAME](old)`. Blocks without a maker are
+    unchanged."""
     if text.count(BEGIN) != len(BLOCK.findall(text)):
         raise InputError(
             'a block that begins with "<!-- generated: NAME -->" lacks its end "<!-- /generated -->"'
@@ -122,8 +124,8 @@ def renewed(text, makers):
 
 
 def session(old, program, directory):
-    """A block with a command and its output, which ends with version, date and processor. The command
-    is the first command of the old block."""
+    """Returns a block with a command and its output, which ends with version, date and processor. The command is the
+    first command of the old block."""
     line = next(
         (line.strip() for line in old.splitlines() if line.strip().startswith("$ hapbench ")), None
     )
@@ -137,7 +139,7 @@ def session(old, program, directory):
 
 
 def write_files_of_getting_started(folder):
-    """Writes the files that the tutorial makes without hapbench: a mesh my.obj and a compiled law mine.so."""
+    """Writes the files that the tutorial creates without hapbench: a mesh my.obj and a compiled law mine.so."""
     shutil.copy(ROOT / "scenarios/library/examples/data/molar.obj", folder / "my.obj")
     text = STARTED.read_text(encoding="utf-8")
     law = re.search(r"^```c\n(.*?)^```$", text, re.M | re.S)[1]
@@ -152,13 +154,14 @@ def read(name):
 
 
 def main_results(_old=""):
-    """The sentences of the abstract, as the ledger opens with them; links lead to the ledger."""
+    """Returns the sentences of the abstract at the beginning of the ledger, with links into the ledger."""
     page = (REFERENCE / "claims.md").read_text(encoding="utf-8")
     return next(part for part in page.split("\n\n") if part.startswith("| the abstract claims |"))
 
 
 def experiments(_old=""):
-    """Success in the thesis's experiments, measured with simulated subjects and published with people."""
+    """Returns the table of success in the thesis's experiments: measured with simulated subjects, and published with
+    people."""
     by_id = {claim["id"]: claim for claim in read("claims.json")["claims"]}
     lines = [
         "| task and target | original algorithm, ours (published) | stiffness shaping, ours (published) |",
@@ -173,7 +176,7 @@ def experiments(_old=""):
 
 
 def robustness(_old=""):
-    """The assumptions that decide verdicts, each with the claims."""
+    """Returns the assumptions that decide verdicts, each with its claims."""
     claims = read("claims.json")["claims"]
     what = {entry["id"]: entry["what"] for entry in read("assumptions.json")["assumptions"]}
     decided = {}
@@ -188,9 +191,9 @@ def robustness(_old=""):
 
 
 def six_dof(_old=""):
-    """The table of the study six_dof, whose sweep.csv is stored as six_dof.csv: for each scene and, in the edge and the
-    slot, each hand, grip and pivot, the force and torque of the device with torque, and the force error of each law with
-    the energy that it creates in a cycle."""
+    """Returns the table of the study six_dof, whose sweep.csv is stored as six_dof.csv. It has a row for each scene
+    and, in the edge and the slot, for each hand, grip and pivot: force and torque of the device with torque, and for
+    each law the force error and the energy that the law creates in a cycle."""
     with open(REFERENCE / "six_dof.csv", newline="", encoding="utf-8") as lines:
         rows = list(csv.DictReader(lines))
     laws = list(dict.fromkeys(row["six_dof.law"] for row in rows))
@@ -245,8 +248,9 @@ class Program:
         self.file = file.resolve()
 
     def run(self, words, directory):
-        """Standard output. A run that ends other than expected (3) has output, too."""
-        # The tables are over the algorithms of this tree.
+        """Runs the program and returns its standard output. A run with an unexpected outcome (status 3) also has
+        output."""
+        # Print the tables for the algorithms of this source tree.
         environment = {
             name: value for name, value in os.environ.items() if name != "HAPBENCH_MODULE_PATH"
         }
@@ -274,14 +278,14 @@ class Program:
         return f"{text}\n\nPrinted by {self.provenance()}."
 
     def provenance(self):
-        """Version, date and processor, such as "hapbench 0.3.0, 2026-11-21, AMD EPYC". Without the
-        commit, so that no reader has to check out a commit to compare."""
+        """Returns version, date and processor, such as "hapbench 0.3.0, 2026-11-21, AMD EPYC". The commit is omitted,
+        because a comparison needs only the version."""
         version = self.run(["--version"], ".").partition(" (")[0].strip()
         return f"{version}, {datetime.date.today()}, {processor()}"
 
 
 def same_but_for_times(a, b):
-    """Whether two outputs have the same words, apart from times in microseconds, which differ from run to run."""
+    """Returns True if two outputs are equal except for times in microseconds, which differ from run to run."""
     return _words(a) == _words(b)
 
 
@@ -296,7 +300,7 @@ def _words(text):
 
 
 def processor():
-    """The processor's name without what it says of its cores."""
+    """Returns the processor's name without the number of cores."""
     try:
         found = re.search(
             r"^model name\s*:\s*(.+)$", Path("/proc/cpuinfo").read_text(encoding="utf-8"), re.M
@@ -310,7 +314,7 @@ def processor():
     )
 
 
-# The tables that need no program.
+# Functions that make tables without running the program.
 MAKERS = {
     "main_results": main_results,
     "experiments": experiments,

@@ -18,7 +18,7 @@ CAPTIONS = Path(__file__).parent / "captions.txt"
 HEAD = re.compile(r"(\S+)\] (.+) · (\w+)\.(\w+)(?:\((\w+)\))? · (.+)")
 NOTHING_DRAWN = 1
 ROWS = "rows.json"
-NUMBER = re.compile(r"(?:[A-F]\.)?\d+")  # of a figure
+NUMBER = re.compile(r"(?:[A-F]\.)?\d+")  # number of a figure
 FORMATS = ("svg", "pdf", "png")
 PAGE = """# Stored figures
 
@@ -31,30 +31,33 @@ such as 3.2 and C.4.2 are sections of the thesis. *Differs* states how a figure 
 
 @dataclass(frozen=True)
 class Figure:
-    """A figure as captions.txt has it."""
+    """A figure as described by captions.txt."""
 
     id: str
-    thesis: str  # the thesis's figure that it redraws; empty for ours
+    # Number of the thesis's figure that this figure redraws; empty for figures of this project.
+    thesis: str
     module: str
     function: str
     argument: str | None
     title: str
     caption: str
-    differs: str  # from the thesis's figure, and why
-    rows: tuple  # claims that it draws, besides those whose place names the thesis's figure
+    differs: str  # difference from the thesis's figure, with the reason
+    # Further claims that the figure draws, besides the claims located in the thesis's figure.
+    rows: tuple
 
     @property
     def stem(self):
         return "figure_" + self.id.replace("-", "_")
 
     def draw(self, results):
-        """The drawing and the values of its caption. Raises MissingResult when its data is not there."""
+        """Returns the drawing and the values of its caption. Raises MissingResult if data is missing."""
         function = getattr(import_module(f".{self.module}", __package__), self.function)
         return function(results, self.argument) if self.argument else function(results)
 
 
 def catalogue():
-    """Every figure, in the order of captions.txt; without a caption one has that of the one before it."""
+    """Returns every figure in the order of captions.txt. A figure without a caption shares the caption of the figure
+    before it."""
     found = []
     for text in CAPTIONS.read_text(encoding="utf-8").split("\n\n[")[1:]:
         head, *lines = text.strip().split("\n")
@@ -109,7 +112,7 @@ def arguments(argv):
 
 
 def selection(only):
-    """The figures that are asked for."""
+    """Returns the requested figures."""
     chosen = []
     for id_ in only.split(",") if only else ():
         found = [f for f in FIGURES if f.id == id_ or f.id.startswith(id_ + "-")]
@@ -139,7 +142,7 @@ def draw(figure, results, directory):
 
 
 def write_index(directory, entries):
-    """figures.json: entries of earlier runs stay for figures that were not drawn anew and still are there."""
+    """Writes figures.json. Entries of earlier runs are kept for figures that still exist and were not drawn again."""
     file = directory / "figures.json"
     known = {entry["id"]: entry for entry in read_json(file)["figures"]} if file.is_file() else {}
     known |= {entry["id"]: entry for entry in entries}
@@ -153,8 +156,8 @@ def write_index(directory, entries):
 
 
 def measured(figure, claims):
-    """What the ledger has for each claim that a figure draws, but for times: where that changes,
-    the figure is stale."""
+    """Returns the measured numbers of each claim that a figure draws, without times. If these numbers change, the
+    figure is outdated."""
     numbers = set(NUMBER.findall(figure.thesis))
     drawn = {}
     for claim in claims:
@@ -170,8 +173,8 @@ def measured(figure, claims):
 
 
 def record(directory, page, drawn, claims):
-    """Copies figures into the directory `page` and writes figures.md about all that lie there, and
-    rows.json with what the ledger measured for the claims that they draw."""
+    """Copies figures into the directory `page`. Writes figures.md about all figures there, and rows.json with the
+    measured numbers of the claims that they draw."""
     text, rows = PAGE, {}
     for figure in FIGURES:
         on_record = page / f"{figure.stem}.svg"
@@ -207,7 +210,7 @@ def run(chosen):
         except ResultError as error:
             bad[str(error)] = None
         except (KeyError, IndexError, TypeError, ValueError) as error:
-            # A file that can be read but has not the columns, rows or members of hapbench's.
+            # A readable file without the columns, rows or members that hapbench writes.
             bad[
                 f"figure {figure.id}: {', '.join(sorted(results.sources))}: {type(error).__name__}: {error}"
             ] = None

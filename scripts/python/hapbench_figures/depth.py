@@ -8,12 +8,12 @@ import hapbench_style as style
 from . import scene
 
 SHORTEST, NORMAL = "tilt_sweep_original_averaging", "tilt_sweep_shaped_stiffness"
-DEEP = 0.42  # tilt [rad] at which many points lie beyond the median line
+DEEP = 0.42  # tilt at which many points lie beyond the median line [rad]
 SHALLOW = 0.12
-FRAME = (-1.9, 1.9), (-4.3, 1.0)  # of the contacts [mm]
-# Without the yellow end, which white paper swallows.
+FRAME = (-1.9, 1.9), (-4.3, 1.0)  # drawn region of the contacts [mm]
+# Omits the yellow end of the colour map, which is hardly visible on white paper.
 TILT_COLOURS = ListedColormap(style.plt.get_cmap("viridis")(np.linspace(0, 0.75, 256)))
-# Directory, algorithm, name of its depth; the wide line shows below the one that covers it.
+# Directory, algorithm, and name of its depth. The wide curve remains visible below the curve that covers it.
 STROKES = (
     ("thesis/corner_normal_projection", "normal_projection", "normal projection", {"lw": 1.1}),
     (
@@ -23,7 +23,7 @@ STROKES = (
         {"lw": 3.2, "alpha": 0.35},
     ),
 )
-# Not of the thesis, so the figure is drawn without it too.
+# This depth model is not in the thesis, so the figure is also drawn without it.
 CONTINUOUS = (
     "run_beyond/corner_continuous_normal_projection",
     "continuous_normal_projection",
@@ -81,7 +81,7 @@ def draw_flip_count(ax, sweep):
         contacts = sweep.contacts(step)
         tilt.append(sweep.tilt[step])
         share.append(contacts.flipped().mean())
-        # A gradient along the outward normal pulls the tool in; deep contacts count more.
+        # A gradient along the outward normal pulls the tool in. Contacts are weighted by depth.
         along = np.einsum("ij,ij->i", contacts.gradient, contacts.normal)
         pull.append(np.average(along, weights=np.maximum(contacts.depth, 1e-12)))
     ax.plot(tilt, share, color=style.PETROL, marker="s", markevery=8)

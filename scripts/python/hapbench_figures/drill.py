@@ -7,14 +7,14 @@ from hapbench.results import MissingResult
 
 from . import scene
 
-RUN = "thesis/task2_pressed"  # the run that claim J1 is judged by
-MARKS = 120  # of a group of forces at most: more could not be told from their neighbours
-SETTLED = 0.5  # seconds: the drill starts above its place
+RUN = "thesis/task2_pressed"  # the run that decides claim J1
+MARKS = 120  # largest number of marks for each range of force: more could not be distinguished
+SETTLED = 0.5  # start of the drawn time [s]: the drill starts above its position in the hole
 
 
 def samples(results):
-    """Rows of the run by force of the hand, below 2 N and from there on, settled and within the
-    compared tilts. Lengths in millimetres."""
+    """Returns the rows of the run in two groups, with a hand force below 2 N and from 2 N on. Only settled rows within
+    the compared tilts are included. Lengths in millimetres."""
     rows = results.table(f"{RUN}/ideal_trajectory.csv")
     range_ = scene.PUBLISHED["J1.tilt"]
     own = (
@@ -36,7 +36,7 @@ def samples(results):
 
 
 def ideal(rows_list):
-    """The ideal place over the tilt, sorted [mm]."""
+    """Returns the ideal position over the tilt, sorted [mm]."""
     tilt = np.concatenate([rows["tilt_rad"] for rows in rows_list])
     order = np.argsort(tilt)
     column = lambda key: np.concatenate([rows[key] for rows in rows_list])[order]  # noqa: E731

@@ -1,5 +1,5 @@
-"""The man-machine experiments with simulated subjects against the published means (figures D.7 and
-D.8), and how their success depends on what the task checks (ours)."""
+"""The man-machine experiments with simulated subjects against the published means (figures D.7 and D.8), and the
+dependence of their success on the checks of the task (a figure of this project)."""
 import json
 import warnings
 
@@ -16,7 +16,7 @@ MEASURES = (
     ("force", "model_force_N", "model force [N]", 1),
     ("speed", "speed_m_per_s", "velocity [mm/s]", 1e3),
 )
-# Of each task its two targets: place, claim, title.
+# The two targets of each task: position, claim, title.
 TARGETS = {
     "vertical": ((1, "D1", "side target (0.52 mm)"), (0, "D2", "central target")),
     "rotational": ((0, "D3", "target at 3 mm"), (1, "D4", "target at 4 mm")),
@@ -26,19 +26,19 @@ METHODS = ((DP, "DP"), (HS, "HS"))
 
 
 def subject_means(records, place, column):
-    """Mean of each subject over its targets at a place, where anything was measured."""
+    """Returns the mean of each subject over its targets at a position, if any value was measured."""
     own = [row for row in records if row["place"] == str(place)]
     subjects = numbers(own, "subject")
     values = numbers(own, column)
     with warnings.catch_warnings():
         warnings.simplefilter(
             "ignore", RuntimeWarning
-        )  # a subject who never was on the target has no mean
+        )  # a subject that was never on the target has no mean
         return np.array([np.nanmean(values[subjects == s]) for s in np.unique(subjects)])
 
 
 def significance(first, second):
-    """Text of the paired t-test over the subjects that have both values."""
+    """Returns the text of the paired t-test over the subjects that have both values."""
     both = np.isfinite(first) & np.isfinite(second)
     difference = (first - second)[both]
     if len(difference) < 2 or np.ptp(difference) == 0:
@@ -49,14 +49,15 @@ def significance(first, second):
         )
     from scipy.stats import (
         ttest_rel,
-    )  # takes a quarter of the time of starting, and few figures need it
+        # Imported here, because this import takes a quarter of the start time and few figures need it.
+    )
 
     t, p = ttest_rel(first[both], second[both])
     return f"t = {signed(t)}, p {'< 0.001' if p < 0.001 else f'= {p:.3f}'}"
 
 
 def signed(number):
-    """Three digits at most, with the minus of a printer."""
+    """Formats a number with at most three digits and the typographic minus sign."""
     return f"{number:.3g}".replace("-", "−")
 
 
@@ -67,7 +68,7 @@ def published_test(claim):
 
 
 def questionnaires(results):
-    """The published efforts (figure D.6), which the ledger has as claim D5."""
+    """Returns the published efforts (figure D.6), which the ledger stores as claim D5."""
     results.json("claims.json")
     figure, axes = style.panels(1, 2, 2.2, gridspec_kw={"width_ratios": [2, 1]})
     effort, relative = axes[0]
@@ -125,7 +126,7 @@ def draw_measure(ax, tables, place, claim, measure):
     ax.set_xlim(-0.5, 1.5)
     ax.set_xticks([0, 1], [short for _, short in METHODS])
     ax.grid(axis="x", visible=False)
-    # Above the frame: inside, marks would cover it.
+    # Placed above the frame, because marks would cover the text inside.
     test = {"transform": ax.transAxes, "fontsize": 7, "va": "bottom"}
     ax.text(0, 1.09, f"ours: {significance(*both)}", **test)
     ax.text(0, 1.01, f"publ.: {published_test(f'{claim}.{name}')}", color=style.RED, **test)
@@ -142,11 +143,11 @@ def experiment(results, task):
             draw_measure(ax, tables, place, claim, measure)
         row[0].set_ylabel(title)
     for ax, measure in zip(axes[0], MEASURES):
-        ax.set_title(f"{measure[2]}\n \n ")  # room for the tests
+        ax.set_title(f"{measure[2]}\n \n ")  # two blank lines leave room for the test results
     for column in axes.T[:3]:
         top = 1.05 * max(ax.dataLim.y1 for ax in column)
         column[0].set_ylim(-0.03 * top, top)
-    # One subject who is thrown about is a hundred times as fast as the others.
+    # One unstable subject is a hundred times as fast as the others.
     axes[0, 3].set_yscale("log")
     style.number_ticks(axes[0, 3].yaxis, (1, 2, 5))
     return style.lettered(figure, axes[0]), {}
@@ -161,13 +162,13 @@ CHECKED = (
 
 
 def recorded(results, task, place, method):
-    """The success of all subjects as the scene checks the force: every sample of it."""
+    """Returns the success of all subjects if every sample of the force is checked, as in the scene."""
     rows = results.records(f"thesis/{task}_peg_in_hole_{method}/targets.csv")
     return numbers([row for row in rows if row["place"] == str(place)], "removed").mean()
 
 
 def checked(results, task, place):
-    """(cut-off [Hz] or None, grace [s], success) of the original algorithm under other thresholds."""
+    """Yields (cutoff [Hz] or None, grace period [s], success) of the original algorithm with other thresholds."""
     for row in results.records("checked_force/sweep.csv"):
         if row["scenario"] == f"{task}_peg_in_hole_{DP}":
             threshold = json.loads(row["hand.task.threshold"])
@@ -177,8 +178,8 @@ def checked(results, task, place):
 
 
 def threshold(results):
-    """Success of the original algorithm over grace and bandwidth of the force that is checked,
-    beside stiffness shaping."""
+    """Draws the success of the original algorithm over grace period and bandwidth of the checked force, beside the
+    success of stiffness shaping."""
     figure, axes = style.panels(1, 4, 2.7, sharey=True)
     said = []
     for ax, (task, place, claim, title) in zip(axes[0], CHECKED):

@@ -9,9 +9,9 @@ from hapbench.results import MissingResult
 from hapbench_command import asked_of_program
 from hapbench_pictures.over_axes import with_room
 
-ACCURACY = "accuracy/accuracy.json"  # of hapbench_accuracy
-# title, settings by the beginning of their names, error, its label and scale; time of a simulated
-# second, or of a step or call
+ACCURACY = "accuracy/accuracy.json"  # written by hapbench_accuracy
+# For each panel: title, prefixes of the settings' names, error, its label and scale, and the time: per simulated
+# second, per step or per call.
 PANELS = (
     (
         "integrators and their step",
@@ -55,14 +55,15 @@ PANELS = (
         "second",
     ),
 )
-# Settings whose order is not the order of their costs: their marks are not joined.
+# The order of these settings is not the order of their costs, so their marks are not joined.
 UNORDERED = ("reduction/",)
-LARGEST_ERROR_MM = 10  # the block is 15 mm wide: beyond, the drill has left it
+# Largest drawn error [mm]: the block is 15 mm wide, so with a larger error the drill has left it.
+LARGEST_ERROR_MM = 10
 
 
 @dataclass(frozen=True)
 class Setting:
-    series: str  # what several settings share, "" where a name is a word
+    series: str  # common part of the names of several settings; "" if a name has one part
     short: str
     time: float
     error: float
@@ -78,12 +79,13 @@ class Setting:
 
 
 def settings_of(results, beginnings, column, scale, per):
-    """The settings that a logarithmic plot can show: that completed, with an error, not a nonsensical one."""
+    """Returns the settings that a logarithmic plot can show: they completed, and have a positive and plausible
+    error."""
     found = []
     for row in results.json(ACCURACY)["benchmarks"]:
         if (
             not row["name"].startswith(beginnings) or " + " in row["name"]
-        ):  # an algorithm with an option: nearly the same place
+        ):  # an algorithm with an option: its mark would nearly coincide with another mark
             continue
         series, _, short = (
             row["name"].removesuffix("/manual_time").partition("/")[2].rpartition(" ")
@@ -103,8 +105,8 @@ def settings_of(results, beginnings, column, scale, per):
 
 
 def knee(settings):
-    """The knee of the front of run time and error, as `hapbench plot` of `converge --over` marks it: the program
-    finds it. None where the front is straight or has fewer than four settings."""
+    """Returns the knee of the front of run time and error, as `hapbench plot` of `converge --over` marks it; the
+    program finds it. Returns None if the front is straight or has fewer than four settings."""
     points = [f"{setting.time!r}:{setting.error!r}" for setting in settings]
     found = asked_of_program("finds the knee of a front", "plot", "--knee", *points).strip()
     return settings[int(found)] if found else None
@@ -148,7 +150,8 @@ def draw_panel(ax, results, title, beginnings, column, label, scale, per):
 
 
 def draw_series(ax, name, settings, look, joined):
-    """The settings of a sequence, joined by a line; a setting without a number, such as "exact", is a mark alone."""
+    """Draws the settings of a sequence, joined by a line. A setting without a number, such as "exact", is drawn as a
+    mark only."""
     label = name.replace("_", " ")
     ordered = [s for s in settings if joined and any(map(str.isdigit, s.short))]
     alone = [s for s in settings if s not in ordered]
@@ -172,7 +175,8 @@ def draw_series(ax, name, settings, look, joined):
 
 
 def legends_below(axes, drawn):
-    """The names of the panels' curves below all panels, where they cover no mark: (f) has the curves of (a)."""
+    """Places the names of the curves below all panels, where they cover no mark. Panel (f) has the same curves as panel
+    (a)."""
     add_legend(axes[0], "a, f", drawn[0], "upper left", 1)
     add_legend(axes[1], "b", drawn[1], "upper center", 3)
     add_legend(axes[2], "d", drawn[3], "upper right", 1)

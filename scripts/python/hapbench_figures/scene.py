@@ -1,5 +1,5 @@
-"""What several figures draw: the numbers that the thesis publishes, and the planar peg-in-hole
-scene with its contacts, in millimetres."""
+"""Elements shared by several figures: the numbers that the thesis publishes, and the planar peg-in-hole scene with its
+contacts in millimetres."""
 import json
 from dataclasses import dataclass
 from pathlib import Path
@@ -17,22 +17,22 @@ PUBLISHED = {
         (ROOT / "results/reference/published.json").read_text(encoding="utf-8")
     )["values"]
 }
-LEDGER = "claims.json"  # beside the results: what was measured for each claim
+LEDGER = "claims.json"  # measured numbers of each claim, stored beside the results
 
 
 def published(id_):
-    """The number of an entry of PUBLISHED with a single one or a mean."""
+    """Returns the published number of an entry that has a single number or a mean."""
     return PUBLISHED[id_].get("value", PUBLISHED[id_].get("mean"))
 
 
 def spread(id_):
-    """Standard deviation or standard error, whichever the entry has."""
+    """Returns the standard deviation or the standard error of an entry."""
     return PUBLISHED[id_].get("std", PUBLISHED[id_].get("standard_error"))
 
 
 @dataclass(frozen=True)
 class Contacts:
-    """Contacts of one step, all coordinates in the plane; SI units."""
+    """Contacts of one step. All coordinates lie in the plane and are in SI units."""
 
     point: np.ndarray
     normal: np.ndarray
@@ -41,13 +41,13 @@ class Contacts:
     weight: np.ndarray
 
     def flipped(self):
-        """Which contacts have a gradient against the inverse of the surface normal: they pull the tool in."""
+        """Returns True for contacts whose gradient points against the inverse surface normal: they pull the tool in."""
         return np.einsum("ij,ij->i", self.gradient, self.normal) > 0
 
 
 @dataclass(frozen=True)
 class Peg:
-    """Pose and size of a round-tipped tool; the axis points out of the tip. SI units."""
+    """Pose and size of a round-tipped tool in SI units. The axis points out of the tip."""
 
     tip: np.ndarray
     axis: np.ndarray
@@ -69,7 +69,8 @@ class Peg:
         return (distance <= self.diameter / 2) & (s >= -self.length)
 
     def exit_distance(self, points, directions):
-        """Way of each point out of the tool along its direction; the tool is convex, so bisection finds it."""
+        """Returns the exit distance of each point along its direction [m]. The tool is convex, so bisection finds
+        it."""
         low, high = np.zeros(len(points)), np.full(len(points), 2 * (self.length + self.diameter))
         for _ in range(40):
             middle = (low + high) / 2
@@ -79,7 +80,7 @@ class Peg:
 
 
 def peg_of(tool, rows, step):
-    """The tool of a scenario in a row of its trajectory."""
+    """Returns the tool of a scenario in one row of its trajectory."""
     tip, axis = (
         np.array([rows[name][step] for name in names])
         for names in (("px_m", "py_m"), ("axis_x", "axis_y"))
@@ -158,11 +159,12 @@ def draw_peg(ax, peg, median=False, **keywords):
 
 
 def draw_segments(ax, contacts, colours):
-    """From each contact along its gradient, as long as its depth: where it is taken to leave the tool."""
+    """Draws a segment from each contact along its gradient, as long as its depth. It ends where the depth model assumes
+    that the point leaves the tool."""
     ends = contacts.point + contacts.depth[:, None] * contacts.gradient
     for colour in dict.fromkeys(colours):
         own = [c == colour for c in colours]
-        # One line with gaps, and one row of marks: an SVG of them is much smaller.
+        # One line with gaps and one row of marks, because the SVG of single elements would be much larger.
         lines = (
             np.stack([contacts.point[own], ends[own], np.full_like(ends[own], np.nan)], 1).reshape(
                 -1, 2
@@ -174,7 +176,7 @@ def draw_segments(ax, contacts, colours):
 
 
 def draw_arrow(ax, start, vector, colour, label=None, at=(3, 3), **keywords):
-    """An arrow, both ends in the units of the axes; the label at its head."""
+    """Draws an arrow with both ends in the units of the axes, and the label at its head."""
     head = np.asarray(start) + vector
     style_ = {
         "arrowstyle": "-|>",
@@ -200,13 +202,14 @@ def draw_arrow(ax, start, vector, colour, label=None, at=(3, 3), **keywords):
 
 
 def frame(ax, x, y):
-    """The part of the scene that is shown, in millimetres."""
+    """Sets the visible region of the scene [mm]."""
     ax.set(xlim=x, ylim=y, xlabel="x [mm]", ylabel="y [mm]")
 
 
 def draw_contacts(ax, sweep, step, x, y, flips=False):
-    """Hole, peg, and the contacts with their depths, which it returns, in this part of the scene;
-    with `flips` the median line in place of the hole's points, and flipped gradients in petrol."""
+    """Draws hole, peg and contacts with their depths in this region of the scene, and returns the contacts. With
+    `flips`, the median line replaces the hole's points, and flipped gradients are drawn in petrol.
+    """
     contacts = sweep.contacts(step)
     draw_hole(ax, sweep.scenario["environment"], points=not flips)
     draw_peg(ax, sweep.peg(step), median=flips)

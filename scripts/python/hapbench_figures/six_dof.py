@@ -1,4 +1,4 @@
-"""The force of laws on a device without torque against the force of a device with torque (ours)."""
+"""The force of laws on a device without torque against the force of a device with torque (figures of this project)."""
 import json
 
 import numpy as np
@@ -20,13 +20,15 @@ HAND, HAND_ROTATION, COUPLING, COUPLING_ROTATION = (
     0.2,
     20000.0,
     0.4,
-)  # of six_dof and the scenes
-SMALLEST = 1e-3  # smaller errors are drawn here [N]
-LEVER = 0.026  # from the force point to the edge of the plane, which is 4 mm above the tip [m]
+)  # values of the hand and of six_dof in the scenes
+SMALLEST = 1e-3  # smaller errors are drawn at this value [N]
+# Distance from the force point to the edge of the plane, which is 4 mm above the tip [m].
+LEVER = 0.026
 
 
 def look(law):
-    """The proxies share a colour; the one that is matched to the hand is hollow and dotted."""
+    """Returns the look of a law. The proxies share a colour; the proxy that is matched to the hand is hollow and
+    dotted."""
     if law == "matched_proxy":
         own = style.look("proxy")
         return {
@@ -40,7 +42,7 @@ def look(law):
 
 
 def rows_of(results):
-    """Every run of the study: its scene, law, values of six_dof, index, and metrics by short names."""
+    """Returns every run of the study: scene, law, values of six_dof, index, and metrics by short names."""
     rows = []
     for index, record in enumerate(results.records(f"{STUDY}/sweep.csv")):
         fields = json.loads(record["six_dof"])
@@ -62,8 +64,8 @@ def rows_of(results):
 
 
 def chosen(rows, **wanted):
-    """The rows with these values. A field that a row does not name has its usual value: only the fields of `wanted`
-    and the force point may be named."""
+    """Returns the rows with these values. A field that a row does not name has its default value. Only the fields of
+    `wanted` and the force point may be named in a row."""
     usual = ("hand_rotational_stiffness_N_m_per_rad", "grip_m", "pivot_m")
     found = [
         row
@@ -77,8 +79,9 @@ def chosen(rows, **wanted):
 
 
 def ratio_of_closed_form(grip, matched):
-    """Force of the proxy over that of the device with torque at one contact (METHOD: K' of coupling and hand in
-    series; the proxy that is matched for a grip at the force point, or that does not turn)."""
+    """Returns the ratio of the proxy's force to the force of the device with torque, at one contact. K' is the series
+    stiffness of coupling and hand. The proxy is either matched to a grip at the force point, or does not rotate.
+    """
     series = 1 / COUPLING + 1 / HAND
     turning = 1 / COUPLING_ROTATION + 1 / HAND_ROTATION if matched else 0.0
     with_torque = series + (LEVER - grip) ** 2 / HAND_ROTATION + LEVER**2 / COUPLING_ROTATION
@@ -86,7 +89,7 @@ def ratio_of_closed_form(grip, matched):
 
 
 def draw_cycle(ax, results, rows):
-    """The force along the cycle, in the slot."""
+    """Draws the force along the cycle in the slot."""
     shown = 0
     for row in chosen(rows, scene="six_dof_slot"):
         table = results.table(f"{STUDY}/runs/{row['index']:06d}/six_dof.csv")
@@ -117,7 +120,7 @@ def draw_cycle(ax, results, rows):
 
 
 def draw_by_scene(ax, rows, metric, scale, smallest=None):
-    """A mark for each scene and law; smaller values than `smallest` are marked there."""
+    """Draws a mark for each scene and law. Values below `smallest` are drawn at `smallest`."""
     for i, law in enumerate(LAWS):
         at, values = [], []
         for k, scene in enumerate(SCENES):
@@ -131,7 +134,7 @@ def draw_by_scene(ax, rows, metric, scale, smallest=None):
 
 
 def draw_error(ax, rows):
-    """Force error of each law, and that of a device without any force."""
+    """Draws the force error of each law, and the error without any force."""
     draw_by_scene(ax, rows, "force_error_rms_N", 1.0, SMALLEST)
     for k, scene in enumerate(SCENES):
         value = chosen(rows, scene=scene, law=LAWS[0])[0]["reference_force_rms_N"]
@@ -140,7 +143,7 @@ def draw_error(ax, rows):
 
 
 def draw_grip(ax, rows):
-    """Force error over the grip distance at the edge of a plane, and what one contact gives in closed form."""
+    """Draws the force error over the grip distance at the edge of a plane, and the closed form for one contact."""
     grips = np.linspace(-0.012, 0.012, 49)
     for law in ("proxy", "matched_proxy"):
         style_of, label = look(law)
@@ -165,7 +168,8 @@ def draw_grip(ax, rows):
 
 
 def draw_pivot(ax, rows):
-    """Lost torque (left) and unresisted turn (right, dashed) over the pivot, a line for each scene."""
+    """Draws lost torque (left axis) and unresisted rotation (right axis, dashed) over the pivot, with a line for each
+    scene."""
     other = ax.twinx()
     for i, (scene, title) in enumerate(SCENES.items()):
         of_pivot = [
@@ -208,7 +212,7 @@ def draw_pivot(ax, rows):
 
 
 def comparison(results):
-    """Five panels, and the numbers of the caption."""
+    """Draws the five panels and returns the numbers of the caption."""
     rows = rows_of(results)
     figure, axes = style.panels(2, 3, 5.0)
     cycle, error, energy = axes[0]
@@ -245,7 +249,7 @@ def comparison(results):
 
 
 def chosen_everywhere(rows, law=None):
-    """The runs with the usual hand, of one law or of all."""
+    """Returns the runs with the default hand, of one law or of all laws."""
     return [
         row
         for scene in SCENES

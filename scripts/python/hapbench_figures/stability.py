@@ -1,6 +1,6 @@
-"""Stability: every algorithm on many springs (figures A.4 and A.5), the root locus of A.3, the
-largest stable stiffness over other fields (`limit --over`) and on each device (`limit --device`),
-and that of a real paddle."""
+"""Stability: every algorithm on many springs (figures A.4 and A.5), the root locus of A.3, the largest stable stiffness
+over other fields (`limit --over`) and on each device (`limit --device`), and the largest stable stiffness of a real
+paddle."""
 import json
 
 import numpy as np
@@ -23,7 +23,7 @@ def draw_path(ax, rows, look):
 
 
 def settling(rows):
-    """Time after which the mass stays within 0.05 mm of the origin [ms], or None."""
+    """Returns the time after which the mass stays within 0.05 mm of the origin [ms], or None."""
     far = np.hypot(rows["px_m"], rows["py_m"]) > 5e-5
     if far[-1]:
         return None
@@ -32,7 +32,7 @@ def settling(rows):
 
 
 def paths(results, kind):
-    """Damping and force "limited" or "unlimited"."""
+    """Returns damping and force; `kind` is "limited" or "unlimited"."""
     figure, axes = style.panels(2, 4, 4.3, sharex=True, sharey=True)
     proposed = results.table(f"thesis/springs_{kind}_shaped_stiffness/trajectory.csv")
     own = [
@@ -58,7 +58,7 @@ def paths(results, kind):
             if time is not None
             else "has not settled"
         )
-        # Above the frame: some curves fill it.
+        # Placed above the frame, because some curves fill it.
         ax.set_title(look.label, color=look.colour, pad=14)
         ax.text(0, 1.03, text, transform=ax.transAxes, fontsize=7)
     style.plt.setp(axes[-1], xlabel="x [mm]")
@@ -67,7 +67,7 @@ def paths(results, kind):
 
 
 def spaced(number):
-    """A number with spaces between thousands, and with decimals if there are few digits before them."""
+    """Formats a number with spaces between thousands, and with decimals if it has few digits before them."""
     return f"{number:,.{0 if number >= 1000 or number == round(number) else 3}f}".replace(",", " ")
 
 
@@ -111,7 +111,7 @@ def root_locus(results):
             ax.plot(way.real, way.imag, color=colour, ls=line, lw=1.5)
         leaving = min(
             at(value), key=lambda pole: pole.real
-        )  # at -1; the other one stays inside or at 1
+        )  # the pole that leaves the unit circle at -1; the other pole stays inside or at 1
         ax.plot(leaving.real, leaving.imag, marker="D", mfc="white", mec=style.RED, ms=5, zorder=5)
         style.note(
             ax, 0.5, 0.98, f"published {symbol} = {spaced(value)} {unit}", style.RED, ha="center"
@@ -125,7 +125,7 @@ def root_locus(results):
 
 
 def over(results, study):
-    """What the study of this name found."""
+    """Returns the limits that the study of this name found."""
     found = Limits(results, f"stability_{study}/")
     return draw_over(found), {
         "field": axis(found.field),
@@ -144,11 +144,11 @@ def of_all_devices(results):
 
 
 MEASURED = scene.ROOT / "scenarios" / "library" / "validation" / "measured.csv"
-SCATTER = 1.3  # of sessions of measuring one setting, a factor
+SCATTER = 1.3  # factor between sessions in which the same setting was measured
 
 
 def hardware(results):
-    """K over B of the EPFL paddle behind its three velocity filters: measured in sessions, and predicted."""
+    """Draws K over B of the EPFL paddle with its three velocity filters, as measured in sessions and as predicted."""
     predicted, (damping, stiffness) = results.records("hardware_paddle/limit.csv"), (
         "damping_N_s_per_m",
         "stiffness_N_per_m",

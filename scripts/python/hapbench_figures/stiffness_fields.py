@@ -1,4 +1,4 @@
-"""The stiffness that ways of merging contacts give in every direction (figures 2 and C.3, and all algorithms)."""
+"""Directional stiffness of several laws (figures 2 and C.3, and a figure of all algorithms)."""
 from textwrap import wrap
 
 import numpy as np
@@ -11,23 +11,23 @@ import hapbench_style as style
 from . import scene
 
 SWEEP = "tilt_sweep_shaped_stiffness"
-PEG = "stiffness_peg"  # the same sweep under every algorithm
+PEG = "stiffness_peg"  # folder of the same sweep with every algorithm
 TITLES = {
     "summation": "sum",
     "mean": "mean",
     "virtual_coupling": "coupling",
     "shaped_stiffness": "shaping",
 }
-PEG_TILT = 0.12  # of figure 2 and of all algorithms [rad]
+PEG_TILT = 0.12  # tilt in figure 2 and in the figure of all algorithms [rad]
 DIRECTIONS = np.linspace(0, 2 * np.pi, 73)
-FRAME = (-1.3, 1.3), (-4.2, 0.9)  # of the contacts [mm]
-# Half of a panel's side and the marks on it, in units of K.
+FRAME = (-1.3, 1.3), (-4.2, 0.9)  # drawn region of the contacts [mm]
+# Half width of a panel and its ticks, in units of K.
 REACH, TICKS = 1.6, (-1, 0, 1)
 SUMMATION_REACH, SUMMATION_TICKS = 45, (-40, 0, 40)
 
 
 def rendered_tensor(results, directory, step):
-    """S of one row in the plane, as the algorithm rendered it."""
+    """Returns the rendered tensor S of one row, restricted to the plane."""
     row = {
         name: column[step]
         for name, column in results.table(f"{directory}/stiffness_tensor.csv").items()
@@ -36,13 +36,13 @@ def rendered_tensor(results, directory, step):
 
 
 def field(tensor):
-    """Ratio k(e) = e^T S e in each direction, as a curve."""
+    """Returns the ratio k(e) = e^T S e in each direction as a curve."""
     e = np.stack([np.cos(DIRECTIONS), np.sin(DIRECTIONS)], 1)
     return e * np.einsum("ij,jk,ik->i", e, tensor, e)[:, None]
 
 
 def draw_field(ax, name, tensor, contacts, reach, ticks):
-    """The field in the algorithm's colour and the ratio along each contact, which it returns."""
+    """Draws k(e) in the algorithm's colour and the ratio along each contact. Returns these ratios."""
     curve, colour = field(tensor), style.look(name).colour
     limit = scene.PUBLISHED["C4.ratio"]["at_most"]
     ax.fill(*curve.T, facecolor=(*to_rgb(colour), 0.22), edgecolor=colour, lw=1.1)
@@ -60,8 +60,8 @@ def draw_field(ax, name, tensor, contacts, reach, ticks):
 
 
 def of_four_laws(results, tilts, height):
-    """A row for each tilt: the contacts, and the fields of four laws, the sum on a scale of its
-    own; with what is drawn of each law."""
+    """Draws a row for each tilt: the contacts, and k(e) of four laws. The sum has its own scale. Also returns the drawn
+    elements of each law."""
     sweep, drawn = scene.Sweep(results, SWEEP), []
     figure, axes = style.panels(
         len(tilts), 5, height, gridspec_kw={"width_ratios": [0.62, 1, 1, 1, 1]}
@@ -118,7 +118,7 @@ def fields_over_tilt(results):
 
 
 def own_scale(tensor):
-    """The common scale, unless the field does not fit into it."""
+    """Returns the common scale, or a larger scale if k(e) does not fit into it."""
     greatest = np.linalg.eigvalsh(tensor)[-1]
     if greatest < REACH:
         return REACH, TICKS
@@ -127,7 +127,7 @@ def own_scale(tensor):
 
 
 def of_all_algorithms(results):
-    """A panel for each algorithm, its ratios below; the first panel is the scene."""
+    """Draws a panel for each algorithm, with its ratios below. The first panel is the scene."""
     names = [row["algorithm"] for row in results.records(f"{PEG}/comparison.csv")]
     columns = 6
     lines = -(-(1 + len(names)) // columns)

@@ -1,5 +1,5 @@
-"""python -m hapbench_identify WORDS…; the program calls it for `hapbench import device`: fits a
-device to its log, or makes the signal to play."""
+"""python -m hapbench_identify WORDS…: fits a device to its log, or creates the signal to play. The program calls it for
+`hapbench import device`."""
 import json
 import math
 import sys
@@ -65,8 +65,9 @@ UNITS = {
     "offset_N": "N",
 }
 UNTRUSTED = "The true values can lie outside of the intervals: do not read them as 95 % intervals"
-NEGLIGIBLE = 1e-3  # offset force, as a share of the largest force
-MOST_DRAWN = 6000  # samples, so that a picture of a long log is not megabytes
+NEGLIGIBLE = 1e-3  # offset force that counts as negligible, relative to the largest force
+# Largest number of drawn samples, which limits the size of the picture of a long log.
+MOST_DRAWN = 6000
 IN_DEVICE = (
     "handle_mass_kg",
     "viscous_N_s_per_m",
@@ -149,7 +150,8 @@ def run(options):
 
 
 def not_in_log():
-    """The fields of an impedance device that no fit of a log sets: those of the schema without the fitted ones."""
+    """Returns the fields of an impedance device that no fit of a log sets: the fields of the schema without the fitted
+    fields."""
     schema = json.loads(SCHEMA.read_text(encoding="utf-8"))
     devices = [of["properties"] for of in schema["else"]["properties"]["device"]["oneOf"]]
     (fields,) = [of for of in devices if of.get("type") == {"const": "impedance"}]
@@ -157,7 +159,7 @@ def not_in_log():
 
 
 def log_text(data):
-    """Which columns were read, and the clock; and what the device lacks."""
+    """Returns text about the columns that were read, the clock, and the fields that the log does not determine."""
     return (
         f"not in the log: {', '.join(data['not_in_log'])}; add them to {data['device']} if your device has them "
         "(hapbench describe device)\n"
@@ -172,33 +174,9 @@ def identify(options, out):
         refuse_units(options, log, f"the log has a mean interval of {log.step:.4g} s")
     found = fit(log)
     require_right_sign(options, log, found)
-    told = {
-        name: {"value": None if name in found.untold else value, "interval": ends}
-        for name, value, ends in zip(NAMES, found.values.tolist(), found.intervals.tolist())
-    }
-    late = told["delay_s"]
-    told["delay_samples"] = {
-        "value": late["value"] if late["value"] is None else late["value"] / log.step,
-        "interval": [end / log.step for end in late["interval"]],
-    }
-    step = log.encoder_step
-    told["encoder_step_m"] = {"value": step, "interval": [step * (1.0 - 1e-9), step * (1.0 + 1e-9)]}
-    count = np.isfinite(found.residual).sum() / found.memory
-    beyond = found.rms**2 - step**2 / 12.0
-    spread = found.rms**2 * math.sqrt(2.0 / count) * 1.96
-    told["position_noise_m"] = unless_wide(
-        math.sqrt(max(beyond, 0.0)),
-        [math.sqrt(max(beyond + way * spread, 0.0)) for way in (-1.0, 1.0)],
-    )
-    if told["offset_N"]["value"] is not None:
-        told["offset_N"] = unless_wide(*told["offset_N"].values())
-    told = {
-        name: told[name]
-        | {"interval": [end if math.isfinite(end) else None for end in told[name]["interval"]]}
-        for name in UNITS
-    }
-    if not options.scale and not is_likely(found.values[MASS], step):
-        handle = f"a handle of {found.values[MASS]:.3g} kg and an encoder step of {step:.3g} m"
+    told = parameters_of(log, found)
+    if not options.scale and not is_likely(found.values[MASS], log.encoder_step):
+        handle = f"a handle of {found.values[MASS]:.3g} kg and an encoder step of {log.encoder_step:.3g} m"
         refuse_units(options, log, f"the fit gives {handle}", found)
     if told["handle_mass_kg"]["value"] is None:
         fail(
@@ -247,9 +225,39 @@ def identify(options, out):
     }
 
 
+def parameters_of(log, found):
+    """Returns value and interval of each parameter by name, in the order of UNITS. A value is None if the log does not
+    determine it, and an end of an interval is None if it is infinite."""
+    told = {
+        name: {"value": None if name in found.untold else value, "interval": ends}
+        for name, value, ends in zip(NAMES, found.values.tolist(), found.intervals.tolist())
+    }
+    late = told["delay_s"]
+    told["delay_samples"] = {
+        "value": late["value"] if late["value"] is None else late["value"] / log.step,
+        "interval": [end / log.step for end in late["interval"]],
+    }
+    step = log.encoder_step
+    told["encoder_step_m"] = {"value": step, "interval": [step * (1.0 - 1e-9), step * (1.0 + 1e-9)]}
+    count = np.isfinite(found.residual).sum() / found.memory
+    beyond = found.rms**2 - step**2 / 12.0
+    spread = found.rms**2 * math.sqrt(2.0 / count) * 1.96
+    told["position_noise_m"] = unless_wide(
+        math.sqrt(max(beyond, 0.0)),
+        [math.sqrt(max(beyond + way * spread, 0.0)) for way in (-1.0, 1.0)],
+    )
+    if told["offset_N"]["value"] is not None:
+        told["offset_N"] = unless_wide(*told["offset_N"].values())
+    return {
+        name: told[name]
+        | {"interval": [end if math.isfinite(end) else None for end in told[name]["interval"]]}
+        for name in UNITS
+    }
+
+
 def value_text(name, one, largest_force):
-    """A parameter for the table. An offset that is not known to differ from 0, but to be a negligible force, is zero
-    within this error."""
+    """Formats a parameter for the table. An offset is printed as zero within its error if it is not significantly
+    different from 0 and the corresponding force is negligible."""
     if one["value"] is not None:
         return f"{one['value']:.4g}"
     if name == "offset_N" and None not in one["interval"]:
@@ -260,7 +268,8 @@ def value_text(name, one, largest_force):
 
 
 def unless_wide(value, interval):
-    """No value where the interval is wider than it; the interval then still says what it is not."""
+    """Returns no value if the interval is wider than the value. The interval is still printed and excludes some
+    values."""
     low, high = interval
     return {
         "value": value if high - low <= abs(value) or low == high else None,
@@ -269,7 +278,7 @@ def unless_wide(value, interval):
 
 
 def require_right_sign(options, log, found):
-    """Refuses a log that only a force of the other sign explains."""
+    """Refuses a log that only a force with the opposite sign explains."""
     other = turned_round(log, found)
     if other is None:
         return
@@ -282,8 +291,8 @@ def require_right_sign(options, log, found):
 
 
 def refuse_units(options, log, problem, found=None):
-    """Refuses a log that is hardly in s, N and m, with the units that make it a likely one. A log in milliseconds and
-    millimetres fits as well as any, with a handle of tons."""
+    """Refuses a log whose units are probably not s, N and m, and names the likely units. A log in milliseconds and
+    millimetres fits equally well, with a handle mass of tons."""
     advice = units_text(options, log, found)
     if not advice and found is not None and found.misfit:
         fail(
@@ -301,7 +310,7 @@ def refuse_units(options, log, problem, found=None):
 
 
 def units_text(options, log, found):
-    """The likely units of a log as a sentence, or nothing."""
+    """Returns a sentence about the likely units of a log, or ""."""
     given = given_scales(options)
     text = " or ".join(
         f"{text}: {scale_option(factors, given)}"
@@ -312,7 +321,7 @@ def units_text(options, log, found):
 
 
 def given_scales(options):
-    """The numbers of --scale, by quantity."""
+    """Returns the factors of --scale by quantity."""
     pairs = (word.partition("=") for word in options.scale)
     return {name: float(value) for name, _, value in pairs}
 
@@ -359,7 +368,7 @@ def draw(file, log, found):
         panels,
         picture,
         plt,
-    )  # loads matplotlib, which --design does without
+    )  # Imported here, because it loads matplotlib, which --design does not need.
 
     plt.rcParams.update(SETTINGS)
     figure, ((above,), (below,)) = panels(2, 1, 4.0, sharex=True)
@@ -392,7 +401,7 @@ def draw(file, log, found):
 
 
 def design_of(words):
-    """The kind of signal and its numbers, of words such as chirp and force=2."""
+    """Returns the kind of signal and its numbers, parsed from words such as chirp and force=2."""
     kind, *given = words
     require_name("--design: got", kind, list(KINDS))
     numbers = {"force": 1.0, "travel": 0.05, "rate": 1000.0, "duration": 5.0, "mass": 0.05}
@@ -438,8 +447,8 @@ def limited_by_travel(kind, numbers, peak):
         return []
     said = (
         f"the signal has at most {peak:.3g} N, not {force:g} N: it begins at a low frequency, where a larger force "
-        f"moves the handle further than the travel of {numbers['travel']:g} m. That is enough for dry friction of up to "
-        f"{FRICTION_TOLD * peak:.3g} N. "
+        f"moves the handle further than the travel of {numbers['travel']:g} m. That is enough for dry friction of up "
+        f"to {FRICTION_TOLD * peak:.3g} N. "
     )
     asked = force_to_ask(kind, numbers)
     return [

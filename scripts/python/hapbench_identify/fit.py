@@ -1,4 +1,4 @@
-"""Least squares on the simulated position, with intervals of 95 %."""
+"""Least squares on the simulated position, with 95 % intervals."""
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -13,36 +13,45 @@ SCORED, PIECE, SHORT_PIECE = (
     20.0,
     0.5,
     0.2,
-)  # how much of a log starts are scored on; pieces that have a mean of their own [s]
+    # Duration on which starting values are scored, and lengths of the pieces whose means are subtracted [s].
+)
 KEPT, DISTINCT, BLOCKS = 8, 3, 12
-LONGEST = 20.0  # the longest delay looked for [samples]
+LONGEST = 20.0  # largest delay in the search [samples]
 FEWEST_COUNTS = 10.0
-DELAYS = np.arange(0.0, 8.5, 0.5)  # that a start may have [samples]
-SMOOTHINGS = (0.02, 0.05, 0.1)  # whole width of a kernel [s]
+DELAYS = np.arange(0.0, 8.5, 0.5)  # delays of the starting values [samples]
+SMOOTHINGS = (0.02, 0.05, 0.1)  # full widths of the smoothing kernel [s]
 GRID = [
     (m, c, d) for m in (0.05, 0.2, 0.8) for c in (0.02, 0.2, 0.5) for d in (1.0, 4.0)
-]  # kg, of the peak, samples
-WINDOWS = (0.005, 0.02, 0.05, 0.2)  # over which the slow part of a residual is averaged [s]
-# Standard deviations of the slow part from which on the intervals are widened, and from which on they are not trusted.
+]  # mass [kg], dry friction as a fraction of the peak force, delay [samples]
+# Window lengths over which the residual is averaged to find its slow part [s].
+WINDOWS = (0.005, 0.02, 0.05, 0.2)
+# Size of the slow part, in standard deviations, above which the intervals are widened, and above which the intervals
+# are not trusted.
 WIDENED, DISTRUSTED = 1.5, 4.0
-FROM_REST = 12.0  # sum of squares over the variance by which a first speed must be better than none
+# Smallest decrease of the sum of squares, in units of the variance, for which a non-zero initial speed is fitted.
+FROM_REST = 12.0
 
 
 @dataclass
 class Fit:
-    values: np.ndarray  # of NAMES
-    intervals: np.ndarray  # 95 %, a row [low, high] each
-    residual: np.ndarray  # measured less simulated position of each sample [m]; NaN where it is missing
-    rms: float  # of it [m]
-    memory: float  # how many samples of the residual count as one, from its autocorrelation
-    misfit: bool  # the residual is more than noise and encoder: the device has what the model has not
-    trusted: bool  # the intervals are of 95 %: the residual and its slow part are those of noise and encoder
-    untold: dict = field(default_factory=dict)  # names of what the log cannot tell, with the reason
+    values: np.ndarray  # in the order of NAMES
+    intervals: np.ndarray  # 95 % intervals, one row [low, high] for each value
+    # Measured minus simulated position of each sample [m]; NaN for missing samples.
+    residual: np.ndarray
+    rms: float  # root mean square of the residual [m]
+    # Number of samples of the residual that count as one independent sample, from its autocorrelation.
+    memory: float
+    # True if the residual exceeds noise and encoder error: the device has effects that the model lacks.
+    misfit: bool
+    # True if noise and encoder error explain the residual and its slow part, so that the intervals are 95 % intervals.
+    trusted: bool
+    # Names of the parameters that the log does not determine, with the reason.
+    untold: dict = field(default_factory=dict)
 
 
 class Cost:
-    """What the first rows of a log have besides a simulation, less the mean of it over each piece:
-    places before a piece do not matter to it then."""
+    """Residual of a simulation over the first rows of a log. The mean over each piece is subtracted, so that positions
+    before a piece have no effect on it."""
 
     def __init__(self, simulate, log, seconds=np.inf, piece=np.inf):
         self.rows = int(min(len(log.time), max(100.0, seconds / log.step)))
@@ -60,7 +69,8 @@ class Cost:
         return values - np.repeat(np.add.reduceat(values, self.starts) / self.counts, self.counts)
 
     def simulated(self, parameters):
-        """The last answer is kept: derivatives are asked for where the residual just was."""
+        """Returns the simulated positions. The latest result is cached, because derivatives are evaluated at the same
+        parameters as the residual."""
         if not np.array_equal(parameters, self._asked):
             places = self._simulate(parameters, self.rows)
             self._asked, self._answer = (
@@ -73,7 +83,8 @@ class Cost:
         return self.measured - self._centred(self.simulated(parameters))
 
     def sensitivities(self, x, scale, free, central=False):
-        """Change of the simulated positions with each parameter, in units of `scale`, a row each."""
+        """Returns the derivative of the simulated positions by each free parameter, in units of `scale`, with a row for
+        each parameter."""
         h = (1e-4 if central else 1e-6) * scale
         here = None if central else self.simulated(x)
         rows = []
@@ -98,9 +109,9 @@ class Found:
 
 
 def least_squares(cost, start, scale, steps, tolerance, held=()):
-    """Levenberg and Marquardt's. Mass stays positive; friction and delay do not become negative.
-    SciPy's, which decomposes the whole Jacobian for bounds, finds the same and takes 1.3 times as
-    long for a log of 60 s at 4 kHz."""
+    """Levenberg-Marquardt method. Mass stays positive; friction and delay stay non-negative. SciPy's solver with bounds
+    decomposes the whole Jacobian: it finds the same minimum and takes 1.3 times as long for a log of 60 s at 4 kHz.
+    """
     low = np.array([1e-6, 0.0, 0.0, 0.0, -np.inf, -np.inf])
     high = np.array([1e6, np.inf, np.inf, LONGEST * scale[DELAY], np.inf, np.inf])
     x = np.clip(start, low, high)
@@ -116,7 +127,8 @@ def least_squares(cost, start, scale, steps, tolerance, held=()):
         moves = ~(((x <= low) & (gradient < 0.0)) | ((x >= high) & (gradient > 0.0)))[free]
         J, free = J[moves], np.flatnonzero(free)[moves]
         H, g = J @ J.T, gradient[free]
-        # What hardly matters, such as the first speed of a handle that sticks, does not run away.
+        # The lower bound limits the steps of parameters with little effect, such as the initial speed of a handle that
+        # sticks.
         weight = np.maximum(np.diag(H), 1e-9 * np.trace(H) + 1e-300)
         before = squares
         for _ in range(12):
@@ -137,7 +149,7 @@ def least_squares(cost, start, scale, steps, tolerance, held=()):
 
 
 def fit(log):
-    """The parameters that bring the simulated position closest to the log's."""
+    """Returns the parameters whose simulated position is closest to the logged position."""
     with Simulator(log.time, log.force) as simulate:
         return _fit(log, simulate)
 
@@ -172,7 +184,7 @@ def _fit(log, simulate):
     if resting.squares <= found.squares * (1.0 + FROM_REST / samples):
         found = resting
     misfit = found.squares / samples > 2.0 * (noise**2 + log.encoder_step**2 / 12.0)
-    # Forces of missing rows are guesses, whose errors go on in the motion.
+    # The forces of missing rows are guesses, and their errors persist in the simulated motion.
     by_pieces = misfit or not log.knows_forces
     if by_pieces:
         found, spread = _by_pieces(Cost(simulate, log, piece=SHORT_PIECE), found, scale)
@@ -186,15 +198,7 @@ def _fit(log, simulate):
         wide = without_blocks(whole, found, scale)
         intervals[:, 0] = np.minimum(intervals[:, 0], found.x - wide)
         intervals[:, 1] = np.maximum(intervals[:, 1], found.x + wide)
-    half = 0.5 * np.diff(intervals)[:, 0]
-    for i, most, said in (
-        (MASS, 0.25 * found.x[MASS], "25 % of the value"),
-        (DELAY, 2.0 * log.step, "2 samples"),
-        (DRY, 0.1 * peak, "10 % of the largest force"),
-        (VISCOUS, 0.1 * peak / fast, "10 % of the largest force at full speed"),
-    ):
-        if i not in untold and not half[i] <= most:
-            untold[i] = f"its interval is wider than +- {said}"
+    untold = _wide_intervals(intervals, found.x, log.step, peak, fast) | untold
     intervals[:OFFSET, 0] = np.maximum(intervals[:OFFSET, 0], 0.0)
     filled = np.full(len(log.time), np.nan)
     filled[whole.known] = residual
@@ -210,8 +214,25 @@ def _fit(log, simulate):
     )
 
 
+def _wide_intervals(intervals, x, step, peak, fast):
+    """Returns the indices of parameters whose intervals are too wide to state a value, with the reason. `peak`: largest
+    force [N], `fast`: largest speed [m/s]."""
+    half = 0.5 * np.diff(intervals)[:, 0]
+    return {
+        i: f"its interval is wider than +- {said}"
+        for i, most, said in (
+            (MASS, 0.25 * x[MASS], "25 % of the value"),
+            (DELAY, 2.0 * step, "2 samples"),
+            (DRY, 0.1 * peak, "10 % of the largest force"),
+            (VISCOUS, 0.1 * peak / fast, "10 % of the largest force at full speed"),
+        )
+        if not half[i] <= most
+    }
+
+
 def _search(first, whole, log, place, scale):
-    """The least sum of squares on the `whole` log, from starts that the `first` part of it chooses."""
+    """Returns the smallest sum of squares on the `whole` log. The `first` part of the log selects the starting
+    values."""
     starts = starts_of(log, place[: first.rows], log.force[: first.rows])
     scores = [np.sum(first(start) ** 2) for start in starts]
     tried = [least_squares(first, starts[i], scale, 15, 1e-4) for i in np.argsort(scores)[:KEPT]]
@@ -220,7 +241,8 @@ def _search(first, whole, log, place, scale):
         if all(_differs(one.x, other.x, scale) for other in distinct):
             distinct.append(one)
     found = min(_refined(whole, distinct[:DISTINCT], scale), key=lambda one: one.squares)
-    # Once more from there, with other shares of friction and constant force; on the whole log only what may be better.
+    # Search again from this minimum, with other fractions of dry friction and offset. Only candidates that may be
+    # better are refined on the whole log.
     again = np.array([found.x, found.x])
     again[:, OFFSET], again[:, DRY] = 0.0, found.x[DRY] * np.array([0.5, 2.0])
     reached = np.sum(first(found.x) ** 2)
@@ -233,8 +255,8 @@ def _search(first, whole, log, place, scale):
 
 
 def _intervals(cost, log, found, scale, residual, memory, noise, spread):
-    """Intervals, what is untold by its index, and what the handle was seen to do. `spread`: half
-    the intervals, where they are known."""
+    """Returns the intervals, the reasons for undetermined parameters by index, and the observed motion of the handle.
+    `spread`: half-widths of the intervals if they are known."""
     units = _units(scale, found.x)
     places = cost.simulated(found.x)
     J = np.vstack(
@@ -277,7 +299,8 @@ def _units(scale, x):
 
 
 class Strokes:
-    """Motion one way each: a handle without another direction tells no friction from a constant force."""
+    """Strokes of the handle: motions in one direction. If the handle moves in one direction only, dry friction cannot
+    be distinguished from a constant force."""
 
     def __init__(self, places, least):
         steps = np.diff(places)
@@ -302,7 +325,7 @@ class Strokes:
 
 
 def _degenerate(J, strokes):
-    """Which parameters can change together without a change of the positions, with the reason."""
+    """Returns the parameters that can change together without a change of the positions, with the reason."""
     sizes = np.sqrt(np.mean(J**2, axis=1))
     felt = np.flatnonzero(sizes > 1e-12 * sizes.max())
     untold = {i: "it has no effect on the positions" for i in range(len(NAMES)) if i not in felt}
@@ -316,15 +339,14 @@ def _degenerate(J, strokes):
             DRY: "the handle moved in one direction only",
             OFFSET: "the handle moved in one direction only",
         }
-    untold.pop(len(NAMES), None)  # the first place
+    untold.pop(len(NAMES), None)  # the initial position is not a parameter of the result
     return untold
 
 
 def _spreads(J, places, encoder_step, rms):
-    """Standard errors in units of the rows of J but its last: of a residual whose samples are
-    independent, and of an encoder, whose error stands still while the handle dwells in one count,
-    so that samples of one dwell count as one for its share of the residual.
-    """
+    """Returns standard errors in units of the rows of J, except for the last row. The residual has two parts: noise,
+    whose samples are independent, and the encoder error. The encoder error is constant while the handle stays within
+    one count, so all samples of this time count as one sample."""
     H = J @ J.T
     inverse = np.linalg.pinv(H, rcond=1e-14, hermitian=True)
     of_encoder = 0.0
@@ -353,14 +375,14 @@ def _spreads(J, places, encoder_step, rms):
 
 
 def _by_pieces(cost, found, scale):
-    """For a residual that is not noise: the fit on short pieces, and half of the intervals."""
+    """Fits short pieces if the residual is not noise. Returns the fit and the half-widths of the intervals."""
     found = least_squares(cost, found.x, scale, 60, 1e-8)
     return found, without_blocks(cost, found, scale)
 
 
 def without_blocks(cost, found, scale):
-    """Half of the intervals by leaving out one block of the log after another, which assumes nothing about the
-    residual but that blocks are alike."""
+    """Returns the half-widths of the intervals from fits that each omit one block of the log. The only assumption about
+    the residual is that all blocks have the same statistics."""
     units = _units(scale, found.x)
     J, residual = cost.sensitivities(found.x, units, np.ones(len(NAMES), bool), central=True), cost(
         found.x
@@ -379,8 +401,8 @@ def without_blocks(cost, found, scale):
 
 
 def slow_part(log, cost, x, residual):
-    """By how many standard deviations the slow part of the residual, its means over WINDOWS, is larger than that of
-    noise and encoder alone. Noise and encoder alone are those of simulated logs with the noise that the log shows.
+    """Returns the ratio, in standard deviations, of the slow part of the residual (its means over WINDOWS) to the slow
+    part that noise and encoder alone would cause. The latter is computed from simulated logs with the measured noise.
     """
     places = cost.simulated(x)
     places = places + np.mean(log.position[cost.known] - places)
@@ -411,8 +433,8 @@ def slow_part(log, cost, x, residual):
 
 
 def without_unknown_start(log):
-    """The log, without the first positions if the handle moves there: forces from before the log still act on it. A
-    first speed then makes up for them."""
+    """Returns the log without its first positions if the handle moves at the start, because forces from before the log
+    still act on it. The initial speed accounts for these forces."""
     speed = first_speed(log.position[np.isfinite(log.position)][:200], log.step, log.encoder_step)
     if speed == 0.0 or len(log.time) < 20.0 * LONGEST:
         return log
@@ -422,7 +444,8 @@ def without_unknown_start(log):
 
 
 def memory_of(residual):
-    """1 + 2 times the sum of the autocorrelations up to the first below 0.05: as many samples count as one."""
+    """Returns 1 + 2 times the sum of the autocorrelations up to the first below 0.05: the number of samples that count
+    as one independent sample."""
     centred = residual - residual.mean()
     power = np.abs(np.fft.rfft(centred, 1 << (2 * len(centred) - 1).bit_length())) ** 2
     correlation = np.fft.irfft(power)[: len(centred)]
@@ -433,8 +456,8 @@ def memory_of(residual):
 
 
 def profile(cost, found, scale, i, spread, variance):
-    """Where the sum of squares, with the best other parameters for each value of the i-th, has
-    grown by that of 95 %."""
+    """Returns the two values of parameter i at which the sum of squares, minimised over the other parameters, has grown
+    by the amount that corresponds to 95 %."""
     best, ends = found.x[i], []
     for side in (-1.0, 1.0):
         at = best + side * TWO_SIDED * min(spread, scale[i])
@@ -458,26 +481,27 @@ def profile(cost, found, scale, i, spread, variance):
     return ends
 
 
-# Parameters to start from. Over a long log the sum of squares has many minima, which only starts that differ leave.
+# Starting values. Over a long log the sum of squares has many local minima, so that several different starting values
+# are needed.
 
 
 def noise_of(place):
-    """Standard deviation of what changes from sample to sample [m]: third differences of white
-    noise have 20 times its variance."""
+    """Returns the standard deviation of the white noise in the position [m]. Third differences of white noise have 20
+    times its variance."""
     return float(np.sqrt(np.mean(np.diff(place, 3) ** 2) / 20.0)) if len(place) > 3 else 0.0
 
 
 def kernel(rows):
-    """A box of a quarter of `rows`, folded with itself to a bell of about `rows`."""
+    """Returns a bell-shaped kernel of about `rows` rows: a box of a quarter of this width, convolved with itself."""
     box = np.ones(max(1, round(rows / 4)))
     bell = np.convolve(np.convolve(box, box), np.convolve(box, box))
     return bell / bell.sum()
 
 
 def starts_of(log, place, force):
-    """Parameters (NAMES) by regression of the force on acceleration, speed and direction, all of
-    them through the same kernel, and from a grid. `place`: the positions of rows without a gap,
-    `force`: theirs."""
+    """Returns starting values (NAMES) from a regression of the force on acceleration, speed and direction, all filtered
+    by the same kernel, and from a grid. `place`: positions of rows without a gap; `force`: their forces.
+    """
     step, peak, noise = log.step, float(np.abs(force).max()), noise_of(place)
     speed = first_speed(place, step, log.encoder_step)
     found = []
@@ -496,19 +520,20 @@ def starts_of(log, place, force):
 
 
 def _regressions(bell, place, force, step, noise):
-    """The two best delays, at least a sample apart: mass, viscous and dry friction, delay [samples], offset."""
+    """Yields mass, viscous and dry friction, delay [samples] and offset for the two best delays, which differ by at
+    least one sample."""
     middle = slice(1, -1)
     slope = (place[2:] - place[:-2]) / (2.0 * step)
     speed = np.convolve(slope, bell, "valid")
     acceleration = np.convolve(np.diff(place, 2) / step**2, bell, "valid")
     held = np.concatenate(
         [[0.0], 0.5 * (force[1:] + force[:-1])]
-    )  # what a second difference of positions sees
-    push = np.concatenate([np.zeros(9), held[middle]])  # no force before the log
+    )  # mean force of two samples, which determines the second difference of the positions
+    push = np.concatenate([np.zeros(9), held[middle]])  # assumes no force before the log
     push = np.convolve(push, bell, "valid")  # push[k + 9] belongs to speed[k]
     least = 4.0 * noise * np.sqrt(np.sum(np.convolve(bell, [0.5, 0.0, -0.5]) ** 2)) / step
     way = np.where(np.abs(speed) > least, np.sign(speed), 0.0)
-    # Where the whole kernel sees one direction, the smoothed friction is all of it.
+    # If the handle moves in one direction over the whole kernel, the smoothed friction equals the friction.
     half = len(bell) // 2
     sums = np.cumsum(np.concatenate([np.zeros(half + 1), way, np.zeros(half)]))
     one_way = np.abs(sums[2 * half + 1 :] - sums[: -2 * half - 1]) == 2 * half + 1
@@ -545,7 +570,8 @@ def _regressions(bell, place, force, step, noise):
 
 
 def first_speed(place, step, encoder_step):
-    """Speed at the first sample [m/s] by a parabola through the first hundredth of a second, 0 where it is not sure."""
+    """Returns the speed at the first sample [m/s], from a parabola through the first hundredth of a second; 0 if the
+    speed is not significant."""
     rows = min(len(place), max(8, round(0.01 / step)))
     powers = np.vander(step * np.arange(rows), 3, increasing=True)
     terms, *_ = np.linalg.lstsq(powers, place[:rows], rcond=None)

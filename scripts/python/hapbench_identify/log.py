@@ -13,22 +13,22 @@ NAMES = {
     "time": "time_s",
     "force": "force_N",
     "position": "position_m",
-}  # of the columns unless --columns says otherwise
-FEWEST = 50  # samples
+}  # names of the columns if --columns is not given
+FEWEST = 50  # smallest number of samples
 
 
 @dataclass
 class Log:
-    time: np.ndarray  # [s], increasing; those of samples that are missing included
-    force: np.ndarray  # commanded at that time and held until the next [N]
-    position: np.ndarray  # [m]; NaN where the sample is missing
-    step: float  # mean interval without a gap [s]
-    encoder_step: float  # 0: positions are not multiples of anything
+    time: np.ndarray  # [s], increasing; includes the times of missing samples
+    force: np.ndarray  # commanded at this time and held until the next [N]
+    position: np.ndarray  # [m]; NaN for missing samples
+    step: float  # mean interval without gaps [s]
+    encoder_step: float  # encoder step [m]; 0 if the positions are not multiples of any length
     warnings: list
-    knows_forces: bool = True  # False: forces of missing rows are guesses
-    columns: dict | None = None  # by quantity, as those of import stroke
+    knows_forces: bool = True  # false if forces of missing rows are guesses
+    columns: dict | None = None  # columns by quantity, in the form of `import stroke`
     columns_not_read: list | None = None
-    scales: dict | None = None  # by quantity
+    scales: dict | None = None  # factors to SI units by quantity
 
 
 def read_log(options):
@@ -87,7 +87,7 @@ def read_log(options):
 
 
 def _bad_rows(recording, time, force, position):
-    """By row: why it is no sample."""
+    """Returns for each bad row the reason why it is not a sample."""
     bad, last = recording.problems(), -math.inf
     usual = not bad and np.isfinite((time, force, position)).all() and (np.diff(time) > 0.0).all()
     for row in () if usual else range(len(time)):
@@ -101,10 +101,9 @@ def _bad_rows(recording, time, force, position):
 
 
 def log_of(time, force, position):
-    """Puts the times of missing samples back, with forces on the line between their neighbours',
-    which is right for signals that change little from sample to sample; positions stay unknown.
-    A position that is repeated in several rows was measured at the first of them: the others are unknown.
-    """
+    """Inserts the times of missing samples. Their forces are interpolated linearly, which is accurate for signals that
+    change little between samples; their positions stay unknown. A position that is repeated in several rows was
+    measured in the first of these rows; in the other rows the position is unknown."""
     warnings, held = [], hold_of(position)
     if held is not None:
         rate = (len(time) - 1) / (time[-1] - time[0]) / held.rows
@@ -113,7 +112,7 @@ def log_of(time, force, position):
             "row of each is used"
         )
         if not np.any((np.diff(force) != 0.0) & ~held.fresh[1:]):
-            # The force is held with the position: a log of the slower rate, without its repeated rows.
+            # The force is held together with the position: use the slower rate, without the repeated rows.
             time, force, position, held = (
                 time[held.fresh],
                 force[held.fresh],
@@ -155,9 +154,9 @@ def log_of(time, force, position):
 
 
 def missing_samples(intervals):
-    """How many samples are missing in each interval: none where a varying clock explains long intervals. Missing
-    samples make intervals near whole multiples of the usual one, and few of about one and a half.
-    """
+    """Returns the number of missing samples in each interval. It is zero if jitter of the clock explains the long
+    intervals: missing samples cause intervals near integer multiples of the usual interval, and few intervals of about
+    one and a half."""
     ratios = intervals / np.median(intervals)
     long = ratios >= 1.5
     between, beyond = np.sum((ratios >= 1.4) & (ratios < 1.6)), np.sum(ratios >= 1.6)
@@ -168,11 +167,11 @@ def missing_samples(intervals):
 
 
 def encoder_step_of(position):
-    """The least spacing of positions [m] if 98 % of their spacings are multiples of it, or else 0."""
+    """Returns the smallest spacing of positions [m] if 98 % of the spacings are multiples of it, otherwise 0."""
     spacings = np.diff(np.unique(position))
     spacings = spacings[
         spacings > max(1e-10, 1e-9 * np.abs(position).max())
-    ]  # the rounding of what is written
+    ]  # rounding of the written numbers
     if not len(spacings):
         return 0.0
     counts = np.rint(spacings / spacings.min())
@@ -181,7 +180,7 @@ def encoder_step_of(position):
 
 
 def _factor(name, word):
-    """A scale. Force and position may be turned round."""
+    """Parses a scale factor. Factors of force and position may be negative."""
     value = finite_number(word.encode("utf-8", "surrogateescape"))
     if not (value > 0.0 or (value < 0.0 and name != "time")):
         allowed = "> 0" if name == "time" else "a number, not 0"
@@ -190,7 +189,8 @@ def _factor(name, word):
 
 
 def _index(names, quantity, word):
-    """The column of a quantity: `word`, or without one NAMES or the quantity with its unit, such as "force [N]"."""
+    """Returns the column of a quantity: `word`, or if it is empty the default of NAMES or the quantity with its unit,
+    such as "force [N]"."""
     asked = word if word is not None else NAMES[quantity]
     column, _ = names.find(quantity, [asked], ())
     if column is None and word is None:

@@ -1,6 +1,5 @@
-"""The handle of an impedance device under held forces that come late: m x'' = u(t - delay) + offset
-- b x' - c sign(x'), integrated exactly by the program, stops included; and the signal of force to
-play to it for an identification."""
+"""The handle of an impedance device under held and delayed forces: m x'' = u(t - delay) + offset - b x' - c sign(x').
+The program integrates it exactly, including stops. Also creates the force signals for an identification."""
 import subprocess
 
 import numpy as np
@@ -12,21 +11,26 @@ KINDS = {
     "steps": "alternating pushes, from short to long",
     "multisine": "sum of thirty sines",
 }
-FRICTION_TOLD = 0.6  # of the largest force; more dry friction leaves too little motion
-HIGHEST = 100.0  # frequency [Hz]; more tells little of a handle's mass and friction
-# Friction for which a signal keeps its travel: dry, in shares of the largest force, by viscous over the mass [1/s].
+# Largest identifiable dry friction, relative to the largest force; with more friction the handle moves too little.
+FRICTION_TOLD = 0.6
+# Largest frequency of a signal [Hz]; higher frequencies give little information about mass and friction.
+HIGHEST = 100.0
+# Frictions for which a signal is verified to keep its travel: dry friction relative to the largest force, keyed by
+# viscous friction divided by mass [1/s].
 DRY_SHARES = {
     0.0: np.linspace(0.0, FRICTION_TOLD, 61),
     1.0: np.linspace(0.0, FRICTION_TOLD, 13),
     10.0: np.linspace(0.0, FRICTION_TOLD, 13),
 }
 TRAVEL_USED = (
-    0.9  # of the travel; between the simulated kinds of friction a path is up to 6 % longer
+    # Fraction of the travel that is used; for frictions between the simulated values the travel is up to 6 % longer.
+    0.9
 )
 
 
 class Simulator(subprocess.Popen):
-    """A process of the program that simulates a log, in a `with`; a fit needs some thousand simulations."""
+    """A process of the program that simulates a log, used in a `with` statement. A fit needs some thousand
+    simulations."""
 
     def __init__(self, time, force):
         program = the_program()
@@ -45,7 +49,8 @@ class Simulator(subprocess.Popen):
         self.stdin.flush()
 
     def __call__(self, parameters, rows=None):
-        """The way from the first place to those at the first `rows` times of a handle with `parameters` (NAMES)."""
+        """Returns the displacements from the first position at the first `rows` times, for a handle with `parameters`
+        (NAMES) [m]."""
         rows = rows or self.rows
         self._send([rows, *parameters])
         answer = self.stdout.read(8 * rows)
@@ -55,21 +60,21 @@ class Simulator(subprocess.Popen):
 
 
 def positions(time, force, parameters):
-    """One simulation."""
+    """Runs one simulation and returns the positions [m]."""
     with Simulator(time, force) as simulate:
         return simulate(parameters)
 
 
 def design(kind, force, travel, rate, duration, mass):
-    """(time, force): no larger than `force` [N]; a handle of `mass` [kg] or more keeps within `travel` [m], without
-    friction and with dry friction up to FRICTION_TOLD of the largest force."""
+    """Returns (time, force). The force is at most `force` [N]. A handle of at least `mass` [kg] stays within `travel`
+    [m], without friction and with dry friction up to FRICTION_TOLD of the largest force."""
     steps = int(round(duration * rate))
     if steps < 100:
         fail(
             f"--design: duration: got {duration:g} s, {steps} samples; allowed: at least 100 of them"
         )
     time = np.arange(steps) / rate
-    # From rest, F cos(w t) moves a mass between 0 and 2 F / (m w^2): no drift.
+    # From rest, F cos(w t) moves a mass between 0 and 2 F / (m w^2), without drift.
     slowest = max(np.sqrt(2.0 * force / (mass * travel)) / (2.0 * np.pi), 2.0 / duration)
     fastest = min(0.1 * rate, HIGHEST)
     if slowest > 0.5 * fastest:
@@ -88,14 +93,15 @@ def design(kind, force, travel, rate, duration, mass):
     else:
         values = _steps(steps, rate, slowest, fastest)
     values *= force / np.abs(values).max()
-    # The path is proportional to the force if dry friction is a share of it.
+    # The displacement is proportional to the force if dry friction is a fixed fraction of the force.
     return time, values * min(1.0, TRAVEL_USED * travel / np.ptp(range_of(time, values, mass)))
 
 
 def _steps(steps, rate, slowest, fastest):
-    """+ for n samples, - for 2 n, + for n, which brings a handle without friction back to rest where it was; n grows.
-    With friction the first push moves the handle furthest, so that it drifts. Therefore each sequence follows with the
-    other sign, which brings it back."""
+    """Returns pushes + for n samples, - for 2 n, + for n, with growing n. Without friction, this sequence returns the
+    handle to rest at its start. With friction, the first push moves the handle farthest, so that it drifts. Therefore
+    each sequence is followed by the sequence with the opposite sign, which compensates the drift.
+    """
     values = []
     lengths = np.geomspace(rate / (4.0 * fastest), rate / (4.0 * slowest), 8)
     while len(values) < steps:
@@ -106,7 +112,7 @@ def _steps(steps, rate, slowest, fastest):
 
 
 def range_of(time, force, mass):
-    """Lowest and highest position [m], from where the handle starts, over all DRY_SHARES."""
+    """Returns the lowest and highest position relative to the start over all DRY_SHARES [m]."""
     peak, ends = np.abs(force).max(), [0.0]
     with Simulator(time, force) as simulate:
         for rate, shares in DRY_SHARES.items():
@@ -117,9 +123,9 @@ def range_of(time, force, mass):
 
 
 def force_to_ask(kind, numbers):
-    """The --force with which the signal reaches numbers["force"] [N], rounded up to two digits,
-    though travel limits it: a larger one begins at a higher frequency. Empty where there is
-    none."""
+    """Returns the value of --force for which the signal reaches numbers["force"] [N] although travel limits the signal,
+    rounded up to two digits. A larger --force makes the signal begin at a higher frequency. Empty if no value suffices.
+    """
     wanted = asked = numbers["force"]
     try:
         for _ in range(8):

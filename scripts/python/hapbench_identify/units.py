@@ -1,4 +1,4 @@
-"""What explains a log whose fit is impossible: a force of the other sign, or other units than s, N and m."""
+"""Explanations for a log whose fit is implausible: the opposite sign of the force, or units other than s, N and m."""
 import dataclasses
 import itertools
 import math
@@ -10,11 +10,11 @@ from .fit import MASS, fit
 TIMES = {1.0: "s", 1e-3: "ms", 1e-6: "us", 1e-9: "ns"}
 POSITIONS = {1.0: "m", 1e-3: "mm", 1e-2: "cm", 1e-6: "um"}
 FORCES = {1.0: "N", 1e-3: "mN", 1e3: "kN", 9.80665e-3: "gf", 9.80665: "kgf"}
-# What logs of haptic devices have.
+# Usual ranges in logs of haptic devices: time step [s], travel [m], peak force [N] and handle mass [kg].
 STEPS, TRAVELS, PEAKS, MASSES = (1e-5, 0.05), (1e-3, 0.8), (0.05, 60.0), (5e-3, 5.0)
-LONGEST_STEP = 0.2  # [s]; a log of longer intervals is not fitted as it is
-COARSEST = 1e-3  # step of an encoder [m]
-ACCEPTED = (1e-3, 20.0)  # masses of handles that need no --scale [kg]
+LONGEST_STEP = 0.2  # [s]; a log with longer intervals is not fitted without --scale
+COARSEST = 1e-3  # largest plausible step of an encoder [m]
+ACCEPTED = (1e-3, 20.0)  # masses of handles that are accepted without --scale [kg]
 MOST_TOLD = 3
 
 
@@ -23,7 +23,7 @@ def is_likely(mass, encoder_step):
 
 
 def turned_round(log, found):
-    """The fit with the force turned round if it explains the log where `found` does not, or None."""
+    """Returns the fit with the opposite sign of the force if it explains the log and `found` does not, else None."""
     if not found.misfit and _within(found.values[MASS], ACCEPTED):
         return None
     other = fit(_scaled(log, 1.0, 1.0, -1.0))
@@ -32,14 +32,13 @@ def turned_round(log, found):
 
 
 def is_usual(log, mass):
-    """True if mass, travel and force are those of a haptic device."""
+    """Returns True if mass, travel and force are in the usual ranges of a haptic device."""
     return _within(mass, MASSES) and _travel(log) <= TRAVELS[1] and _peak(log) <= PEAKS[1]
 
 
 def likely_units(log, found=None):
-    """(text, factors by quantity) of the units, and the sign of the force, in which the log is that of a likely
-    handle: at most
-    three, those that change the least first. `found`: the fit of the log as it is, if there is one.
+    """Returns (text, factors by quantity) for units, and for the sign of the force, with which the log belongs to a
+    plausible handle: at most three, the smallest change first. `found`: the fit of the unscaled log, if there is one.
     """
     times = [one for one in TIMES if _within(one * log.step, STEPS)] or [1.0]
     positions = [
@@ -61,8 +60,8 @@ def likely_units(log, found=None):
 
 
 def _unit_mass(log, time, position, found):
-    """The sign of the force, and the mass of the handle if all numbers were in s, N and m. Mass is proportional to
-    force * time^2 / position. Without a good fit, the log is fitted in units that are likely, with both signs.
+    """Returns the sign of the force, and the mass of the handle if all numbers were in s, N and m. Mass is proportional
+    to force * time^2 / position. Without a good fit, the log is fitted with likely units and with both signs.
     """
     if found is not None and not found.misfit:
         return 1.0, found.values[MASS]
@@ -89,7 +88,7 @@ def _said(time, position, force, mass):
 
 
 def scale_option(factors, given):
-    """The option that scales by the factors besides the `given` scales, numbers by quantity."""
+    """Returns the option that multiplies the `given` scales, numbers by quantity, by the factors."""
     both = given | {name: factor * given.get(name, 1.0) for name, factor in factors.items()}
     return "--scale " + ",".join(f"{name}={factor:g}" for name, factor in both.items())
 

@@ -137,7 +137,8 @@ def run(options):
         )
     if not options.preset and not options.columns:
         fail("--columns or --preset is missing: which columns hold time and position?")
-    from .recording import open_recording  # loads numpy and scipy, which the help does without
+    # Imported here, because it loads numpy and scipy, which the help does not need.
+    from .recording import open_recording
     from .stroke import import_stroke, stroke_text, table_of
 
     out = options.out or f"{Path(options.file).stem}_stroke.csv"

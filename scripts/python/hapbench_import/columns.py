@@ -1,4 +1,5 @@
-"""Which columns of a recording hold a quantity: by their names or numbers, never by guess; and the units in names."""
+"""Finds the columns of a recording that hold a quantity, by names or numbers and never by a guess, and reads units in
+names."""
 import re
 from dataclasses import dataclass
 
@@ -17,22 +18,24 @@ UNITS = {
     "angle": {"rad": 1.0, "rads": 1.0, "radian": 1.0, "radians": 1.0, "mrad": 1e-3}
     | {unit: 0.017453292519943295 for unit in ("deg", "degs", "degree", "degrees", "°")},
 }
-# A name such as x_mm also has a unit. Short ones such as x_m or x_cm may mean something else.
+# Endings that are units, as in x_mm. Short endings such as in x_m or x_cm may have another meaning.
 _ENDINGS = "ms msec us usec ns nsec mm um mN kN deg".split()
 _BRACKETED = re.compile(r"\s*([\[(])\s*([^\[\]()]*?)\s*[\])]\s*$")
-ABSENT = "\x01absent"  # begins the names of columns that a reader has added; no message names them
+# Prefix of the names of columns that a reader has added; messages do not name these columns.
+ABSENT = "\x01absent"
 SI = {"time": "s", "position": "m", "force": "N", "angle": "rad"}
 
 
 @dataclass
 class Unit:
-    text: str  # as the name has it
-    is_sure: bool  # in square brackets or at the end of the name after "_": nothing but a unit
+    text: str  # unit as written in the name
+    # True if the ending is certainly a unit: in square brackets, or after "_" at the end of the name.
+    is_sure: bool
 
 
 def without_unit(name):
-    """(name, Unit or None): "x [mm]", "x/mm" and "x, mm" are x in mm. Brackets around a number or a component, as in
-    q[0], are an index."""
+    """Returns (name, Unit or None): "x [mm]", "x/mm" and "x, mm" are x in mm. Brackets around a number or a component,
+    as in q[0], are an index."""
     found = _BRACKETED.search(name)
     if found and found[2] in ("", "-", "1"):
         return name[: found.start()] if found[2] != "1" else name, None
@@ -47,7 +50,8 @@ def without_unit(name):
 
 
 def substituted(name, tokens):
-    """Lists of names with each of `tokens` in place of one of them in `name`: pose.x gives pose.x, pose.y, pose.z."""
+    """Returns lists of names in which one token of `name` is replaced by each of `tokens`: pose.x gives pose.x, pose.y,
+    pose.z."""
     found = []
     for token in tokens:
         for at in re.finditer(re.escape(token), name, re.IGNORECASE):
@@ -62,7 +66,7 @@ def substituted(name, tokens):
 
 
 def numbered(name, count):
-    """Lists of `count` names with the numbers that follow one in `name`: p[0] gives p[0], p[1], p[2]."""
+    """Returns lists of `count` names, with increasing numbers from a number in `name`: p[0] gives p[0], p[1], p[2]."""
     return [
         [name[: at.start()] + str(int(at[0]) + i) + name[at.end() :] for i in range(count)]
         for at in re.finditer(r"\d+", name)
@@ -71,7 +75,7 @@ def numbered(name, count):
 
 
 def cells_of_matrix(name):
-    """Lists of the nine names of a matrix, row by row: r11 gives r11, r12 ... r33; R[0][0] likewise."""
+    """Returns lists of the nine names of a matrix, row by row: r11 gives r11, r12 ... r33; also for R[0][0]."""
     return [
         [
             name[: at.start()] + f"{int(at[1]) + i}{at[2]}{int(at[3]) + j}" + name[at.end() :]
@@ -84,7 +88,7 @@ def cells_of_matrix(name):
 
 
 class Names:
-    """The names of a recording's columns, with and without units, and the columns that they stand for."""
+    """The names of a recording's columns, with and without units, and their columns."""
 
     def __init__(self, recording):
         self.file, self.names = recording.file, recording.names
@@ -99,19 +103,19 @@ class Names:
         fail(f"columns: {quantity}: {problem}; the file has {known}", self.file)
 
     def own(self):
-        """The names of the file's columns."""
+        """Returns the names of the file's columns, without columns that a reader added."""
         return [name for name in self.names if not name.startswith(ABSENT)]
 
     def title(self, column):
         return f"{column + 1} {self.names[column]}".rstrip()
 
     def others(self, used):
-        """Numbers and names of the columns that are not `used`, the columns by quantity."""
+        """Returns numbers and names of the columns that are not in `used`, the columns by quantity."""
         read = {part["column"] for parts in used.values() for part in parts}
         return [self.title(i) for i in range(len(self.own())) if i + 1 not in read]
 
     def index(self, quantity, name):
-        """The column of this name, or None. A name is whole, or without its unit."""
+        """Returns the column of this name, or None. A name matches completely, or without its unit."""
         if not name:
             return None
         for names in (self.names, self.bare):
@@ -122,10 +126,10 @@ class Names:
         return None
 
     def find(self, quantity, words, endings=("_x", ".x")):
-        """(column, True if the word is a number) of the first of the words that the file has; `endings` may be missing
-        in a word. (None, False) if it has none of them."""
+        """Returns (column, True if the word is a number) for the first of the words that names a column; the `endings`
+        may be missing in a word. Returns (None, False) if no word names a column."""
         for word in words:
-            bare = word.lstrip("%# ")  # of a header in a comment
+            bare = word.lstrip("%# ")  # removes the mark of a header in a comment
             for name in (word, bare, *(bare + ending for ending in endings)):
                 if (column := self.index(quantity, name)) is not None:
                     return column, False
@@ -138,13 +142,15 @@ class Names:
         self.fail(quantity, f"got {quoted(word)}{nearest(word, list(filter(None, self.own())))}")
 
     def indices(self, names):
-        """The columns of all these names, or None. Names without units, as units come behind components."""
+        """Returns the columns of all these names, or None. Compares names without units, because units follow
+        components."""
         found = [self.bare.index(name) if self.bare.count(name) == 1 else None for name in names]
         return None if None in found or len(set(found)) < len(found) else found
 
     def components(self, column, tokens, numbers=True):
-        """The columns of all components, of which `column` is one, as their names say; None if they do not.
-        `numbers`: names with numbers, such as q0, count too, whose order the names do not say."""
+        """Returns the columns of all components if the names show them and `column` is one of them, else None. With
+        `numbers`, numbered names such as q0 are also accepted, although they do not state the order.
+        """
         name = self.bare[column]
         if not name:
             return None
@@ -166,7 +172,7 @@ class Names:
         return None
 
     def unit(self, quantity, columns):
-        """The Unit that the names of columns have, or None; refuses several different ones."""
+        """Returns the Unit in the names of columns, or None. Refuses columns with different units."""
         units = {
             self.units[column].text: self.units[column] for column in columns if self.units[column]
         }
@@ -179,7 +185,7 @@ _ANGLES = ("angle", "theta", "a", "Angle", "phi")
 
 
 def _between(names):
-    """ "axis_\0" of axis_x, axis_y, axis_z: the name with a mark in place of the component."""
+    """Returns the name with a mark in place of the component: "axis_\0" for axis_x, axis_y, axis_z."""
     at = next(i for i, pair in enumerate(zip(*names)) if len(set(pair)) > 1)
     return [names[0][:at] + "\0" + names[0][at + 1 :]]
 
@@ -189,7 +195,7 @@ def scale_text(quantity, scale):
 
 
 def scale_of(names, quantity, columns, given, notes):
-    """The factor to SI units: as `given`, or as the units in the names say, or 1."""
+    """Returns the factor to SI units: `given`, or from the units in the names, or 1."""
     unit = names.unit(quantity, columns)
     known = UNITS[quantity]
     factor = None if unit is None else known.get(unit.text, known.get(unit.text.lower()))

@@ -1,28 +1,29 @@
-"""Samples that were held: logged faster than they were measured, so that each is repeated in several rows."""
+"""Held samples: if the log is faster than the measurement, each sample is repeated in several rows."""
 from dataclasses import dataclass
 
 import numpy as np
 
 FEWEST_CHANGES = 10
-MOST_ROWS = 200  # that one sample may be repeated in
-ALL, NEARLY_ALL = 0.98, 0.9  # shares of the changes that must keep to the rhythm
+MOST_ROWS = 200  # largest number of rows of one sample
+ALL, NEARLY_ALL = 0.98, 0.9  # fractions of the changes that must match the rhythm
 
 
 @dataclass
 class Hold:
-    rows: float  # rows that each sample is repeated in, in the mean
-    fresh: np.ndarray  # True in the first row of each sample; in a longer rest, every `rows` rows
+    rows: float  # mean number of rows of each sample
+    # True in the first row of each sample; while the value does not change for longer, true every `rows` rows.
+    fresh: np.ndarray
 
 
 def hold_of(values):
-    """The Hold of values, a row each, or None. Steps of an encoder are not held samples: a slow motion changes by one
-    step at a time, and not in a rhythm of rows."""
+    """Returns the Hold of values (a row each), or None. Encoder steps are not held samples: in a slow motion, the value
+    changes by one step at a time, and not after a regular number of rows."""
     values = np.asarray(values).reshape(len(values), -1)
     steps = np.diff(values, axis=0)
     changed = np.flatnonzero(np.any(steps != 0.0, axis=1)) + 1
     if len(changed) < FEWEST_CHANGES or 2 * len(changed) > len(values):
         return None
-    # In which column does not matter: the one that moves the most.
+    # Select the column that moves most; all columns change in the same rows.
     moving = steps[changed - 1, np.argmax(np.abs(steps).sum(axis=0))]
     sizes = np.abs(moving[moving != 0.0])
     if len(np.unique(np.round(sizes / sizes.min(), 6))) < 3:
@@ -32,8 +33,8 @@ def hold_of(values):
 
 
 def _rhythm(runs):
-    """Rows between changes: a whole number of which nearly all runs are multiples, or the mean of runs that
-    differ by one row at most, as where the rates are not multiples, or by two, as where a clock has jitter.
+    """Returns the number of rows between changes. It is an integer of which nearly all runs are multiples, or the mean
+    of runs that differ by at most one row (rates that are not multiples) or two rows (a clock with jitter).
     """
     largest = min(MOST_ROWS, int(np.median(runs)))
     for n in range(largest, 1, -1):
@@ -48,10 +49,11 @@ def _rhythm(runs):
 
 
 def _fresh(changed, rows, count):
-    """True in rows of a change; where nothing changes for longer, in those where a sample must have been, too."""
+    """Returns True for the rows in which a new sample begins: rows with a change, and, while the value is constant for
+    longer, the rows in which a sample is expected."""
     fresh = np.zeros(count, bool)
     starts = np.concatenate([changed, [count]])
-    # The rows before the first change keep its rhythm.
+    # The rows before the first change have the same rhythm.
     before = changed[0] - np.arange(1, int(changed[0] / rows) + 1) * rows
     fresh[np.rint(before).astype(int)] = True
     for start, end in zip(starts, starts[1:]):

@@ -1,4 +1,4 @@
-"""The options of an import: those of a preset, and over them those of the command line."""
+"""The options of an import: the options of a preset, overridden by the options of the command line."""
 import json
 import math
 import sys
@@ -10,7 +10,7 @@ from hapbench_command import Faults, fail, finite_number, plain, quoted, require
 PRESETS = Path(__file__).resolve().parents[3] / "scenarios" / "library" / "presets"
 DECIMALS = ("auto", "comma", "point")
 FORMATS = ("csv", "traj", "hapi", "hapi-binary")
-# The columns of each way to write an orientation, in their order.
+# The columns of each representation of an orientation, in their order.
 ORIENTATIONS = {
     "none": (),
     "axis": ("axis_x", "axis_y", "axis_z"),
@@ -40,44 +40,45 @@ QUANTITIES = list(
 
 @dataclass
 class Options:
-    """What the numbers of a recording mean. Defaults: metres, seconds, newtons, radians; the tip points along -z."""
+    """Meaning of the numbers in a recording. Defaults: metres, seconds, newtons, radians; the tip points along -z."""
 
     format: str = "csv"
-    floats: bool = False  # hapi-binary: numbers of four bytes
-    decimal: str = "auto"  # "comma", "point", or as the numbers of a column show
+    floats: bool = False  # hapi-binary: true if numbers have four bytes
+    decimal: str = "auto"  # "comma", "point", or "auto": determined from the numbers of a column
     columns: dict = field(
         default_factory=dict
-    )  # of each quantity: the names or numbers, from 1, that its column may have
-    optional: set = field(
-        default_factory=set
-    )  # quantities of `columns` that the file need not have
-    sample_rate_Hz: float | None = None  # of a file without times
+    )  # for each quantity, the names or numbers (from 1) that its column may have
+    optional: set = field(default_factory=set)  # quantities of `columns` that the file may omit
+    sample_rate_Hz: float | None = None  # sampling rate of a file without times
     scale: dict = field(
         default_factory=dict
-    )  # of "time", "position", "angle", "force": SI units in one of the file's
-    orientation: str | None = None  # of ORIENTATIONS; None: as the names of its columns say
-    named: frozenset = frozenset()  # quantities of `columns` that the command line names
+    )  # units of "time", "position", "angle" and "force", in SI units
+    # A key of ORIENTATIONS; None: determined from the names of the columns.
+    orientation: str | None = None
+    named: frozenset = frozenset()  # quantities of `columns` that the command line sets
     tip_axis: tuple = (
         0.0,
         0.0,
         -1.0,
-    )  # direction out of the tip in the recorded tool's frame, any length
+    )  # direction out of the tip in the recorded tool frame, of any length
     frame: tuple = (
         (1.0, 0.0, 0.0),
         (0.0, 1.0, 0.0),
         (0.0, 0.0, 1.0),
-    )  # from the recorded world to the scenario's
+    )  # rotation from the recorded world frame to the scenario's frame
     shift: tuple = (0.0, 0.0, 0.0)  # added to positions in the scenario's frame [m]
-    force_by_tool: bool = False  # recorded forces act on the object and are negated
-    rate: float | None = None  # of the stroke [Hz]; None: as recorded
+    # True if the recorded forces act on the object; they are then negated.
+    force_by_tool: bool = False
+    rate: float | None = None  # rate of the stroke [Hz]; None: as recorded
     smooth: dict | None = None  # window [samples] and order
-    max_speed: float = 5.0  # [m/s]
-    max_gap: float = 0.5  # [s]
+    max_speed: float = 5.0  # larger speeds between samples are errors [m/s]
+    max_gap: float = 0.5  # longer gaps are errors [s]
     skip_bad_rows: bool = False
-    held_rows: str = "thin"  # rows that repeat a held sample are left out; "keep": they are samples
+    # "thin" omits rows that repeat a held sample; "keep" treats them as samples
+    held_rows: str = "thin"
 
     def set(self, name, value):
-        """Sets an option from a value of JSON."""
+        """Sets an option from a JSON value."""
         allowed, fits, read = _FIELDS[name]
         if not fits(value):
             fail(f"{name}: got {shown(value)}; allowed: {allowed}")
@@ -86,7 +87,7 @@ class Options:
 
 
 def options_of(asked):
-    """The options of the command line (__main__)."""
+    """Returns the options of the command line (__main__)."""
     options = Options()
     if asked.preset:
         _apply_preset(options, asked.preset)
@@ -130,12 +131,12 @@ def list_of_presets():
 
 
 def _presets():
-    """The files of the presets by their names."""
+    """Returns the files of the presets by name."""
     return {file.stem: str(file) for file in sorted(PRESETS.glob("*.json"))}
 
 
 def _read_preset(file):
-    """A preset is a JSON file with options as fields; users copy and correct it."""
+    """Reads a preset: a JSON file whose fields are options. Users copy and modify it."""
     try:
         with open(file, encoding="utf-8-sig") as stream:
             preset = json.load(stream)
@@ -174,7 +175,7 @@ def _assignments(option, words):
 
 
 def _value(word):
-    """A value of --set: JSON, or numbers and words separated by commas."""
+    """Parses a value of --set: JSON, or numbers and words separated by commas."""
     try:
         return json.loads(word)
     except ValueError:
@@ -199,7 +200,8 @@ def _smoothing(words):
 
 
 def _is_number(value):
-    """A finite number of double precision, as JSON writes it; Python also reads NaN and integers of any length."""
+    """Returns True for a finite number of double precision, as JSON writes it. Python would also read NaN and integers
+    of any length."""
     return (
         isinstance(value, (int, float))
         and not isinstance(value, bool)
@@ -208,7 +210,7 @@ def _is_number(value):
 
 
 def _is_column(value):
-    """A name, a number, or a list of them."""
+    """Returns True for a name, a number, or a list of names and numbers."""
     return (
         isinstance(value, str)
         or _is_number(value)
@@ -251,7 +253,7 @@ def _scale(options, value):
 
 
 def _frame(_, words):
-    """Three words, as in x, -z, y: which recorded directions are the scenario's x, y and z."""
+    """Parses three words, such as x, -z, y: the recorded directions that become the scenario's x, y and z."""
     rows = [
         [
             0.0 if word.removeprefix("-") != letter else -1.0 if word.startswith("-") else 1.0
@@ -259,7 +261,7 @@ def _frame(_, words):
         ]
         for word in words
     ]
-    # Each row is a unit vector or zero. The triple product is -1 for a mirror image, which no tool can follow.
+    # Each row is a unit vector or zero. The triple product is -1 for a reflection, which no motion of a tool can be.
     if (
         len(rows) != 3
         or sum(
@@ -275,7 +277,8 @@ def _frame(_, words):
     return rows
 
 
-# Of each field of a preset: what is allowed, whether a value is, and how it is read; nothing for a mere description.
+# For each field of a preset: the allowed values as text, the check of a value, and the conversion. None for a field
+# that is only a description.
 _FIELDS = {
     "description": ("a text", lambda v: isinstance(v, str), None),
     "format": ("a text", lambda v: isinstance(v, str), _named("format", FORMATS)),

@@ -1,4 +1,4 @@
-"""Recordings in the formats that are read: their columns as arrays, and where in the file each row is."""
+"""Recordings in the supported formats: their columns as arrays, and the position of each row in the file."""
 import math
 import re
 from datetime import date
@@ -8,8 +8,8 @@ from hapbench_command import fail, finite_number, nearest, plain, quoted
 
 from .text_table import has_decimal_commas, read_table, with_points
 
-LARGEST_FILE = 4 << 30  # bytes
-# The fields of a HAPI log and how many columns each takes.
+LARGEST_FILE = 4 << 30  # [bytes]
+# Fields of a HAPI log and their number of columns.
 HAPI_FIELDS = {
     "TIME": 1,
     "TIMESTAMP": 1,
@@ -26,26 +26,27 @@ HAPI_FIELDS = {
     "RAW_TORQUE": 3,
 }
 _NUMERIC = b"0123456789eE.+-\n"
-CHUNK = 1 << 24  # bytes read at once
-EXACT = 2.0**53  # whole numbers below are exact in a double
+CHUNK = 1 << 24  # number of bytes read at once
+EXACT = 2.0**53  # integers up to this value are exact in a double
 
 
 class Recording:
-    """The rows of a file. `names` of the columns are empty where the file gives none; `rows` are
-    lists of cells, or an array with the names; `places` are those of the rows in the file, counted
-    as `row_word` says. `notes`: what was skipped or repaired, each said once."""
+    """The rows of a file. `names` are the names of the columns, empty if the file has none. `rows` are lists of cells,
+    or an array with the names. `places` are the positions of the rows in the file, counted in units of `row_word`.
+    `notes`: skipped or repaired parts, each mentioned once."""
 
     def __init__(self, file, names, rows, places, row_word="line", notes=(), decimal="auto"):
         self.file, self.names, self.rows, self.places = file, names, rows, places
         self.row_word, self.notes, self._decimal = row_word, list(notes), decimal
         self.is_binary = isinstance(rows, np.ndarray)
-        self._says_comma = decimal == "comma"  # true once the notes have it, or the user does
+        # True if the user has chosen the decimal comma, or after a note has mentioned it.
+        self._says_comma = decimal == "comma"
 
     def place(self, row):
         return f"{self.file}, {self.row_word} {self.places[row]}"
 
     def problems(self):
-        """By row: what is wrong with it as a whole."""
+        """Returns the problems of whole rows, by row."""
         if self.is_binary:
             return {}
         return {
@@ -55,8 +56,8 @@ class Recording:
         }
 
     def faults(self, problems):
-        """(place, problem) of problems by row. A problem that repeats itself is reported at its first row,
-        with the number of rows."""
+        """Returns (position, problem) from problems by row. A repeated problem is reported at its first row with the
+        number of rows."""
         kinds = {}
         for row in sorted(problems):
             kinds.setdefault(_kind_of(problems[row]), []).append(row)
@@ -74,13 +75,14 @@ class Recording:
         ]
 
     def column(self, column):
-        """The numbers in a column, NaN where there is no finite one."""
+        """Returns the numbers in a column; NaN for cells without a finite number."""
         if self.is_binary:
             values = self.rows[self.names[column]].astype(float)
             return np.where(np.isfinite(values), values, math.nan)
         cells = self._cells(column)
         text = b"\n".join(cells)
-        # Otherwise float() may accept what is not a number here, and cells are read one by one.
+        # In other texts, float() may accept cells that are not numbers in this format, so the cells are parsed one by
+        # one.
         usual = not text.translate(None, _NUMERIC) and text.count(b"+") == text.count(
             b"e+"
         ) + text.count(b"E+")
@@ -95,10 +97,9 @@ class Recording:
         return np.where(np.isfinite(values), values, math.nan)
 
     def clock(self, column, scale=1.0):
-        """(origin, numbers less the origin) of a column of times. The origin is 0, except for whole numbers that a
-        double does not hold, such as nanoseconds since 1970. Times of day, with or without a date (ISO 8601), become
-        seconds since the first; `scale`, the seconds per unit of other numbers, must be 1 for them.
-        """
+        """Returns (origin, numbers minus the origin) for a column of times. The origin is 0, except for integers that
+        are too large for a double, such as nanoseconds since 1970. Times of day, with or without a date (ISO 8601), are
+        converted to seconds since the first; `scale`, the seconds per unit, must be 1 for them."""
         values = self.column(column)
         if not self.is_binary and not np.isfinite(values).any():
             nanoseconds = [
@@ -149,16 +150,19 @@ class Recording:
         return cells
 
     def _note_times_of_day(self, column, row):
-        note = f"column {self.title(column)}: times of day such as {self.shown(column, row)} are read as seconds since the first"
+        note = (
+            f"column {self.title(column)}: times of day such as {self.shown(column, row)} are read as seconds "
+            "since the first"
+        )
         if note not in self.notes:
             self.notes.append(note)
 
     def title(self, column):
-        """Number and name of a column."""
+        """Returns number and name of a column for a message."""
         return f"{column + 1} {self.names[column]}".rstrip()
 
     def shown(self, column, row):
-        """A value as a message shows it."""
+        """Formats a value for a message."""
         return (
             plain(self.rows[self.names[column]][row])
             if self.is_binary
@@ -172,7 +176,7 @@ _TIME_OF_DAY = re.compile(
 
 
 def _nanoseconds(cell):
-    """The nanoseconds of a time of day, with or without a date and an offset, or None."""
+    """Returns the nanoseconds of a time of day, with or without a date and an offset, or None."""
     found = _TIME_OF_DAY.fullmatch(cell)
     if not found:
         return None
@@ -191,13 +195,13 @@ def _nanoseconds(cell):
 
 
 def _kind_of(problem):
-    """A problem without its values, which differ from row to row; column and name stay."""
+    """Returns the problem without its values, which differ between rows. Column and name are kept."""
     where, got, rest = problem.partition("got ")
     return where, re.sub(r'"[^"]*"|-?\d[\d.e+-]*', "#", got + rest)
 
 
 def open_recording(file, options):
-    """Reads a file once, so that it may be a pipe."""
+    """Reads a file in one pass, so that it may be a pipe."""
     data = _content(file)
     if options.format == "hapi-binary":
         return _binary(data, file, options.floats)
@@ -227,12 +231,13 @@ def _content(file):
 
 
 def _hapi(data, file):
-    """A text log of HAPI: its first line has names of fields, of which each has one to four columns."""
+    """Reads a text log of HAPI. Its first line has the names of fields; each field has one to four columns."""
     return read_table(data, file, True, lambda words: _hapi_columns(words, file))
 
 
 def _hapi_columns(fields, file):
-    """POSITION_x, POSITION_y, POSITION_z; ORIENTATION ends with _angle."""
+    """Returns names of columns such as POSITION_x, POSITION_y, POSITION_z; the last column of ORIENTATION is
+    ORIENTATION_angle."""
     names = []
     for field in fields:
         name = field.decode("utf-8", "surrogateescape")
@@ -253,8 +258,8 @@ def _hapi_columns(fields, file):
 
 
 def _binary(data, file, floats):
-    """Names that end with NUL, one more NUL, then samples without separators: every number a double
-    or a float, BUTTONS an int32, little-endian."""
+    """Reads a binary log of HAPI: names that end with NUL, one more NUL, then samples without separators. Numbers are
+    little-endian doubles or floats, and BUTTONS is an int32."""
     fields, at, longest, names = [], 0, 64, []
     while (end := data.find(b"\0", at)) != at:
         if end < 0 or end - at > longest:

@@ -1,4 +1,4 @@
-"""Samples of a recording in SI units and the scenario's frame, and what is wrong with its rows."""
+"""Samples of a recording in SI units and the scenario's frame, and the problems of its rows."""
 import math
 from dataclasses import dataclass
 
@@ -6,297 +6,55 @@ import numpy as np
 from hapbench_command import MOST_FAULTS, Faults, fail
 from scipy.spatial.transform import Rotation
 
-from .columns import Names, scale_of
+from .component_columns import Columns
 from .holds import hold_of
-from .options import ORIENTATIONS
 
 MOST_SAMPLES = 10_000_000
-UNIT_TOLERANCE = 1e-3  # of norms: numbers further from 1 are not rounded but wrong
+UNIT_TOLERANCE = 1e-3  # tolerance of norms: a larger deviation from 1 is an error, not rounding
 LEAST_JUMP = (
-    1e-3  # [m]: below, a jump may be jitter of a clock that wrote two samples almost at once
+    # [m]; a smaller jump may be caused by a clock with jitter that wrote two samples almost at once
+    1e-3
 )
-# The components of a group as names of columns have them.
-LETTERS = {
-    ("px", "py", "pz"): ("x", "y", "z"),
-    ("mfx", "mfy", "mfz"): ("x", "y", "z"),
-    ("axis_x", "axis_y", "axis_z"): ("x", "y", "z"),
-    ("axis_x", "axis_y", "axis_z", "angle"): ("x", "y", "z", "angle"),
-    ("qw", "qx", "qy", "qz"): ("w", "x", "y", "z"),
-    ("qx", "qy", "qz", "qw"): ("x", "y", "z", "w"),
-}
-PARTS = list(dict.fromkeys(sum(ORIENTATIONS.values(), ())))  # of orientations
-LATEST = 1e11  # [s]; later times are in other units
-SINCE_1970 = (9e8, 4e9)  # 1998 to 2096 [s]
+LATEST = 1e11  # [s]; later times have other units
+SINCE_1970 = (9e8, 4e9)  # plausible seconds since 1970: 1998 to 2096 [s]
 DEGREE = math.pi / 180.0
-DOWN = np.array([0.0, 0.0, -1.0])  # the tool's axis in its own frame
+DOWN = np.array([0.0, 0.0, -1.0])  # axis of the tool in the tool frame
 
 
 @dataclass
 class Samples:
     time: np.ndarray  # [s], strictly increasing
-    position: np.ndarray  # of the tip [m]
-    turn: Rotation  # from the tool's frame to the world's
-    force: np.ndarray | None  # on the tool [N]; None: not measured
-    has_roll: bool  # False: only the axis is known, and `turn` has any roll
+    position: np.ndarray  # position of the tip [m]
+    turn: Rotation  # rotation from the tool frame to the world frame
+    force: np.ndarray | None  # force on the tool [N]; None if not measured
+    has_roll: bool  # false if only the axis is known; `turn` then has an arbitrary roll
 
 
 @dataclass
 class Read:
-    """A recording as it was read."""
+    """A recording after reading."""
 
     samples: Samples
     recording: object
-    kept: np.ndarray  # rows of the samples
-    left_out: list  # faults of rows that were left out: (place, problem)
+    kept: np.ndarray  # row numbers of the samples
+    left_out: list  # faults of omitted rows: (position, problem)
     unit_deviation: float  # largest |norm - 1| of an orientation before it was normalised
-    notes: list  # what a reader of the stroke must know
-    coordinates: np.ndarray  # positions before they were turned and shifted [m]
-    rows_left_out: int  # of all faults
-    origin: float  # added to times it gives those of the recording [s]
+    notes: list  # notes for the user of the stroke
+    coordinates: np.ndarray  # positions before rotation and shift [m]
+    rows_left_out: int  # number of omitted rows, over all faults
+    origin: float  # offset from the times here to the times of the recording [s]
     columns: dict  # Columns.used()
-    columns_not_read: list  # numbers and names of the others
-    scales: dict  # by quantity: SI units in one of the file's
-    held: object  # Hold, or None
-
-
-def one_axis(group):
-    """What a message says about a recording of one axis."""
-    if group not in ("position", "force"):
-        return ""
-    return (
-        " for x, y and z: a stroke has three components. Add columns of zeros to a recording of one axis "
-        "(hapbench audit reads it as it is)"
-    )
-
-
-class Columns:
-    """The columns that the options ask for: lists of indices in the order of the components, empty for none."""
-
-    def __init__(self, recording, options):
-        self._options, self.notes, self.scales = options, [], {}
-        self.names = names = Names(recording)
-        self.time = [] if options.sample_rate_Hz else self._group("time", ("time",))
-        self.position = self._group("position", ("px", "py", "pz"))
-        if not self.position:
-            names.fail("position", "is missing")
-        if not options.sample_rate_Hz and not self.time:
-            names.fail("time", "is missing (or give --set sample_rate_Hz=...)")
-        self.kind = self._kind_of_orientation()
-        self.orientation = self._group("orientation", ORIENTATIONS[self.kind])
-        if not self.orientation and self.kind != "none" and "orientation" not in options.optional:
-            names.fail("orientation", "is missing")
-        self.force = self._group("force", ("mfx", "mfy", "mfz"))
-        self._refuse_unused()
-        self._refuse_shared()
-        self._note_lone_order()
-
-    def used(self):
-        """By quantity: its components, and number, name and unit of the column of each."""
-        return {
-            quantity: [
-                {
-                    "component": component,
-                    "column": column + 1,
-                    "name": self.names.names[column],
-                }
-                for component, column in zip(components, columns)
-            ]
-            for quantity, components, columns in (
-                ("time", ("time",), self.time),
-                ("position", ("x", "y", "z"), self.position),
-                ("orientation", ORIENTATIONS[self.kind], self.orientation),
-                ("force", ("x", "y", "z"), self.force),
-            )
-        }
-
-    def scale(self, quantity, columns):
-        """The factor to SI units; `scales` keeps it."""
-        if quantity not in self.scales:
-            given = self._options.scale.get(quantity)
-            self.scales[quantity] = scale_of(self.names, quantity, columns, given, self.notes)
-        return self.scales[quantity]
-
-    def _group(self, group, parts):
-        """The columns of a group: by the name of its first component, by number, or each by itself."""
-        wanted, named = self._options.columns, self._options.named
-        alone = [part for part in parts if part != group and part in wanted]
-        # What the command line says goes before what a preset says.
-        if alone and not (group in named and not named & set(alone)):
-            if group in named:
-                self.names.fail(
-                    group, f"is named as a whole and by {alone[0]}; allowed: one of them"
-                )
-            for part in parts:
-                if part not in wanted:
-                    self.names.fail(part, f"is missing beside others of {group}")
-            return [self._column(part) for part in parts]
-        if not parts or group not in wanted:
-            return []
-        if len(parts) == 1:
-            column = self._column(group)
-            return [] if column is None else [column]
-        letters = LETTERS.get(parts, parts)
-        first, by_number = self._first(group, letters)
-        if first is None:
-            if group not in self._options.optional:
-                self.names.unknown(group, wanted[group])
-            self.notes.append(f"no columns of {group} as the preset names them: left out")
-            return []
-        found = self.names.components(first, letters)
-        if by_number:
-            return self._consecutive(group, first, found, len(parts))
-        if found is None:
-            self._ask(group, first, parts)
-        if letters[0] not in ("w", "x") or len(letters) != 4 or letters[3] == "angle":
-            if found[0] != first:
-                self.names.fail(
-                    group,
-                    f"column {self.names.title(first)} is not its first by name; allowed: "
-                    f"{group}={self.names.names[found[0]]}",
-                )
-        elif found[0] != first:
-            self.notes.append(self._other_order(first, found))
-        return found
-
-    def _first(self, group, letters):
-        """The column of the group's first component, and whether a number says so. A name may lack the component."""
-        endings = [f"{mark}{letters[0]}" for mark in ("_", ".", "")] + ["[0]", "_0", ".0", "0"]
-        if letters[0] != "x":
-            endings = ["_x", *endings]
-        return self.names.find(group, self._options.columns[group], endings)
-
-    def _consecutive(self, group, first, by_name, count):
-        if first + count > len(self.names.names):
-            self.names.fail(
-                group, f"takes columns {first + 1} ... {first + count}{one_axis(group)}"
-            )
-        found = list(range(first, first + count))
-        if by_name is not None and by_name != found:
-            titles = ", ".join(map(self.names.title, found))
-            self.notes.append(
-                f"columns {titles} are read as {group} in this order, as their number says; by their names it "
-                f"would be {', '.join(map(self.names.title, by_name))} "
-                f"(--columns {group}={self.names.names[by_name[0]]})"
-            )
-        return found
-
-    def _ask(self, group, first, parts):
-        """Refuses a name that does not say where the other components are."""
-        names, count = self.names, len(parts)
-        alone = ",".join(f"{part}=..." for part in parts)
-        consecutive = (
-            f", or {group}={first + 1} for the columns "
-            f"{', '.join(map(names.title, range(first, first + count)))}"
-            if first + count <= len(names.names)
-            else ""
-        )
-        names.fail(
-            group,
-            f'the names do not say which columns go with "{names.names[first]}"; allowed: {alone}{consecutive}'
-            + ("" if consecutive else one_axis(group)),
-        )
-
-    def _other_order(self, first, found):
-        shown = ", ".join(self.names.names[column] for column in sorted(found))
-        return (
-            f"--orientation {self.kind} says that the first component is "
-            f"{self.names.names[found[0]]}, and --columns that "
-            f"it is {self.names.names[first]}: the quaternion was read by the names of its columns ({shown})"
-        )
-
-    def _kind_of_orientation(self):
-        """That of --orientation or of the preset; without, what the columns show by their names."""
-        kind, wanted = self._options.orientation, self._options.columns
-        parts = {part for part in PARTS if part in wanted}
-        if kind is not None or ("orientation" not in wanted and not parts):
-            return kind or "none"
-        if "orientation" not in wanted:
-            return next((kind for kind, of in ORIENTATIONS.items() if parts <= set(of)), "none")
-        first, by_number = self.names.find(
-            "orientation", wanted["orientation"], ("_x", ".x", "x", "_w", ".w", "w")
-        )
-        if first is None:
-            self.names.unknown("orientation", wanted["orientation"])
-
-        def shown(kind):
-            letters = LETTERS.get(ORIENTATIONS[kind], ORIENTATIONS[kind])
-            return None if by_number else self.names.components(first, letters, numbers=False)
-
-        if quaternion := shown("quat_wxyz"):
-            return "quat_wxyz" if quaternion[0] == first else "quat_xyzw"
-        for kind in ("axis_angle", "matrix"):
-            if shown(kind):
-                return kind
-        kinds = ", ".join(kind for kind in ORIENTATIONS if kind != "none")
-        self.names.fail(
-            "orientation",
-            f"what begins at column {self.names.title(first)} is not known by its name; --orientation is missing; "
-            f"allowed: {kinds} (of Euler angles, make one of these)",
-        )
-
-    def _refuse_unused(self):
-        """A column that the command line names is used, or refused."""
-        used = {"time": self.time, "position": self.position, "force": self.force}
-        used["orientation"] = self.orientation
-        parts = {"position": ("px", "py", "pz"), "force": ("mfx", "mfy", "mfz")}
-        for quantity in self._options.named:
-            group = next((g for g, members in parts.items() if quantity in members), None)
-            if quantity in PARTS and quantity not in ORIENTATIONS[self.kind]:
-                of_kind = ", ".join(ORIENTATIONS[self.kind]) or "no columns"
-                self.names.fail(quantity, f"is not used: --orientation {self.kind} takes {of_kind}")
-            if not used.get(group or quantity, True):
-                self.names.fail(
-                    quantity, f"is not used: --orientation {self.kind} takes no columns"
-                )
-
-    def _refuse_shared(self):
-        """Two quantities cannot be one column."""
-        owners = {}
-        for quantity, parts in self.used().items():
-            for part in parts:
-                other = owners.setdefault(part["column"], quantity)
-                if other != quantity:
-                    self.names.fail(
-                        quantity,
-                        f"column {self.names.title(part['column'] - 1)} is also named for {other}",
-                    )
-
-    def _note_lone_order(self):
-        """Components that are named one by one, against what the names of their columns say."""
-        wanted = self._options.columns
-        for group, parts, columns in (
-            ("position", ("px", "py", "pz"), self.position),
-            ("force", ("mfx", "mfy", "mfz"), self.force),
-            ("orientation", ("qw", "qx", "qy", "qz"), self._quaternion()),
-        ):
-            if len(columns) != len(parts) or not set(parts) <= set(wanted):
-                continue
-            by_name = self.names.components(columns[0], LETTERS[parts])
-            if by_name and sorted(by_name) == sorted(columns) and by_name != columns:
-                self.notes.append(
-                    f"the columns of {group} are read as {', '.join(parts)} from "
-                    f"{', '.join(map(self.names.title, columns))}, as --columns says; their names say otherwise"
-                )
-
-    def _quaternion(self):
-        """Columns of a quaternion, w first; of another orientation none."""
-        if self.kind == "quat_xyzw":
-            return self.orientation[3:] + self.orientation[:3]
-        return self.orientation if self.kind == "quat_wxyz" else []
-
-    def _column(self, quantity):
-        column, _ = self.names.find(quantity, self._options.columns[quantity])
-        if column is None and quantity not in self._options.optional:
-            self.names.unknown(quantity, self._options.columns[quantity])
-        return column
+    columns_not_read: list  # numbers and names of the other columns
+    scales: dict  # factors to SI units, by quantity
+    held: object  # Hold, or None if samples are not held
 
 
 class Rows:
-    """The rows of a recording as numbers; `problems` says, by row, why some are not samples."""
+    """The rows of a recording as numbers. `problems` has for each bad row the reason why it is not a sample."""
 
     def __init__(self, recording, columns, options):
         self.problems, self.unit_deviation, self._recording = recording.problems(), 0.0, recording
-        self.jumps = {}  # by row: speed [m/s]
+        self.jumps = {}  # speed by row [m/s]
         self.notes, self.origin = columns.notes, 0.0
         frame = np.array(options.frame).T
         if columns.time:
@@ -326,7 +84,7 @@ class Rows:
                 self.orientation[:, 3] *= scale
             self._check_orientation()
         forces = np.zeros(1) if self.force is None else np.linalg.norm(self.force, axis=1)
-        self.clock_problems = set(self.problems)  # rows without a time or a place
+        self.clock_problems = set(self.problems)  # rows without a time or a position
         fits = (
             (np.linalg.norm(self.position, axis=1) < 1e6)
             & (forces < 1e9)
@@ -349,7 +107,7 @@ class Rows:
             )
 
     def turns(self, kept, options):
-        """The orientations of the rows that were kept, from the tool's frame to the world's."""
+        """Returns the rotations from the tool frame to the world frame for the kept rows."""
         frame, tool = np.array(options.frame), _from_down_to(np.array([options.tip_axis]))
         if self.kind == "none":
             return _from_down_to(np.repeat([frame @ options.tip_axis], len(kept), axis=0))
@@ -421,7 +179,7 @@ class Rows:
                 ),
             )
         else:
-            # No turn needs no axis.
+            # The identity rotation needs no axis.
             no_turn = (self.kind == "axis_angle") & (lengths == 0.0) & (values[:, 3] == 0.0)
             deviation = np.where(no_turn, 0.0, np.abs(lengths - 1.0))
             what = "a turn's axis" if self.kind == "axis_angle" else "a quaternion"
@@ -433,18 +191,17 @@ class Rows:
 
 
 def _from_down_to(axes):
-    """The shortest turns from DOWN to the axes."""
+    """Returns the smallest rotations from DOWN to the axes."""
     unit = axes / np.linalg.norm(axes, axis=1, keepdims=True)
     turns = np.column_stack([np.cross(DOWN, unit), 1.0 + unit @ DOWN])
-    # Half a turn may be about any axis that is perpendicular.
+    # A half turn may have any axis perpendicular to DOWN.
     return Rotation.from_quat(np.where(turns[:, 3:] < 1e-12, [1.0, 0.0, 0.0, 0.0], turns))
 
 
 def read_samples(recording, options):
-    """Reads a recording. Bad rows (too few values, no finite number, time that does not increase,
-    an orientation that is none, a jump faster than max_speed) are refused all together, each kind with
-    its first place, or left out when the options say so. Rows that repeat a held sample are left out.
-    """
+    """Reads a recording. Bad rows are: too few values, no finite number, time that does not increase, an invalid
+    orientation, a jump faster than max_speed. They are refused together, each kind with its first position, or omitted
+    if the options say so. Rows that repeat a held sample are omitted."""
     columns = Columns(recording, options)
     with np.errstate(invalid="ignore", over="ignore"):
         rows = Rows(recording, columns, options)
@@ -492,8 +249,8 @@ def read_samples(recording, options):
 
 
 def require_likely_clock(rows, file, scale, longest):
-    """Refuses a clock in other units than seconds: intervals that are too long in the median, or times long after
-    those since 1970. Names the scale of time that makes them likely."""
+    """Refuses a clock whose unit is probably not the second: the median interval is too long, or the times are far in
+    the future. Names the scale that makes the times plausible."""
     usable = np.isfinite(rows.time)
     usable[list(rows.clock_problems)] = False
     time, place = rows.time[usable], rows.recorded[usable]
@@ -518,8 +275,8 @@ def require_likely_clock(rows, file, scale, longest):
 
 
 def likely_unit(interval, speed, latest=0.0):
-    """1e-3, 1e-6 or 1e-9: what makes the latest time one of our days since 1970, or else an interval [s] the nearest
-    to 2 ms and a speed [m/s] the nearest to 5 cm/s."""
+    """Returns 1e-3, 1e-6 or 1e-9: the unit with which the latest time is a plausible time since 1970; else the unit
+    with which an interval [s] is closest to 2 ms and a speed [m/s] closest to 5 cm/s."""
     units = (1e-3, 1e-6, 1e-9)
     for unit in units:
         if SINCE_1970[0] < latest * unit < SINCE_1970[1]:
@@ -534,7 +291,7 @@ def likely_unit(interval, speed, latest=0.0):
 
 
 def _held_rows(rows, options, notes):
-    """The Hold of the rows without problems, or None; its `fresh` counts all rows."""
+    """Returns the Hold of the rows without problems, or None; its `fresh` has an entry for each row."""
     usable = np.array([row not in rows.problems for row in range(len(rows.time))], bool)
     values = [rows.recorded] + ([rows.orientation] if rows.kind != "none" else [])
     held = hold_of(np.column_stack(values)[usable]) if usable.any() else None
@@ -560,12 +317,12 @@ def _held_rows(rows, options, notes):
 
 
 def _is_held(values, fresh):
-    """True if values change only in fresh rows."""
+    """Returns True if values change only in fresh rows."""
     return not np.any((np.diff(values, axis=0) != 0.0).any(axis=1) & ~fresh[1:])
 
 
 def _with_hints(rows, count):
-    """The problems of rows; if most rows are jumps, with the scale that makes them a motion."""
+    """Returns the problems of rows. If most rows are jumps, adds the scale with which they would be a motion."""
     jumps = [row for row, speed in rows.jumps.items() if row in rows.problems]
     if len(jumps) < 3 or 3 * len(jumps) <= count:
         return rows.problems
@@ -582,8 +339,8 @@ def _with_hints(rows, count):
 
 
 def _in_sequence(rows, max_speed, held):
-    """The rows that can follow each other; adds the problems of the others. Rows of a held sample but its first are
-    passed over."""
+    """Returns the rows that can follow each other, and adds the problems of the others. Repeated rows of a held sample
+    are skipped."""
     kept, time, position = [], rows.time.tolist(), rows.position.tolist()
     for row in range(len(time)):
         if row in rows.problems or (held is not None and not held.fresh[row]):

@@ -1,6 +1,5 @@
-"""From samples to a stroke: an even clock that starts at 0, smoothed if asked for, and the
-resolution of the recording. What was found on the way, as JSON and, from that, as a table for
-people."""
+"""Converts samples to a stroke: a regular clock that starts at 0, optional smoothing, and the resolution of the
+recording. Reports the measured properties as JSON, and as a table for people."""
 import math
 
 import numpy as np
@@ -13,16 +12,16 @@ from .samples import DOWN, Samples, likely_unit, read_samples
 
 STIFFNESS = 20000.0  # default of rendering.stiffness_N_per_m [N/m]
 MOST_SAMPLES = 1e7
-LONG_INTERVALS = 10.0  # median intervals from which on one is a gap
-USUAL_RATES = (1.0, 1e5)  # of recordings [Hz]
-LONGEST, SHORTEST = 3.0, 1e-5  # of a hand's stroke, which is millimetres to decimetres long [m]
-FASTEST = 5.0  # of a hand [m/s]
-MOST_GAPS = 5  # that are told each
-MOST_NOT_READ = 12  # columns that the table names
+LONG_INTERVALS = 10.0  # in median intervals; a longer interval is a gap
+USUAL_RATES = (1.0, 1e5)  # usual rates of recordings [Hz]
+LONGEST, SHORTEST = 3.0, 1e-5  # largest and smallest plausible length of a hand's stroke [m]
+FASTEST = 5.0  # largest plausible speed of a hand [m/s]
+MOST_GAPS = 5  # largest number of gaps that are listed one by one
+MOST_NOT_READ = 12  # largest number of unread columns that the table names
 
 
 def import_stroke(recording, options):
-    """A stroke that a scenario plays back, and, as JSON, what was found on the way."""
+    """Returns a stroke that a scenario can replay, and the properties of the recording as JSON."""
     read = read_samples(recording, options)
     clock, is_regular = clock_of(read.samples.time)
     gaps = gaps_in(read, clock["interval_s"]["median"], options.max_gap)
@@ -86,8 +85,8 @@ def import_stroke(recording, options):
 
 
 def clock_of(time):
-    """The times of a recording, and whether every sample is within a thousandth of an interval of
-    its place on an even clock."""
+    """Returns the times of a recording, and True if every sample is within a thousandth of an interval of a regular
+    clock."""
     first, duration, intervals = float(time[0]), float(time[-1] - time[0]), np.diff(time)
     even = duration / len(intervals)
     off = time - first - np.arange(len(time)) * even
@@ -102,7 +101,7 @@ def clock_of(time):
 
 
 def usual_rate(clock, is_regular, samples):
-    """As recorded; of an irregular clock that of its median interval, as a whole number."""
+    """Returns the recorded rate; for an irregular clock the rate of its median interval, rounded to an integer."""
     if is_regular:
         return (samples - 1) / clock["duration_s"]
     rate = 1.0 / clock["interval_s"]["median"]
@@ -110,8 +109,8 @@ def usual_rate(clock, is_regular, samples):
 
 
 def gaps_in(read, median, longest):
-    """The gaps to bridge: index of the sample before it, and duration [s]. Intervals longer than
-    `longest` [s] are refused, however many there are."""
+    """Returns the gaps to interpolate: index of the sample before the gap, and duration [s]. Refuses the recording if
+    intervals are longer than `longest` [s], regardless of their number."""
     intervals = np.diff(read.samples.time)
     faults = [
         (
@@ -129,16 +128,16 @@ def gaps_in(read, median, longest):
 
 
 def resolution_of(values):
-    """The step in which a coordinate was recorded: the greatest length of which all differences between its values are
-    multiples, as 1e-5 m of a log with five decimals. None when there is none above 2e-10 and 2e-9
-    of the largest value (the coordinate was kept in full), or when all values are equal."""
+    """Returns the resolution of a coordinate: the largest length of which all differences between its values are
+    multiples, such as 1e-5 m for a log with five decimals. Returns None if no such length is above 2e-10 and above 2e-9
+    of the largest value (the coordinate has full precision), or if all values are equal."""
     values = np.sort(values).tolist()
-    # Differences are multiples up to the rounding of doubles, which Euclid's algorithm magnifies.
+    # Differences are multiples only up to the rounding of doubles, which Euclid's algorithm amplifies.
     rounding = max(1e-10, 1e-9 * max(abs(values[0]), abs(values[-1])))
     step = 0.0
     for before, value in zip(values, values[1:]):
-        # Euclid's algorithm for the greatest common divisor. Rounding makes a remainder of zero
-        # slightly more, or slightly less than the divisor.
+        # Euclid's algorithm for the greatest common divisor. Rounding can make a zero remainder slightly positive, or
+        # slightly smaller than the divisor.
         rest = value - before
         if rest <= rounding:
             continue
@@ -146,21 +145,21 @@ def resolution_of(values):
             step, rest = rest, abs(math.remainder(step, rest))
         if step <= 2.0 * rounding:
             return None
-        # The span so far is a multiple too, which undoes the magnification.
+        # The total span is also a multiple; rounding to it removes the amplified error.
         span = value - values[0]
         step = span / math.floor(span / step + 0.5)
     return step if step > 0.0 else None
 
 
 def resample(samples, rate):
-    """At an even rate [Hz] from the first sample on, time counted from there: positions and forces
-    between samples linearly, orientations along the arc between them."""
+    """Resamples at a regular rate [Hz] from the first sample, with times relative to it: positions and forces linearly,
+    orientations along the great arc."""
     time, duration = samples.time, samples.time[-1] - samples.time[0]
     if not (rate > 0.0 and math.isfinite(rate) and duration * rate < MOST_SAMPLES):
         fail(
             f"rate: got {rate:g} Hz for {duration:.6g} s; allowed: above 0, and up to {MOST_SAMPLES:g} samples"
         )
-    # A last sample that is on the grid but for rounding belongs to it.
+    # Includes a last sample that misses the grid only by rounding.
     grid = np.arange(math.floor(duration * rate * (1.0 + 1e-12)) + 1) / rate
     recorded = time[0] + grid
     after = np.clip(np.searchsorted(time, recorded, side="right"), 1, len(time) - 1)
@@ -181,10 +180,10 @@ def resample(samples, rate):
 
 
 def smooth(stroke, window, order):
-    """Fits a polynomial to every window of neighbours by least squares and takes its value in the
-    middle (Savitzky and Golay 1964); at both ends, the values of the first and the last window's
-    polynomial. Positions and the components of quaternions, which are normalised again, are
-    smoothed; forces are a measurement and stay."""
+    """Smooths by least-squares polynomials over windows of neighbours (Savitzky and Golay 1964). A sample gets the
+    value in the middle of its window; samples at both ends get values of the first and the last window's polynomial.
+    Smooths positions and the components of quaternions, which are normalised again. Forces are measurements and are not
+    smoothed."""
     n = len(stroke.time)
     if window < 3 or window % 2 == 0 or window > 10001 or window > n:
         fail(f"smooth: got a window of {window} samples; allowed: odd, 3 ... {min(n, 10001)}")
@@ -206,7 +205,7 @@ def smooth(stroke, window, order):
             basis[half + 1 :] @ (basis.T @ before[n - window :]),
         ]
     )
-    # A window over half a turn may average to nothing; such samples keep what they have.
+    # A window that spans more than half a turn may average to nearly zero; such samples keep their values.
     is_turn = np.linalg.norm(after[:, 3:], axis=1, keepdims=True) > 0.1
     turn = Rotation.from_quat(np.where(is_turn, after[:, 3:], before[:, 3:]))
     moved, turned = (
@@ -223,14 +222,15 @@ def smooth(stroke, window, order):
 
 
 def of_one_sign(quaternions):
-    """q and -q are one orientation; neighbours of one sign have the shorter way between them."""
+    """Returns quaternions of consistent sign. q and -q are the same orientation; with equal signs, interpolation takes
+    the shorter arc."""
     same = np.einsum("ij,ij->i", quaternions[1:], quaternions[:-1]) >= 0.0
     return quaternions * np.cumprod(np.where(np.concatenate([[True], same]), 1.0, -1.0))[:, None]
 
 
 def stroke_text(stroke):
-    """The stroke's file: time_s,px_m,py_m,pz_m, then qw,qx,qy,qz or axis_x,axis_y,axis_z, then with a measured force
-    mfx_N,mfy_N,mfz_N."""
+    """Returns the contents of the stroke's file: time_s,px_m,py_m,pz_m, then qw,qx,qy,qz or axis_x,axis_y,axis_z, then
+    with a measured force mfx_N,mfy_N,mfz_N."""
     if stroke.has_roll:
         names, pose = "qw,qx,qy,qz", np.roll(of_one_sign(stroke.turn.as_quat()), 1, axis=1)
     else:
@@ -245,7 +245,8 @@ def stroke_text(stroke):
 
 
 def number_text(value):
-    """The shortest decimal that reads back as the same number, in scientific notation only where that is shorter."""
+    """Returns the shortest decimal that reads back as the same number; in scientific notation only if that is
+    shorter."""
     text = repr(value)
     if "e" not in text and abs(value) >= 1e-3 and not text.endswith(".0"):
         return text
@@ -256,9 +257,20 @@ def number_text(value):
 
 
 def table_of(found):
-    """Rows of a label and a text, of what import_stroke found."""
-    interval, (low, high) = found["interval_s"], found["box_m"]
-    bad, smoothing = found["rows_left_out"], found["smoothing"]
+    """Returns rows of a label and a text about the result of import_stroke."""
+    least, most = found["force_min_N"], found["force_max_N"]
+    return [
+        ("columns", columns_text(found["columns"], found["columns_not_read"], found["scales"])),
+        *recording_rows(found),
+        *motion_rows(found),
+        *resolution_rows(found),
+        ("force", "not measured" if least is None else f"measured, {least:.4g} ... {most:.4g} N"),
+    ]
+
+
+def recording_rows(found):
+    """Returns the rows of table_of() about rows, clock and gaps of the recording."""
+    interval, bad = found["interval_s"], found["rows_left_out"]
     rows = [
         (
             "rows",
@@ -280,6 +292,22 @@ def table_of(found):
             if found["gaps"]
             else "none (of at least ten median intervals)",
         ),
+    ]
+    if found["rows_per_held_sample"] > 1.0:
+        rows.insert(
+            1,
+            (
+                "held",
+                f"{found['rows_per_held_sample']:.4g} rows per pose; the first row of each pose is used",
+            ),
+        )
+    return rows
+
+
+def motion_rows(found):
+    """Returns the rows of table_of() about positions, speeds and orientations."""
+    low, high = found["box_m"]
+    return [
         (
             "tip",
             ", ".join(
@@ -303,6 +331,13 @@ def table_of(found):
             f"[{', '.join(f'{part + 0.0:.3g}' for part in found['tip_direction'])}] in the mean; all "
             f"directions within {math.degrees(found['tip_direction_spread_rad']):.3g} degrees of it",
         ),
+    ]
+
+
+def resolution_rows(found):
+    """Returns the rows of table_of() about the resolution of the positions and about smoothing."""
+    smoothing = found["smoothing"]
+    rows = [
         (
             "resolution",
             ", ".join(
@@ -328,24 +363,12 @@ def table_of(found):
                 f"tool by at most {1e3 * turned:.4g} mrad ({1e3 * turned_rms:.4g} mrad rms)",
             )
         )
-    least, most = found["force_min_N"], found["force_max_N"]
-    if found["rows_per_held_sample"] > 1.0:
-        rows.insert(
-            1,
-            (
-                "held",
-                f"{found['rows_per_held_sample']:.4g} rows per pose; the first row of each pose is used",
-            ),
-        )
-    return [
-        ("columns", columns_text(found["columns"], found["columns_not_read"], found["scales"])),
-        *rows,
-        ("force", "not measured" if least is None else f"measured, {least:.4g} ... {most:.4g} N"),
-    ]
+    return rows
 
 
 def columns_text(columns, not_read, scales):
-    """Columns by quantity, with numbers and names: "time: column 1 t; position x, y, z: columns 2 px, 3 py, 4 pz"."""
+    """Formats columns by quantity, with numbers and names: "time: column 1 t; position x, y, z: columns 2 px, 3 py, 4
+    pz"."""
     said = []
     for quantity, parts in columns.items():
         titles = ", ".join(f"{part['column']} {part['name']}".rstrip() for part in parts)
@@ -363,8 +386,10 @@ def columns_text(columns, not_read, scales):
 
 
 def into_surface(stroke):
-    """Mean share of the measured force along the tip [-1, 1], where it is at least a fifth of the largest; 0 without
-    forces. A surface pushes against the tip, which gives negative values."""
+    """Returns the mean cosine of the angle between measured force and tip direction over the samples with more than a
+    fifth of the largest force. Returns 0 without forces, and unless the cosine is positive in more than 95 % of these
+    samples. A positive mean indicates a force of the opposite sign, because a surface pushes against the tip.
+    """
     if stroke.force is None:
         return 0.0
     sizes = np.linalg.norm(stroke.force, axis=1)
@@ -403,7 +428,7 @@ def _warnings(read, gaps, found):
 
 
 def _clock_warnings(found):
-    """At most one: an unusual rate or speed, with the scale of time that makes it usual."""
+    """Returns at most one warning: an unusual rate or speed, with the time scale that makes it usual."""
     rate, speed = found["rate_Hz"], found["speed_p99_m_per_s"]
     scale = found["scales"].get("time", 1.0)
     what = f"{rate:.4g} samples per second and a speed of {speed:.3g} m/s"

@@ -1,5 +1,5 @@
-"""Text files of numbers: lines, separators, decimal commas and names of columns. `import stroke` and `import device`
-both read text here."""
+"""Text files of numbers: lines, separators, decimal commas and names of columns. Used by `import stroke` and `import
+device`."""
 import csv
 import math
 import re
@@ -11,8 +11,8 @@ from hapbench_command import fail, finite_number
 from .columns import UNITS
 
 MOST_COLUMNS = 1000
-SAMPLED = 20  # lines from which the separator is found
-SEPARATORS = (b",", b";", b"\t", None)  # None: blanks
+SAMPLED = 20  # number of lines from which the separator is determined
+SEPARATORS = (b",", b";", b"\t", None)  # None stands for blanks
 _BLANK = b" \t\r"
 _COMMA_NUMBER = re.compile(rb"[+-]?(\d+,\d*|,\d+)([eE][+-]?\d+)?")
 _THOUSANDS = re.compile(rb"[+-]?[1-9]\d{0,2}(,\d{3})+(\.\d*)?")
@@ -22,17 +22,17 @@ _NOT_A_NUMBER = re.compile(rb"[+-]?(nan|inf|infinity)", re.IGNORECASE)
 
 @dataclass
 class Table:
-    names: list  # as in the file, without quotes; "" of a column that has none
+    names: list  # names as in the file, without quotes; "" for a column without a name
     rows: list  # lists of cells (bytes)
-    lines: list  # the line number of each row
+    lines: list  # line number of each row
     separator: bytes | None
-    notes: list = field(default_factory=list)  # what was skipped or repaired, each said once
+    notes: list = field(default_factory=list)  # skipped or repaired parts, each mentioned once
 
 
 def read_table(data, file, by_blanks=False, names_of=None):
-    """The rows and the names of columns of a text file. The names are those of a header: the first line if
-    no cell of it is a number, or the last comment line before the rows that has as many cells as the rows.
-    `names_of`: makes names from the words of the first line, whatever they are."""
+    """Returns the rows and the names of columns of a text file. The names come from a header: the first line if none of
+    its cells is a number, or the last comment line before the rows with as many cells as the rows. `names_of`: function
+    that makes names from the words of the first line in any case."""
     notes = []
     lines, comments = _lines(_utf8(data, file, notes))
     if not lines:
@@ -76,7 +76,7 @@ def counted(count, thing):
 
 
 def _utf8(data, file, notes):
-    """The bytes of a text in UTF-8, without a byte order mark."""
+    """Converts the bytes of a text to UTF-8 without a byte order mark."""
     if data[:2] in (b"\xff\xfe", b"\xfe\xff"):
         try:
             data = data.decode("utf-16").encode()
@@ -87,14 +87,14 @@ def _utf8(data, file, notes):
 
 
 def _lines(data):
-    """Lines with their numbers, and apart from them the comments, which begin with # or %. Blank lines are skipped.
+    """Returns lines with their numbers, and separately the comments, which begin with # or %. Blank lines are skipped.
     A line ends with LF, CR LF or, as on old Macs, CR."""
     raw = data.split(b"\n")
     if any(b"\r" in line.rstrip(b"\r") for line in raw):
         raw = data.replace(b"\r\n", b"\n").replace(b"\r", b"\n").split(b"\n")
     lines, comments = [], []
     for number, line in enumerate(raw, 1):
-        # A tab at an end may separate an empty cell, as in a table with empty columns.
+        # A tab at an end may separate an empty cell of a table with empty columns.
         bare = line.strip(_BLANK)
         if bare:
             kept = line.strip(b" \r") if b"\t" in line else bare
@@ -103,7 +103,7 @@ def _lines(data):
 
 
 def split(line, separator):
-    """The cells of a line, without blanks and quotes."""
+    """Returns the cells of a line, without blanks and quotes."""
     if separator is None:
         return line.split()
     if b'"' in line:
@@ -120,8 +120,8 @@ def split(line, separator):
 
 
 def is_number(cell):
-    """True also for a number with a decimal comma, which is in one cell only where commas do not separate cells or
-    it has quotes, and for "nan"."""
+    """Returns True for a number and for "nan". A number may have a decimal comma if commas do not separate cells, or if
+    the number is quoted."""
     return (
         not math.isnan(finite_number(cell))
         or _NOT_A_NUMBER.fullmatch(cell) is not None
@@ -130,7 +130,8 @@ def is_number(cell):
 
 
 def _separator(lines):
-    """The separator that leaves the smallest fraction of cells that are no numbers and, of several, the most cells."""
+    """Returns the separator with the smallest fraction of cells that are not numbers; among equal fractions, the
+    separator with the most cells."""
     sample = lines[1:] or lines  # the first line may have names
 
     def rank(separator):
@@ -142,7 +143,7 @@ def _separator(lines):
 
 
 def _header(words):
-    """The words as names, or none if one of them is a number or all of them are "nan" or empty."""
+    """Returns the words as names; empty if one of them is a number or all of them are "nan" or empty."""
     named = [word for word in words if word and not _NOT_A_NUMBER.fullmatch(word)]
     if not named or any(is_number(word) and not _NOT_A_NUMBER.fullmatch(word) for word in words):
         return []
@@ -150,7 +151,7 @@ def _header(words):
 
 
 def _from_header_on(lines, separator, notes):
-    """The lines without those above a header that have fewer or more cells than it and the rows."""
+    """Removes the lines above a header that have another number of cells than the header and the rows."""
     rows = [split(line, separator) for _, line in lines[: 2 * SAMPLED]]
     counts = [len(row) - (not row[-1]) for row in rows]  # a separator may be at the end
     later = counts[len(counts) // 2 :]
@@ -164,7 +165,7 @@ def _from_header_on(lines, separator, notes):
 
 
 def _units_of(words):
-    """The units in a line below the header, "" where the line has none; nothing if a word is no unit."""
+    """Returns the units in a line below the header, "" for a column without a unit; empty if a word is not a unit."""
     words = [word.decode("utf-8", "replace").strip("[]()") for word in words]
     is_unit = [
         word in ("", "-") or any(word in known for known in UNITS.values()) for word in words
@@ -175,10 +176,10 @@ def _units_of(words):
 
 
 def _commented_header(comments, before, count, separator):
-    """The line number and the names of a header such as "% time,x,y,z", above the line `before`."""
+    """Returns line number and names of a header such as "% time,x,y,z" above the line `before`."""
     for number, comment in reversed(comments):
         text = comment.lstrip(b"#% \t")
-        # A comment often has blanks between its names, whatever separates the numbers.
+        # A comment often has blanks between its names, even if the numbers have another separator.
         for words in (split(text, separator), split(text, None)):
             if number < before and len(words) == count and (names := _header(words)):
                 return number, names
@@ -186,7 +187,8 @@ def _commented_header(comments, before, count, separator):
 
 
 def _drop_trailing_separators(table):
-    """Removes an empty cell at the end of rows that have one more cell than the header, and the reverse."""
+    """Removes an empty cell at the end of rows that have one more cell than the header, and an empty name if the rows
+    have one cell less."""
     width = len(table.names)
     longer = [i for i, row in enumerate(table.rows) if len(row) == width + 1 and not row[-1]]
     for i in longer:
@@ -208,7 +210,7 @@ def _drop_trailing_separators(table):
 
 
 def _refuse_decimal_commas_between_commas(table, file):
-    """Rows such as "0,002,0,0008" of two numbers with decimal commas cannot be told from four whole numbers."""
+    """Refuses rows such as "0,002,0,0008", in which two numbers with decimal commas look like four integers."""
     wrong = [i for i, row in enumerate(table.rows) if len(row) != len(table.names)]
     if table.separator != b"," or 2 * len(wrong) <= len(table.rows):
         return
@@ -221,7 +223,7 @@ def _refuse_decimal_commas_between_commas(table, file):
 
 
 def has_decimal_commas(rows):
-    """True if the commas of some cell can only be decimal commas, as in "0,002" and unlike in "1,234"."""
+    """Returns True if the commas of some cell can only be decimal commas, as in "0,002" but not in "1,234"."""
     return any(
         _COMMA_NUMBER.fullmatch(cell) and not _THOUSANDS.fullmatch(cell)
         for row in rows
@@ -231,14 +233,14 @@ def has_decimal_commas(rows):
 
 
 def with_points(cells, is_comma_decimal):
-    """(cells of a column with a decimal point, index of the first that had a decimal comma, index of the first whose
-    comma is ambiguous, such as "1,234"). An index is None if there is no such cell."""
+    """Returns (cells of a column with a decimal point, index of the first cell with a decimal comma, index of the first
+    cell with an ambiguous comma, such as "1,234"). An index is None if there is no such cell."""
     commas = [i for i, cell in enumerate(cells) if b"," in cell and _COMMA_NUMBER.fullmatch(cell)]
     if not is_comma_decimal:
         grouped = (i for i, cell in enumerate(cells) if _THOUSANDS.fullmatch(cell))
         return cells, None, next(grouped, None)
     if not commas:
         return cells, None, None
-    # A column has one decimal sign: beside commas, points are of something else.
+    # A column has one decimal sign: in a column with decimal commas, a cell with a point is not a number.
     cells = [cell.replace(b",", b".") if b"." not in cell else b"" for cell in cells]
     return cells, commas[0], None

@@ -139,7 +139,7 @@ def main(words):
         command
     ]
     options = line().parse(rest)
-    # The module loads matplotlib, which the help does without.
+    # Imported here, because the module loads matplotlib, which the help does not need.
     return exit_status(
         command,
         "" if options.quiet else doing,

@@ -1,13 +1,13 @@
-"""A quantity over time of several runs for each law: the mean with a band."""
+"""A quantity over time with several runs for each law: the mean with a band."""
 import numpy as np
 
 from .panels import cut_off_peaks, share_an_axis
 
-SPANS = 300  # of a curve
+SPANS = 300  # number of time spans of a curve
 
 
 def draw_bands(ax, quantity, laws, looks):
-    """`laws`: the Samples of the runs of each law; `looks`: one for each law."""
+    """Draws the bands. `laws`: the Samples of the runs of each law; `looks`: one look for each law."""
     drawn = [
         (s, one, s.of(quantity)) for runs, one in zip(laws, looks) for s in runs if s.of(quantity)
     ]
@@ -30,7 +30,7 @@ def draw_bands(ax, quantity, laws, looks):
 
 
 def band(curves, edges):
-    """Mean, smallest and largest value of curves (time, lower and upper edge) in each span of time; NaN in spans
+    """Returns mean, smallest and largest value of curves (time, lower and upper edge) in each time span; NaN in spans
     without a value."""
     spans = len(edges) - 1
     total, count = np.zeros(spans), np.zeros(spans)

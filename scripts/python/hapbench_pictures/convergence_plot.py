@@ -1,5 +1,4 @@
-"""The levels of `converge` as a picture: the error of each metric over the refined field, and over the
-time of a run."""
+"""Picture of the levels of `converge`: the error of each metric over the refined field, and over the time of a run."""
 from itertools import cycle
 
 import numpy as np
@@ -17,9 +16,9 @@ ORDERS, LEVELS, TIMES = "converge.csv", "converge_levels.csv", "converge_levels_
 
 
 def draw_converge(files, sheet=SHEET):
-    """The relative error of each metric over the refined field, beside the line of the formal
-    order, and over the time of a run: filled marks where an order is stated, hollow ones of what
-    the levels show without."""
+    """Draws the relative error of each metric over the refined field, with the line of the formal order, and over the
+    time of a run. Filled marks: an order is stated. Hollow marks: errors of the levels without a stated order.
+    """
     orders, levels, times = (
         files.records(ORDERS),
         files.records(LEVELS),

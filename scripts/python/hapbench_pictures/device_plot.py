@@ -1,5 +1,5 @@
-"""The limits of `limit --device` as a picture: on each device, and of each device over another field. A device has
-one colour, the linear and the simulated limit have marks of their own."""
+"""Picture of the limits of `limit --device`: on each device, and for each device over another field. A device has one
+colour; the linear and the simulated limit have different marks."""
 import numpy as np
 from matplotlib.lines import Line2D
 from matplotlib.transforms import ScaledTranslation
@@ -11,15 +11,15 @@ from hapbench_style import BLACK, GREY, PUBLISHED_LINE, legend_above, legend_hei
 from .given import axis
 from .over_axes import Axis, over_axes
 
-# The variants of a preset, such as "touch[soft]", have its colour and thinner lines.
+# Variants of a preset, such as "touch[soft]", have the colour of the preset and thinner lines.
 LINEAR = {"marker": "s", "mfc": "white", "mew": 1.1, "ms": 4.2}
 SIMULATED = {"marker": "o", "ms": 4.2}
-# A simulated limit with unstable runs on its stable side or stable runs beyond it. It is joined to nothing.
+# A simulated limit with unstable runs on its stable side or stable runs beyond it. It is not joined to other limits.
 ALTERNATING = {"marker": "o", "mfc": "white", "mew": 1.1, "ms": 4.2, "ls": "none"}
-# Where the whole range to its end is stable: the limit is larger.
+# The whole range is stable up to its end: the limit is larger than the range.
 BEYOND = {"ms": 4.2, "mfc": "white", "mew": 0.9}
-BEYOND_MARKERS = {"x": ">", "y": "^"}  # by the axis of the limit
-BEYOND_ROW = 5.5  # between the marks of two devices at one end of the range [points]
+BEYOND_MARKERS = {"x": ">", "y": "^"}  # marker by the axis of the limit
+BEYOND_ROW = 5.5  # distance between the marks of two devices at the same end of the range [points]
 NON_MONOTONIC = "non_monotonic_runs"
 BEYOND_LABEL = "stable to the end of the range: a row for each device"
 ALTERNATING_LABEL = "simulated: stable and unstable runs alternate"
@@ -29,44 +29,46 @@ VARIANT_LABEL = "thin: ends of unpublished parameters"
 
 
 def device_of(row):
-    """The device without the variant: "touch" of "touch[soft]"."""
+    """Returns the device without the variant: "touch" for "touch[soft]"."""
     return row["device"].partition("[")[0].rstrip("*")
 
 
 def looks_of(rows):
-    """Device -> its look; the order is that of the table."""
+    """Returns the look of each device, in the order of the table."""
     names = list(dict.fromkeys(map(device_of, rows)))
     return {name: SERIES[i % len(SERIES)] for i, name in enumerate(names)}
 
 
 def linear(rows):
-    """The linear limit of each row: that of the contact loop, or the theoretical limit of bilateral springs."""
+    """Returns the linear limit of each row: the limit of the contact loop, or the theoretical limit of bilateral
+    springs."""
     own, theory = numbers(rows, "linear_limit"), numbers(rows, "theoretical_limit")
     values = np.where(np.isfinite(own), own, theory)
     return np.where(np.isfinite(values) & (values > 0), values, np.nan)
 
 
 def simulated(rows):
-    """The simulated limits, and which of them are the end of the searched range, where no limit was found."""
+    """Returns the simulated limits, and True for limits at the end of the searched range, where no limit was found."""
     ends = np.array([row["side"] == "largest" and not row["first_unstable"] for row in rows], bool)
     values = np.where(ends, numbers(rows, "stable_high"), numbers(rows, "limit"))
     return values, ends & np.isfinite(values)
 
 
 def alternate(rows):
-    """True for each row whose stable and unstable runs alternate, so that no limit separates them."""
+    """Returns True for each row whose stable and unstable runs alternate, so that no limit separates them."""
     return np.array([row.get(NON_MONOTONIC) not in (None, "", "0") for row in rows], bool)
 
 
 def simulated_kinds(rows):
-    """The simulated limits of three kinds, NaN elsewhere: separated, alternating, and ends of the range."""
+    """Returns the simulated limits in three groups, NaN elsewhere: separated, alternating, and at the end of the
+    range."""
     values, ends = simulated(rows)
     alternating = alternate(rows) & ~ends
     return [np.where(of, values, np.nan) for of in (~ends & ~alternating, alternating, ends)]
 
 
 def published(rows):
-    """Device -> its published limit."""
+    """Returns the published limit of each device."""
     return {
         device_of(row): float(row["published_N_per_m"])
         for row in rows
@@ -75,7 +77,7 @@ def published(rows):
 
 
 def legend_of_marks(rows, along):
-    """Handles and labels of the marks that are drawn. `along`: the axis of the limit, "x" or "y"."""
+    """Returns handles and labels of the marks that are drawn. `along`: the axis of the limit, "x" or "y"."""
     separated, alternating, ends = simulated_kinds(rows)
     marks = (
         ("linear limit", linear(rows), LINEAR),
@@ -97,7 +99,7 @@ def legend_of_marks(rows, along):
 
 
 def panels_of(rows):
-    """Title -> its rows, for each scene and law."""
+    """Returns the rows of each panel by title; each scene and law has a panel."""
     found = {}
     for row in rows:
         title = f"{row['scenario'].replace('_', ' ')}, {law_name(row['algorithm'])}"
@@ -106,12 +108,12 @@ def panels_of(rows):
 
 
 def title_of(found):
-    """The title of the limits, such as "largest stable stiffness K [N/m]"."""
+    """Returns the title of the limits, such as "largest stable stiffness K [N/m]"."""
     return f"{found.rows[0]['side']} stable {axis(found.field)}"
 
 
 def draw_devices_over(found, sheet):
-    """Both limits over the last field of --over, a colour for each device."""
+    """Draws both limits over the last field of --over, with a colour for each device."""
     panels, own = panels_of(found.rows), looks_of(found.rows)
     marks = legend_of_marks(found.rows, "y")
     entries = [(Line2D([], [], color=one.colour, lw=2), name) for name, one in own.items()] + marks
@@ -145,7 +147,7 @@ def draw_devices_over(found, sheet):
 
 
 def curves_of(found, rows, colour, is_variant):
-    """Both limits of one device as series of over_axes()."""
+    """Returns both limits of one device as series of over_axes()."""
     x, (separated, alternating, _) = found.along(rows), simulated_kinds(rows)
     shown = {"color": colour, "mec": colour, "lw": THIN if is_variant else 1.3}
     return [
@@ -156,8 +158,8 @@ def curves_of(found, rows, colour, is_variant):
 
 
 def mark_ends(ax, found, rows, own):
-    """Marks at the end of the range for the devices that are stable up to it, those of one device in a line of their
-    own; variants of a device share its marks."""
+    """Draws marks at the end of the range for the devices that are stable up to it. Each device has its own row of
+    marks, shared by its variants."""
     of_device = {}
     for row, x, y in zip(rows, found.along(rows), simulated_kinds(rows)[2]):
         if np.isfinite(y):
@@ -174,7 +176,7 @@ def mark_ends(ax, found, rows, own):
 
 
 def draw_devices(found, sheet):
-    """Both limits on each device, a panel for each scene and law."""
+    """Draws both limits on each device, with a panel for each scene and law."""
     panels, own = panels_of(found.rows), looks_of(found.rows)
     devices = list(dict.fromkeys(row["device"] for row in found.rows))
     marks = legend_of_marks(found.rows, "x")

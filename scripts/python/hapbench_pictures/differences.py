@@ -1,8 +1,8 @@
-"""What differs between the results A and B of two runs, or of two folders with several: a regression test.
+"""Differences between the results A and B of two runs, or of two folders with several runs: a regression test.
 
-Results are the outcome, the metrics and warnings of summary.json, trajectory.csv and sweep.csv.
-Fields of the scenario are shown but do not count; provenance, times and counted work are not looked
-at."""
+Results are the outcome, the metrics and warnings of summary.json, trajectory.csv and sweep.csv. Differences of the
+scenario's fields are printed but do not count. Provenance, times and work counters are not compared.
+"""
 import json
 import math
 import zlib
@@ -22,14 +22,14 @@ NO_RESULTS = (
     "provenance",
     "state_hash",
 )
-LONGEST = 24  # of a printed value
-NO_NUMBER = math.inf  # the size of a difference of which not both are numbers
+LONGEST = 24  # largest number of characters of a printed value
+NO_NUMBER = math.inf  # size of a difference between values that are not both numbers
 
 
 def differences(a, b):
-    """For each run and sweep, by its path below the folders `a` and `b`: under "field", "result",
-    "state hash" and the names of tables what differs, as (name, in A, in B, size, relative
-    size)."""
+    """Returns the differences of each run and sweep, by its path below the folders `a` and `b`. Keys are "field",
+    "result", "state hash" and the names of tables; values are lists of (name, in A, in B, size, relative size).
+    """
     in_a, in_b = results_below(a), results_below(b)
     pairs = [path for path in in_a if path in in_b]
     if not pairs:
@@ -79,7 +79,7 @@ def of_runs(a, b):
 
 
 def flat(value, path=""):
-    """The leaves as texts, by their paths."""
+    """Returns the leaves as texts, keyed by their paths."""
     parts = (
         value.items()
         if isinstance(value, dict)
@@ -94,7 +94,8 @@ def flat(value, path=""):
 
 
 def results_of(told):
-    """Metrics have no section in front of their names, as in `expect`; warnings stand for themselves."""
+    """Returns the results of a summary. Names of metrics have no section in front, as in `expect`. Each warning is a
+    separate result."""
     found = [
         pair
         for key, value in told.items()
@@ -105,7 +106,8 @@ def results_of(told):
 
 
 def fields_of(run):
-    """Files, which a scenario names from its own folder, by what they hold. Expectations do not change a run."""
+    """Returns the fields of a run. A file that the scenario names is represented by its contents. Expectations are
+    excluded, because they do not change a run."""
     scenario = read_object(run / SCENARIO, parse_float=str, parse_int=str)
     found = dict(flat({key: value for key, value in scenario.items() if key != "expect"}))
     files = {
@@ -119,7 +121,7 @@ def fields_of(run):
 
 
 def changed(a, b):
-    """What has another text, of both or of one alone."""
+    """Returns the entries with different texts, and the entries that only one side has."""
     return [
         (name, a.get(name, "-"), b.get(name, "-"), *sizes(a.get(name, "-"), b.get(name, "-")))
         for name in {**a, **b}
@@ -132,15 +134,15 @@ def number(text):
 
 
 def sizes(a, b, largest=0.0):
-    """|a - b|, and that relative to `largest` or to the larger of the two."""
+    """Returns |a - b|, absolute and relative to `largest` or to the larger of the two."""
     x, y = number(a), number(b)
     size = abs(x - y) if math.isfinite(x) and math.isfinite(y) else NO_NUMBER
     return size, size / max(largest, abs(x), abs(y)) if 0 < size < NO_NUMBER else size
 
 
 def of_tables(a, b):
-    """Of each column that differs the row with the largest difference, which is relative to the
-    column's largest magnitude."""
+    """Returns for each column that differs the row with the largest difference, relative to the column's largest
+    magnitude."""
     (names_a, rows_a), (names_b, rows_b) = read_rows(a), read_rows(b)
     found = [
         (what, one, other, NO_NUMBER, NO_NUMBER)
@@ -178,8 +180,9 @@ def of_tables(a, b):
 
 
 def are_equal(found, tolerance):
-    """Whether nothing but numbers within a relative tolerance differs. What one of them alone has
-    always counts; the state hash, which changes with any bit, at a tolerance of 0."""
+    """Returns True if all differences are numbers within a relative tolerance. An entry that only one side has is
+    always a difference. The state hash, which changes with any bit, counts only if the tolerance is 0.
+    """
     return all(
         relative <= tolerance and tolerance > 0 or (tolerance > 0 and name.startswith("state_hash"))
         for tables in found.values()
@@ -195,7 +198,7 @@ def cut(value):
 
 
 def in_words(a, b, found, tolerance):
-    """For people."""
+    """Formats the differences as text for people."""
     lines = [f"A {a}", f"B {b}", ""]
     for path, tables in found.items():
         rows = [

@@ -1,4 +1,4 @@
-"""Drawings of a page: each once on light and once on dark ground."""
+"""Drawings of a page: each drawing exists for light and for dark ground."""
 import base64
 from dataclasses import replace
 
@@ -12,11 +12,12 @@ from .given import axis
 from .over_axes import Axis, look_of, over_axes, pareto
 from .panels import DARK, LIGHT, RunLook, settings
 
-SIZE, SCENE_SIZE = (4.0, 2.0), (4.0, 2.9)  # [inch]: on a phone as legible as the text around it
+# [inch]; on a phone, the text in a drawing is as legible as the text around it
+SIZE, SCENE_SIZE = (4.0, 2.0), (4.0, 2.9)
 
 
 def drawing(size, draw, light, title, words, **labels):
-    """A figure of one pair of axes. `light`: the looks of what `draw` draws."""
+    """Returns a drawing with one pair of axes. `light`: the looks on light ground of the curves that `draw` draws."""
 
     def of(paper, shown):
         figure, ax = plt.subplots(figsize=size)
@@ -30,7 +31,8 @@ def drawing(size, draw, light, title, words, **labels):
 
 
 def on_both_grounds(draw, light, dark, title, words):
-    """`draw(paper, looks)` returns a figure; `words`: the drawing for those who hear it."""
+    """Draws on both grounds: `draw(paper, looks)` returns a figure. `words`: description of the drawing for screen
+    readers."""
     images = []
     for paper, shown, name in ((LIGHT, light, "only-light"), (DARK, dark, "only-dark")):
         with plt.rc_context({**SETTINGS, **settings(paper)}):
@@ -43,13 +45,13 @@ def on_both_grounds(draw, light, dark, title, words):
     return f"<figure><figcaption>{text(title)}</figcaption>{''.join(images)}</figure>"
 
 
-MOST_LAWS = 2  # that a table tells apart at a glance
+MOST_LAWS = 2  # largest number of laws for which the table is clear without the picture
 DEEPER, SHAKIER = "inside_max_m", "force_rms_above_30Hz_N"
 
 
 def pareto_section(runs):
-    """Of a comparison with many laws: how deep each lets the tool against how much it vibrates,
-    over all scenes and seeds."""
+    """Returns the Pareto section of a comparison with many laws: depth of the tool against vibration for each law, over
+    all scenes and seeds."""
     found = {}
     for run in runs:
         values = (run.metric(DEEPER), run.metric(SHAKIER))

@@ -1,6 +1,5 @@
-"""The runs that RUN… on the command line mean (folders of `run`, folders of `compare`, or one
-folder of `sweep`), the fields in which they differ, and how a field is written in a legend or on an
-axis."""
+"""The runs that RUN… on the command line names (folders of `run`, folders of `compare`, or one folder of `sweep`), the
+fields in which they differ, and the names of fields in legends and on axes."""
 import json
 import os
 import re
@@ -14,8 +13,8 @@ from hapbench_report.markup import column
 from hapbench_report.runs import load_run, load_runs
 
 SUMMARY, SWEEP = "summary.json", "sweep.csv"
-SEED_FOLDER = re.compile(r"seed_(\d+)")  # of a comparison with --seeds
-# Titles of fields whose last name says too little, and symbols in formulas.
+SEED_FOLDER = re.compile(r"seed_(\d+)")  # folder of a comparison with --seeds
+# Titles of fields whose last name is too short to be clear, and symbols in formulas.
 TITLES, SYMBOLS = {"time.step_s": "time step", "rendering.damping_ratio": "damping ratio ζ"}, {
     "rendering.stiffness_N_per_m": "K"
 }
@@ -23,7 +22,8 @@ NO_INPUT = ("expect", "description", "name", "source")
 
 
 def given_alone(words, files, what):
-    """The folder among the words with one of these files, and no run; None without any. It is drawn alone."""
+    """Returns the folder among the arguments that contains one of these files and no run; None if there is none. Such a
+    folder is drawn without other folders."""
     found = [
         Path(word)
         for word in words
@@ -42,12 +42,12 @@ def given_sweep(words):
 
 
 def given_runs(words):
-    """The runs, in the order given, each folder once; of a comparison those that its table names."""
+    """Returns the runs in the given order, each folder once. A comparison contributes the runs that its table names."""
     found = {}
     for word in words:
         folder = Path(word)
         if folder.is_file() and (folder.parent / SUMMARY).is_file():
-            folder = folder.parent  # whoever types RUN/trajectory.csv means RUN
+            folder = folder.parent  # the argument RUN/trajectory.csv stands for RUN
         if not folder.is_dir():
             raise InputError(
                 f'{folder}: no such folder; allowed: a folder that "hapbench run", '
@@ -67,7 +67,7 @@ def given_runs(words):
 
 
 def compared(folder):
-    """The runs below a folder, without those that an earlier comparison left there."""
+    """Returns the runs below a folder, without runs that an earlier comparison left there."""
     table = folder / "comparison.csv"
     runs = load_runs(folder)
     if not table.is_file():
@@ -79,12 +79,13 @@ def compared(folder):
 
 
 def labels(runs):
-    """Names that tell the runs apart: scene, algorithm, fields, seed and folder, as far as they differ."""
+    """Returns names that distinguish the runs: scene, algorithm, fields, seed and folder, as far as they differ."""
     return named(runs)[0]
 
 
 def named(runs):
-    """These names; and the same without the seed, which is one name for all runs that differ in nothing else."""
+    """Returns the labels of the runs, and the labels without the seed; the latter are equal for all runs that differ
+    only in the seed."""
     parts = [
         part
         for part in ([run.name for run in runs], [plain(run) for run in runs])
@@ -104,8 +105,8 @@ def named(runs):
 
 
 def seed_of(run):
-    """The number of a run's repetition, as in the name of its folder and in comparison.csv; of a run that is part of no
-    comparison the seed of its scenario."""
+    """Returns the number of a run's repetition, which is in the name of its folder and in comparison.csv. For a run
+    outside of a comparison, returns the seed of its scenario."""
     found = SEED_FOLDER.fullmatch(run.folder.name)
     return int(found[1]) if found else run.scenario.get("seed")
 
@@ -115,12 +116,12 @@ def plain(run):
 
 
 def by_seed(run):
-    """The fields that a seed sets: in a comparison, with --jitter, the start too."""
+    """Returns the fields that a seed sets. In a comparison with --jitter, they include the start."""
     return ("seed", "initial.position_m") if SEED_FOLDER.fullmatch(run.folder.name) else ("seed",)
 
 
 def field_entries(runs):
-    """For each run the fields, with their values, in which it differs from others of its scene and algorithm."""
+    """Returns for each run the fields, with values, in which it differs from other runs of its scene and algorithm."""
     fields = [
         {path: value for path, value in fields_of(run).items() if path not in by_seed(run)}
         for run in runs
@@ -135,14 +136,14 @@ def field_entries(runs):
 
 
 def relative_folders(runs):
-    """The runs' folders, without what is common to all."""
+    """Returns the runs' folders without their common path."""
     paths = [os.path.abspath(run.folder) for run in runs]
     common = os.path.commonpath([os.path.dirname(path) for path in paths])
     return [os.path.relpath(path, common) for path in paths]
 
 
 def common_folder(words):
-    """The folder that holds all of the runs: of a single one, its own."""
+    """Returns the folder that contains all runs; for a single run, the folder of the run."""
     return (
         Path(os.path.commonpath([os.path.abspath(word) for word in words]))
         if len(words) > 1
@@ -151,8 +152,8 @@ def common_folder(words):
 
 
 def fields_of(run):
-    """The scenario's fields by their paths. Files, which it names from its own folder, are named
-    from here, where they are one."""
+    """Returns the scenario's fields by path. Paths of files, which are relative to the scenario's folder, are given
+    relative to the working directory."""
     return {
         path: os.path.relpath(run.folder / value)
         if path.rpartition(".")[2] == "file" and isinstance(value, str)
@@ -162,7 +163,8 @@ def fields_of(run):
 
 
 def differing(flat):
-    """The paths at which these fields differ, with the value of each; names, descriptions and expectations aside."""
+    """Returns the paths at which the fields differ, with the value of each run. Names, descriptions and expectations
+    are excluded."""
     values = {
         path: [fields.get(path) for fields in flat]
         for path in dict.fromkeys(p for fields in flat for p in fields)
@@ -184,7 +186,8 @@ def leaves(value, path=""):
 
 
 def title_and_unit(path):
-    """ "rendering.mass_kg" -> "mass", "kg"; no unit where the name has none."""
+    """Splits a field into title and unit: "rendering.mass_kg" gives "mass", "kg". The unit is empty if the name has
+    none."""
     title, unit, _ = column(path.rpartition(".")[2])
     return TITLES.get(path, title), unit
 
@@ -196,7 +199,8 @@ def is_ambiguous(path, among):
 
 
 def axis(path, among=()):
-    """A field or column as a title with its unit; by its whole path where another one would have the same title."""
+    """Returns the title of a field or column with its unit. If another field of `among` has the same title, the title
+    is the whole path."""
     title, unit = title_and_unit(path)
     if is_ambiguous(path, among):
         return path
@@ -205,7 +209,7 @@ def axis(path, among=()):
 
 
 def entry(path, value, among):
-    """A field and its value, for a legend: "K = 40 000 N/m"."""
+    """Formats a field and its value for a legend: "K = 40 000 N/m"."""
     title, unit = title_and_unit(path)
     if is_ambiguous(path, among):
         return f"{path}={shown(value)}"

@@ -1,4 +1,4 @@
-"""The limits that `limit` finds as a picture: alone, over another field, and on devices."""
+"""Pictures of the limits that `limit` finds: alone, over another field, and on devices."""
 from textwrap import wrap
 
 import numpy as np
@@ -14,7 +14,7 @@ from .given import axis
 from .over_axes import Axis, look_of, over_axes
 
 LIMIT, LIMIT_RUNS = "limit.csv", "limit_runs.csv"
-# Closed forms and other known limits, as columns of limit.csv. Where the loop has no theoretical limit, as with dry
+# Closed forms and other known limits, as columns of limit.csv. If the loop has no theoretical limit, as with dry
 # friction, the closed forms of stability are not drawn.
 KNOWN = {
     "worst_hand_limit": "linear limit, worst hand",
@@ -36,7 +36,7 @@ QUOTED = {"color": BLACK, "ls": "none", "marker": "o", "ms": 4}
 
 
 class Limits:
-    """limit.csv and limit_runs.csv: the limit of a field, over the fields of `limit --over`."""
+    """The tables limit.csv and limit_runs.csv: the limit of a field over the fields of `limit --over`."""
 
     def __init__(self, files, folder):
         self.rows, self.runs = (files.records(f"{folder}{name}") for name in (LIMIT, LIMIT_RUNS))
@@ -44,7 +44,7 @@ class Limits:
         self.over = [
             name for name in given[: given.index("algorithm")] if name not in ("scenario", "device")
         ]
-        if len(self.over) > 1:  # a curve for each value of the others
+        if len(self.over) > 1:  # one curve for each value of the other fields
             several = len({row["algorithm"] for row in self.rows}) > 1
             for row in (*self.rows, *self.runs):
                 row["algorithm"] = ", ".join(
@@ -57,7 +57,8 @@ class Limits:
         tell_apart(self.algorithms)
 
     def along(self, rows):
-        """The values of the last field of --over in these rows; of a field of texts their places in the table."""
+        """Returns the values of the last field of --over in these rows; for a field of texts, their positions in the
+        table."""
         field = self.over[-1]
         names = list(dict.fromkeys(row[field] for row in self.rows))
         if all(map(is_number, names)):
@@ -65,14 +66,14 @@ class Limits:
         return np.array([names.index(row[field]) for row in rows], float)
 
     def axis(self):
-        """The axis of the last field of --over."""
+        """Returns the axis of the last field of --over."""
         texts = [row[self.over[-1]] for row in self.rows]
         return Axis.of(
             axis(self.over[-1]), self.along(self.rows) if all(map(is_number, texts)) else texts
         )
 
     def known(self, rows):
-        """Label, values and look of each known limit that has a number in some row."""
+        """Returns label, values and look of each known limit that has a number in some row."""
         found, has_edge = [], np.isfinite(numbers(rows, "theoretical_limit"))
         for (name, label), own in zip(KNOWN.items(), KNOWN_LOOKS):
             values = numbers(rows, name) if name in rows[0] else np.array([])
@@ -96,7 +97,7 @@ class Limits:
         ]
 
     def theories(self):
-        """The distinct curves of the linear limit, over the last field: its values, and the limits."""
+        """Returns the distinct curves of the linear limit over the last field: field values and limits."""
         found = {}
         for name in self.algorithms:
             rows = [row for row in self.rows if row["algorithm"] == name]
@@ -109,7 +110,7 @@ class Limits:
         ]
 
     def groups(self):
-        """The algorithms whose limits are the same, together; the largest group last."""
+        """Returns groups of algorithms with identical limits, the largest group last."""
         groups = {}
         for algorithm in self.algorithms:
             groups.setdefault(
@@ -118,7 +119,7 @@ class Limits:
         return sorted(groups.values(), key=len)
 
     def draw_classes(self, ax, algorithm):
-        """The class of every run of the search over the field and the one below it, and the limits as lines."""
+        """Draws the class of every run of the search over the field, and the limits as lines."""
         runs, rows = (
             [row for row in of if row["algorithm"] == algorithm] for of in (self.runs, self.rows)
         )
@@ -139,17 +140,17 @@ class Limits:
 
 
 def separated(rows):
-    """The simulated limits with stable runs on one side and unstable runs on the other; NaN elsewhere."""
+    """Returns the simulated limits with stable runs on one side and unstable runs on the other; NaN elsewhere."""
     return np.where(alternate(rows), np.nan, numbers(rows, "limit"))
 
 
 def alternating(rows):
-    """The simulated limits on both sides of which stable and unstable runs alternate; NaN elsewhere."""
+    """Returns the simulated limits on both sides of which stable and unstable runs alternate; NaN elsewhere."""
     return np.where(alternate(rows), numbers(rows, "limit"), np.nan)
 
 
 def draw_limits(files, sheet=SHEET, folder=""):
-    """The picture of what `limit` wrote."""
+    """Returns the picture of the results of `limit`."""
     found = Limits(files, folder)
     if "device" in found.rows[0]:
         return draw_devices_over(found, sheet) if found.over else draw_devices(found, sheet)
@@ -157,8 +158,8 @@ def draw_limits(files, sheet=SHEET, folder=""):
 
 
 def draw_strip(found, sheet):
-    """A line of marks for each algorithm: the class of every run over the field; bars: the limit,
-    and that of theory."""
+    """Draws a line of marks for each algorithm: the class of every run over the field. Bars show the simulated limit
+    and the theoretical limit."""
     names = found.algorithms
     runs = [
         (
@@ -202,8 +203,8 @@ def draw_strip(found, sheet):
 
 
 def draw_over(found, sheet=PAGE):
-    """The limit of every algorithm and its ratio to the linear limit; then the classes of the runs,
-    algorithms with the same limits together."""
+    """Draws the limit of every algorithm and its ratio to the linear limit, then the classes of the runs. Algorithms
+    with the same limits share a panel."""
     groups, has_theory = found.groups(), np.isfinite(numbers(found.rows, "theoretical_limit")).any()
     rows, columns = sheet.grid(1 + has_theory + len(groups))
     entries = class_legend(found)
@@ -229,7 +230,7 @@ def draw_over(found, sheet=PAGE):
     if ratio:
         finite = lambda theory: np.where(
             np.isfinite(theory), theory, np.nan
-        )  # without an edge of theory there is no ratio
+        )  # without a theoretical limit there is no ratio
         ratios = [
             (None, *of(name, separated(rows) / finite(numbers(rows, "theoretical_limit"))))
             for name, rows in curves.items()
@@ -252,7 +253,7 @@ def draw_over(found, sheet=PAGE):
 
 
 def class_legend(found):
-    """Handles and labels of algorithms, lines and classes."""
+    """Returns handles and labels of algorithms, lines and classes."""
     entries = [(Line2D([], [], **look_of(name)), law_name(name)) for name in found.algorithms]
     entries += [(Line2D([], [], **own), label) for label, _, own in found.lines(found.rows)]
     if np.isfinite(alternating(found.rows)).any():

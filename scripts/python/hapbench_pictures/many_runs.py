@@ -1,5 +1,5 @@
-"""The page of many runs: laws by metrics with mean and spread first, then what differs between laws, curves as the mean
-with a band, and every run folded below."""
+"""The page of many runs. It begins with a table of laws by metrics with mean and spread. Then follow the differences
+between laws, curves as the mean with a band, and every run in a folded section."""
 import re
 from collections import Counter
 
@@ -35,19 +35,19 @@ from .run_plot import profile_of
 from .sections import FIRST, diagnosed, first_table, metric_names, plugin_option, scenario_section
 from .standings import RESOLUTION, has_repetitions, value_of
 
-MANY_LAWS = 8  # in several scenes
+MANY_LAWS = 8  # number of laws that counts as many if there are several scenes
 ON_PAGE = Sheet(10.0, 3)  # [inch]
 NUMBER = re.compile(r"(?<![\w.])[-+]?\d[\d.,]*(?:e[-+]?\d+)?")
 
 
 def are_many(scenes):
-    """True if runs are repeated over seeds, or many laws ran in several scenes."""
+    """Returns True if runs are repeated over seeds, or if many laws ran in several scenes."""
     laws = sum(len(scene.laws) for scene in scenes)
     return has_repetitions(scenes) or len(scenes) > 1 and laws > MANY_LAWS
 
 
 def many_sections(scenes, runs, words):
-    """The sections that have something to show."""
+    """Returns the sections that are not empty."""
     first = [next(iter(law.runs.values())) for scene in scenes for law in scene.laws]
     drawn = [run for run in first if TRAJECTORY in tables_of(run)]
     names = [name_of(run, scenes) for run in drawn]
@@ -81,7 +81,7 @@ def scene_title(scene):
     return f"<h3>{named(scene.name)}</h3>"
 
 
-# ---- the first view: laws by metrics
+# ---- Laws by metrics
 
 
 def summary(scenes, runs):
@@ -102,20 +102,21 @@ def summary(scenes, runs):
 NOTE = (
     "<p class=note>Mean ± standard deviation over the seeds in which no law failed that succeeds at all; seeds agree "
     "if the deviation is at most 0.1 % of the mean. In bold the rank, where the metric has a better direction and the "
-    "numbers can be told apart: 1 + the number of laws that are better by more than 0.1 % and by more than both errors. "
+    "numbers can be told apart: 1 + the number of laws that are better by more than 0.1 % and by more than both "
+    "errors. "
     "A law with failed runs ranks behind the others by their number. Digits follow the error of the number; ≤ stands "
     "for a number that is not larger than its error, which has no rank unless runs failed.</p>"
 )
 
 
 def shown_metrics(scenes, runs):
-    """The metrics of the ranking, and the usual ones, as far as runs have them."""
+    """Returns the metrics of the ranking and the default metrics, if the runs have them."""
     known = dict.fromkeys(name for scene in scenes for name in [*scene.better, *FIRST])
     return [name for name in known if any(value_of(run, name) is not None for run in runs)]
 
 
 def extent(scenes, runs):
-    """How many runs of what."""
+    """Returns a text with the numbers of runs, laws, scenes and seeds."""
     laws = {law.label for scene in scenes for law in scene.laws}
     seeds = max(len(law.runs) for scene in scenes for law in scene.laws)
     failures = sum(len(law.failures) for scene in scenes for law in scene.laws)
@@ -127,7 +128,7 @@ def extent(scenes, runs):
 
 
 def law_table(scene, shown):
-    """A row for each law, the best by the first metric on top."""
+    """Returns a table with a row for each law. The law with the best first metric is on top."""
     standings = {name: scene.standings(name) for name in shown}
     ranks = {name: scene.ranks(name) for name in shown}
     heads = {
@@ -158,7 +159,7 @@ def failures_cell(law):
 
 
 def mean_cell(of, rank, factor=1.0):
-    """Mean ± spread with as many digits as are known, and the rank."""
+    """Returns a cell with mean ± spread, with as many digits as are significant, and the rank."""
     if of.mean is None:
         return cell("–", classes="number")
     error = of.shown_error
@@ -188,11 +189,11 @@ def ranking(scenes, shown):
     return f"<div class=ranking>{figure}</div>"
 
 
-# ---- differences, warnings
+# ---- Differences and warnings
 
 
 def seeds_section(scenes):
-    """For each metric the law with the smallest mean against every other one."""
+    """Returns for each metric the comparison of the law with the smallest mean with every other law."""
     parts = []
     for scene in scenes:
         said = [
@@ -210,7 +211,8 @@ def seeds_section(scenes):
 
 
 def between(scene, metric):
-    """A sentence for each law beside the one with the smallest mean, over the seeds in which both have the metric."""
+    """Returns a sentence for each law beside the law with the smallest mean, over the seeds in which both laws have the
+    metric."""
     laws = {law.label: law.values(metric) for law in scene.laws if len(law.values(metric)) > 1}
     least = min(laws, key=lambda label: np.mean(list(laws[label].values())), default=None)
     errors = {label: of.error for label, of in scene.standings(metric).items()}
@@ -235,7 +237,7 @@ def between(scene, metric):
 
 
 def grouped(scenes, of_run):
-    """What is said of the runs, once for all runs of which the same is said but for its numbers."""
+    """Returns the texts about the runs. Runs whose texts differ only in numbers share one entry."""
     groups = {}
     for scene in scenes:
         for law in scene.laws:
@@ -261,12 +263,12 @@ def group_text(alike, names_scene):
     return f"<b>{count}</b> ({text(whose)}): {every[0]}{differ}"
 
 
-# ---- curves, metrics, scenarios, commands
+# ---- Curves, metrics, scenarios and commands
 
 
 def curves(scene, is_titled):
-    """Each quantity over time: the mean over the runs of a law that did not fail, in a band from the smallest to the
-    largest value."""
+    """Draws each quantity over time: the mean over the runs of a law that did not fail, in a band from the smallest to
+    the largest value."""
     quantities = [SHORT[name] for name in USUAL if name in SHORT]
     laws, light, samples = [], [], []
     for law in scene.laws:
@@ -317,7 +319,7 @@ def first_run(law):
 
 
 def metrics(scenes, runs):
-    """All metrics by law, and all runs, folded."""
+    """Returns all metrics by law, and all runs, in folded sections."""
     parts = [
         folded(
             f"All metrics of {named(scene.name)}, mean ± standard deviation", metrics_table(scene)
@@ -349,7 +351,7 @@ def metrics_table(scene):
 
 
 def scenarios(scenes):
-    """The scenario of each scene's first run; others differ in law, seed and start."""
+    """Returns the scenario of the first run of each scene; other runs differ in law, seed and start."""
     runs = [first_run(scene.laws[0]) for scene in scenes]
     return (
         "<p>The runs of a scene differ in law, seed and start only; one scenario stands for all.</p>"

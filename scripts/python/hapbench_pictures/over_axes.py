@@ -1,5 +1,5 @@
-"""One plot for what the program finds over fields: curves and classes of runs over two axes. limit_plot,
-tuning_plot, convergence_plot and sweep_plot draw by it."""
+"""Plots results over fields: curves and classes of runs over two axes. Used by limit_plot, tuning_plot,
+convergence_plot and sweep_plot."""
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,7 +12,7 @@ MOST_TICKS = 12
 
 @dataclass
 class Axis:
-    """One direction of a plot: its numbers, or the places of texts."""
+    """One axis of a plot: its numbers, or the positions of texts."""
 
     title: str
     values: np.ndarray
@@ -21,7 +21,7 @@ class Axis:
 
     @property
     def label(self):
-        """The title with its unit: numbers without a unit have 1."""
+        """Returns the title with its unit; the unit 1 marks numbers without a unit."""
         return (
             f"{self.title} [1]"
             if self.title and not self.names and "[" not in self.title
@@ -30,7 +30,7 @@ class Axis:
 
     @classmethod
     def of(cls, title, values, log=None):
-        """`log`: None decides by the span."""
+        """Creates an axis. `log`: None selects a logarithmic axis by the range of the values."""
         if isinstance(values, list):
             names = tuple(dict.fromkeys(values))
             return cls(title, np.array([names.index(value) for value in values], float), names)
@@ -43,9 +43,9 @@ def spread_logarithmically(values):
 
 
 def over_axes(ax, x, y, series=(), runs=()):
-    """`series`: label, values along x and y, and look of each curve, of which equal ones show in
-    stripes; `runs`: a class with the places of its runs each; `x`, `y`: the Axis of either
-    direction."""
+    """Draws curves and runs. `series`: label, x values, y values and look of each curve; coinciding curves are drawn as
+    stripes. `runs`: for each class the positions of its runs. `x`, `y`: the Axis of either direction.
+    """
     size = 26 if sum(len(xs) for _, xs, _ in runs) < 100 else 9
     for name, xs, ys in runs:
         title, colour, hatch = look_of_class(name)
@@ -80,7 +80,7 @@ def over_axes(ax, x, y, series=(), runs=()):
 
 
 def integer_ticks(along, values):
-    """Ticks at the values of a field of whole numbers."""
+    """Sets ticks at the values of an integer field."""
     values = np.unique(values[np.isfinite(values)])
     if (
         1 < len(values) <= MOST_TICKS
@@ -96,13 +96,13 @@ def look_of(algorithm, **more):
 
 
 def with_room(low, high, above=1.0):
-    """Limits around a range on a logarithmic axis, with room for marks and names."""
+    """Returns limits around a range on a logarithmic axis, with room for marks and names."""
     room = max((high / low) ** 0.12, 1.3)
     return low / room, high * room * above
 
 
 def pareto(points):
-    """Those that no other is below in both, by the first coordinate."""
+    """Returns the points that no other point dominates in both coordinates, sorted by the first coordinate."""
     points = points[np.all(np.isfinite(points), axis=1)]
     front, least = [], np.inf
     for point in points[np.lexsort((points[:, 1], points[:, 0]))]:

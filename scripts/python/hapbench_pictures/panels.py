@@ -1,6 +1,5 @@
-"""How runs are drawn: as their algorithm is everywhere, with line styles where two runs share one;
-one quantity over time, and the scene in a section, with the tip's way and the tool, of several
-runs, into matplotlib's axes."""
+"""Draws runs into matplotlib's axes: quantities over time, and the scene in a section with the path of the tip and the
+tool. A run has the look of its algorithm, with another line style if two runs share an algorithm."""
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,34 +12,37 @@ from hapbench_style import LINE, curve, equal_curves, note, reduced, striped
 from .given import shown
 from .quantities import settled_range
 
-# Text, ground, grid, solid and its surface: of paper, and of the dark page.
+# Colours of text, ground, grid, solid and the solid's surface, on paper and on the dark page.
 LIGHT = ("#1d2126", "#ffffff", "#e6e6e6", "#EFE8DC", "#8C7A58")
 DARK = ("#e7e9ea", "#1c2024", "#383e44", "#4a4438", "#b5a27c")
 THIN = 0.6  # line width of the single runs of a group [points]
-SPANS = 600  # of a curve: a page hardly shows more
-# Runs whose peaks are further apart than this share no linear axis.
+SPANS = 600  # number of time spans of a curve; a page hardly shows more
+# Runs whose peaks have a larger ratio do not share a linear axis.
 LARGEST_RATIO = 30
-# Runs with peaks beyond a gap of this ratio, and failed runs beyond this ratio, leave the axis to the others.
+# Runs with peaks beyond a gap of the first ratio, and failed runs beyond the second ratio, do not influence the axis.
 THROWN_RATIO, FAILED_RATIO = 100, 5
-MOST_THROWN = 3  # runs whose largest value is written in a panel
-PANEL = 1.1  # usual height of a panel without its numbers [inch]
-GRID = 400  # cells of a section, to a side
+MOST_THROWN = 3  # largest number of runs whose largest value is printed in a panel
+PANEL = 1.1  # usual height of a panel without its tick labels [inch]
+GRID = 400  # number of cells along each side of a section
 PATH_COLUMNS, AXIS_COLUMNS = ("px_m", "py_m", "pz_m"), ("axis_x", "axis_y", "axis_z")
-SNAPSHOTS = (0.35, 0.5, 0.7, 0.95)  # opacity of the tool at so many places of its way
+SNAPSHOTS = (0.35, 0.5, 0.7, 0.95)  # opacity of the tool at these equally spaced times
 SAID = "circle: start; square: end; triangle: first touch"
 TOOL_SAID = "outlines: the tool at four times"
-LEAST_IN_PLANE = 0.85  # of the tool's axis, for its outline to be drawn: no more than 30 degrees out of the plane
+# Smallest component of the tool's axis in the plane for which its outline is drawn; the axis is then at most 30 degrees
+# out of the plane.
+LEAST_IN_PLANE = 0.85
 
 
 @dataclass(frozen=True)
 class RunLook(Look):
-    marker: str = ""  # curves of runs have none
+    marker: str = ""  # empty, because curves of runs have no markers
     width: float = 1.3
-    group: str = ""  # the label of all runs that differ in the seed only
+    group: str = ""  # common label of all runs that differ only in the seed
 
 
 def looks(runs, labels, groups=()):
-    """`groups`: a name for each run, the same for those that differ in the seed only; by default the labels."""
+    """Returns the looks of runs. `groups`: a name for each run, equal for runs that differ only in the seed; default:
+    the labels."""
     groups = groups or labels
     distinct = list(dict.fromkeys(zip(groups, (run.algorithm for run in runs))))
     algorithms = [algorithm for _, algorithm in distinct]
@@ -65,7 +67,7 @@ def looks(runs, labels, groups=()):
 
 
 def settings(paper):
-    """matplotlib's colours for LIGHT or DARK."""
+    """Returns matplotlib's colour settings for LIGHT or DARK."""
     ink, ground, grid, *_ = paper
     return {
         "text.color": ink,
@@ -81,7 +83,7 @@ def settings(paper):
 
 
 def draw_over_time(ax, quantity, samples, looks):
-    """Equal curves show in stripes."""
+    """Draws a quantity over time. Coinciding curves are drawn as stripes."""
     drawn = [(s, one, s.of(quantity)) for s, one in zip(samples, looks)]
     drawn = [(s, one, of) for s, one, of in drawn if of is not None]
     within, thrown = without_thrown(drawn)
@@ -90,7 +92,8 @@ def draw_over_time(ax, quantity, samples, looks):
     mark_thrown(ax, quantity, thrown)
     for (s, one, (time, low, high)), equal in zip(drawn, equal_curves([of for _, _, of in drawn])):
         line = {"color": one.colour, "ls": striped(one.line, *equal)}
-        if one.dash and equal[1] == 1:  # a peak may fall into a gap of the dashes
+        # A solid thin line, because a peak may fall into a gap of the dashes.
+        if one.dash and equal[1] == 1:
             ax.plot(*curve(time, low, high, SPANS), lw=0.4 * one.width, color=one.colour, alpha=0.7)
         if low is high:
             ax.plot(*curve(time, low, high, SPANS), lw=one.width, label=one.label, **line)
@@ -111,7 +114,7 @@ def draw_over_time(ax, quantity, samples, looks):
 
 
 def without_thrown(drawn):
-    """The curves that share an axis, and those of runs that are thrown about and would flatten all others on it."""
+    """Returns the curves that determine the axis, and the curves of unstable runs that would flatten all others."""
     peaks = [peak_of(of[2]) for _, _, of in drawn]
     most = largest_shown(peaks, [s.failed for s, _, _ in drawn])
     of = list(zip(peaks, drawn))
@@ -119,9 +122,9 @@ def without_thrown(drawn):
 
 
 def largest_shown(peaks, failed):
-    """The largest peak that an axis shows: below a gap of THROWN_RATIO, if at least half of the runs are below it, and
-    of failed runs at most FAILED_RATIO times those of the others. Infinite if all runs share the axis.
-    """
+    """Returns the largest peak that an axis shows. It is below a gap of THROWN_RATIO if at least half of the runs are
+    below the gap, and for failed runs at most FAILED_RATIO times the peaks of the other runs. Infinite if all runs
+    determine the axis."""
     found = sorted(peak for peak in peaks if peak > 0)
     most = next(
         (
@@ -138,12 +141,12 @@ def largest_shown(peaks, failed):
 
 
 def peak_of(heights):
-    """The largest absolute value; infinite after an overflow."""
+    """Returns the largest absolute value; infinite after an overflow."""
     return float(np.nanmax(np.abs(heights), initial=0.0))
 
 
 def mark_thrown(ax, quantity, thrown):
-    """Where each of these runs leaves the axis, with its largest value."""
+    """Marks the point at which each of these runs leaves the axis, and prints its largest value."""
     bottom, top = ax.get_ylim()
     for line, (_, one, (time, low, high)) in enumerate(thrown):
         beyond = np.flatnonzero((high > top) | (low < bottom))
@@ -162,20 +165,20 @@ def mark_thrown(ax, quantity, thrown):
 
 
 def share_an_axis(ax, heights):
-    """Makes the axis linear up to about the calmest run's peak and logarithmic beyond, where a run is thrown about.
-    Returns true if it does."""
+    """If the ratio of the largest to the smallest peak of a run exceeds LARGEST_RATIO, makes the axis linear up to
+    about the smallest peak and logarithmic beyond, and returns True."""
     peaks = [peak for peak in map(peak_of, heights) if peak > 0]
     if peaks and max(peaks) > LARGEST_RATIO * min(peaks):
-        # From a power of ten on, where a tick is: its label has room beside that of 0.
+        # The linear range ends at a power of ten, which is a tick: its label does not overlap the label of 0.
         ax.set_yscale("symlog", linthresh=10.0 ** np.ceil(np.log10(min(peaks))))
         return True
     return False
 
 
 def cut_off_peaks(ax, quantity, drawn, is_fixed=False):
-    """The range of settled contact, where it is far below a peak; the largest one is written where
-    it leaves the picture. `is_fixed`: otherwise the range of these curves, for other curves that leave it.
-    """
+    """Sets the axis to the range of settled contact if this range is far below a peak, and prints the largest peak
+    where it leaves the picture. If `is_fixed` and no peak is cut off, sets the axis to the range of these curves,
+    because other curves leave it."""
     span = settled_range([(s.settled[quantity.file], low, high) for s, _, (_, low, high) in drawn])
     if span is None:
         if is_fixed:
@@ -239,8 +242,8 @@ def tip_of(samples, which=PATH_COLUMNS):
 
 
 def framed(samples):
-    """The rows that a picture of the scene is about, a tool that is thrown away aside: the start
-    and those in contact, or all."""
+    """Returns the rows that a picture of the scene must show: the start and the rows in contact, or all rows. Rows of a
+    tool that was thrown away are excluded."""
     touching = np.flatnonzero(samples.trajectory["colliding"] > 0)
     return (
         np.append(touching, 0) if touching.size else np.arange(len(samples.trajectory["colliding"]))
@@ -248,8 +251,8 @@ def framed(samples):
 
 
 def plane_of(samples):
-    """The axes to the right and up of the section: x and y of a planar scene, else z and the
-    horizontal one that the ways are longer along."""
+    """Returns the axes to the right and up of the section: x and y for a planar scene, else z and the horizontal axis
+    along which the paths are longer."""
     if all(np.all(s.trajectory["pz_m"] == 0) for s in samples):
         return (0, 1)
     ways = np.vstack([tip_of(s)[framed(s)] for s in samples])
@@ -257,13 +260,13 @@ def plane_of(samples):
 
 
 def draw_section(ax, samples, looks, profile=None, surface=None, paper=LIGHT):
-    """The scene with equal axes, in the plane through the middle of the tip's ways: the solid
-    filled, the ways, and the first run's tool at four times. `profile`: of the tool [m]; `surface`:
+    """Draws the scene with equal axes, in the plane through the middle of the tips' paths: the filled solid, the paths,
+    and the tool of the first run at four times. `profile`: profile of the tool [m]; `surface`:
     hapbench_report.replay.Surface."""
     plane, radius = plane_of(samples), max((radius for _, radius in profile or ()), default=0.0)
     ways = np.vstack([tip_of(s)[framed(s)][:, plane] for s in samples])
     low, high = ways.min(0) - 1.3 * radius, ways.max(0) + 0.7 * radius
-    # A way shorter than 10 µm is numerical noise; it should not fill the picture.
+    # A path shorter than 10 µm is numerical noise and should not fill the picture.
     middle, half = (low + high) / 2, np.maximum(0.53 * (high - low), 6e-6)
     all_ways = [1e3 * tip_of(s)[:, plane] for s in samples]
     if surface is not None:
@@ -282,7 +285,7 @@ def draw_section(ax, samples, looks, profile=None, surface=None, paper=LIGHT):
     ):
         rows = corners(s.trajectory)
         ax.plot(*way[rows].T, color=one.colour, ls=striped(one.line, *equal), lw=min(1, one.width))
-        # White edges lift the marks off the path and the outlines of the tool.
+        # White edges separate the marks from the path and the outlines of the tool.
         edge = {"ls": "none", "color": one.colour, "mec": paper[1], "mew": 0.8, "zorder": 3}
         ax.plot(*way[-1], **edge, marker="s", ms=6)
         touching = np.flatnonzero(s.trajectory["colliding"] > 0)
@@ -291,7 +294,7 @@ def draw_section(ax, samples, looks, profile=None, surface=None, paper=LIGHT):
         start = {**edge, "mfc": paper[1], "mec": one.colour, "mew": 1.8, "zorder": 4}
         ax.plot(*way[0], **start, marker="o", ms=7)
     low, high = 1e3 * (middle - half), 1e3 * (middle + half)
-    # The equal aspect widens one of the two intervals. Limits that are not automatic make matplotlib 3.10 warn of that.
+    # The equal aspect widens one of the two intervals. With fixed limits, matplotlib 3.10 would print a warning.
     ax.set_xlim(low[0], high[0], auto=True)
     ax.set_ylim(low[1], high[1], auto=True)
     ax.set(
@@ -305,7 +308,7 @@ def draw_section(ax, samples, looks, profile=None, surface=None, paper=LIGHT):
 
 
 def surface_text(surface):
-    """What the picture shows of the surroundings, as a list of phrases."""
+    """Returns a list of phrases about the surface in the picture."""
     if surface is None:
         return []
     if surface.is_solid:
@@ -314,8 +317,8 @@ def surface_text(surface):
 
 
 def draw_surface(ax, plane, middle, surface, reach, paper):
-    """The surface's points near the plane; and of a solid its inside, where the nearest point has its normal away
-    from. An open surface has no inside."""
+    """Draws the points of the surface near the plane. For a solid, fills the inside: positions at which the normal of
+    the nearest point points away. An open surface has no inside."""
     points = surface.points
     aside, up = ({0, 1, 2} - set(plane)).pop(), list(plane)
     away, spacing = np.abs(points[:, aside] - middle[aside]), spacing_of(points[:, :3])
@@ -337,7 +340,7 @@ def draw_surface(ax, plane, middle, surface, reach, paper):
 
 
 def spacing_of(places):
-    """The usual distance of a point to the nearest one at another place."""
+    """Returns the median distance of a point to the nearest point at another position."""
     squares = [
         ((places - one) ** 2).sum(axis=1)
         for one in places[np.linspace(0, len(places) - 1, min(len(places), 60)).astype(int)]
@@ -346,9 +349,9 @@ def spacing_of(places):
 
 
 def outline(profile, tip, axis):
-    """Outline of the tool [m] at a tip with an axis, both projected into a plane; right where the
-    axis lies in the plane, and near it elsewhere. `profile`:
-    hapbench_report.recording.tool_profile."""
+    """Returns the outline of the tool at a tip with an axis, both projected into a plane [m]. It is exact if the axis
+    lies in the plane, and approximate near it. `profile`: hapbench_report.recording.tool_profile.
+    """
     axis = axis / np.linalg.norm(axis)
     s, radius = np.array(profile).T[:, :, None]
     half, across = tip + s * axis, radius * np.array([-axis[1], axis[0]])
@@ -356,7 +359,7 @@ def outline(profile, tip, axis):
 
 
 def draw_tool(ax, plane, samples, profile, colour):
-    """Its outline at four times, from faint to strong."""
+    """Draws the tool's outline at four times, from faint to strong."""
     tip, axis = (tip_of(samples, columns)[:, plane] for columns in (PATH_COLUMNS, AXIS_COLUMNS))
     rows = np.sort(framed(samples))
     rows = rows[np.linalg.norm(axis[rows], axis=1) >= LEAST_IN_PLANE]
@@ -378,7 +381,8 @@ def draw_tool(ax, plane, samples, profile, colour):
 
 
 def corners(trajectory, spans=300):
-    """Rows that keep the shape of a way: the extremes along each axis in so many equal spans of rows."""
+    """Returns the rows that preserve the shape of a path: the extremes along each axis in `spans` equal spans of
+    rows."""
     n = len(trajectory["px_m"])
     if n <= 6 * spans:
         return np.arange(n)

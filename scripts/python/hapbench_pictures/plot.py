@@ -1,5 +1,5 @@
-"""`hapbench plot`: a file with the scene in a section and quantities over time below it; or the
-picture of a sweep, of limits, of a tuning or of a convergence."""
+"""`hapbench plot`: a file with the scene in a section and quantities over time below it, or the picture of a sweep, of
+limits, of a tuning or of a convergence study."""
 import math
 from pathlib import Path
 
@@ -30,7 +30,7 @@ def plot(options):
 
 
 def dpi_of(options, file):
-    """Pixels per inch of --dpi."""
+    """Returns the pixels per inch of --dpi."""
     if options.dpi is None:
         return DPI
     if file.suffix == ".svg":
@@ -41,8 +41,8 @@ def dpi_of(options, file):
 
 
 def figure_of(options):
-    """The figure that these options of `hapbench plot` ask for."""
-    window = window_of(options)  # first, since --to FILE is a likely slip
+    """Returns the figure for the options of `hapbench plot`."""
+    window = window_of(options)  # checked first, because --to FILE is a likely mistake
     logs = given_logs(options.runs)
     if logs:
         refuse(
@@ -66,7 +66,7 @@ def figure_of(options):
 
 
 def refuse(options, names, why):
-    """Options that what is drawn has no use for."""
+    """Refuses options that do not apply to the drawn results."""
     given = {
         "--y": options.y,
         "--metric": options.metric,
@@ -80,7 +80,7 @@ def refuse(options, names, why):
 
 
 def window_of(options):
-    """The times to draw [s]."""
+    """Returns the first and last time to draw [s]."""
     for name, text in (("--from", options.start), ("--to", options.end)):
         if text is not None and not is_number(text):
             hint = ""
@@ -96,7 +96,7 @@ def window_of(options):
 
 
 def of_runs(options, sheet, window):
-    """Runs over time; or the metrics of a comparison by law, with --metric or if the folder has a ranking."""
+    """Draws runs over time. With --metric, or if the folder has a ranking, draws the metrics of a comparison by law."""
     over_time = bool(options.y or options.start or options.end)
     if options.where:
         raise InputError("--where: is for a sweep's folder; allowed for runs: --y, --metric")

@@ -1,6 +1,5 @@
-"""Quantities to draw over time: short names, and every column of a run's tables by its own name;
-with the range of an axis: that of settled contact, where the peak of a landing or a crash would
-squeeze it."""
+"""Quantities over time: short names, and every column of a run's tables by its name. The axis shows the range of
+settled contact, because the peak of a landing or a crash would flatten the other values."""
 import json
 import re
 from dataclasses import dataclass
@@ -17,24 +16,26 @@ from .standings import failed
 
 TRAJECTORY = "trajectory.csv"
 REFERENCE = "force_reference.csv"
-# Tables of a row per recorded step, in which a column is looked for.
+# Tables with a row for each recorded step, which are searched for a column.
 TABLES = (TRAJECTORY, "energy.csv", "ideal_trajectory.csv", "stiffness_tensor.csv", REFERENCE)
-# A peak of more than so many times the settled values is cut off.
+# A peak larger than this factor times the settled values is cut off.
 CUT_OFF = 3
-# If settled contact tells little of a run, as of one that hammers to the end, no range leaves out more of its rows.
+# The range omits at most this fraction of the rows, for runs in which settled contact is not representative, such as a
+# tool that bounces to the end.
 LARGEST_LEFT_OUT = 0.1
-BULK = (1, 99)  # percentiles of the settled rows
+BULK = (1, 99)  # percentiles of the settled rows that define the range
 
 
 @dataclass(frozen=True)
 class Quantity:
-    name: str  # as typed
+    name: str  # name as typed by the user
     title: str
-    unit: str  # shown; empty for plain numbers
+    unit: str  # unit for the axis; empty for numbers without a unit
     factor: float
     file: str
     columns: tuple
-    kind: str = "value"  # or "norm" of a vector, or "band" from the first column to the second
+    # "value", "norm" of a vector, or "band" between the first and the second column
+    kind: str = "value"
 
     @property
     def axis(self):
@@ -42,7 +43,7 @@ class Quantity:
         return f"{title} [{self.unit or 1}]"
 
     def of(self, table):
-        """Lower and upper edge at every row; the same array twice for a curve."""
+        """Returns lower and upper edge at every row; for a curve, both are the same array."""
         parts = [table[name] * self.factor for name in self.columns]
         if self.kind == "norm":
             parts = [np.sqrt(sum(part * part for part in parts))]
@@ -83,13 +84,14 @@ SHORT = {
         ),
     )
 }
-PATH = "path"  # the tip's way in space, which is not a function of time
-# Drawn by default, as far as a run recorded them.
+PATH = "path"  # the path of the tip in space, which is not a function of time
+# Drawn by default if a run recorded them.
 USUAL = ("force", "reference", "force_error", "depth", "ratio", "contacts", "energy", PATH)
 
 
 def chosen(names, runs):
-    """The quantities of these names and whether the path is among them; those not chosen by name may be missing."""
+    """Returns the quantities of these names, and True if the path is included. Quantities that were not chosen by name
+    may be missing in a run."""
     if not names:
         usual = [SHORT[name] for name in USUAL if name != PATH]
         return [q for q in usual if any(has(run, q) for run in runs)], True
@@ -120,7 +122,7 @@ def quantity(name, runs):
 
 
 def switch_of(lacks):
-    """The field that makes a run write a table or a column: the first one whose description names it."""
+    """Returns the field that makes a run write a table or a column: the first field whose description names it."""
     record = json.loads(SCHEMA.read_text(encoding="utf-8"))["else"]["properties"]["record"][
         "properties"
     ]
@@ -142,10 +144,11 @@ def tables_of(run):
 
 
 class Samples:
-    """The columns of one run that are drawn; each table is read once."""
+    """The columns of one run that are drawn. Each table is read once."""
 
     def __init__(self, run, quantities, further=(), window=(-np.inf, np.inf)):
-        """`further`: columns of trajectory.csv beside those of the quantities; `window`: the times to keep [s]."""
+        """`further`: columns of trajectory.csv in addition to the columns of the quantities; `window`: first and last
+        time to keep [s]."""
         wanted = {TRAJECTORY: {"time_s", "colliding", *further}}
         for q in (q for q in quantities if has(run, q)):
             wanted.setdefault(q.file, {"time_s"}).update(q.columns)
@@ -161,7 +164,7 @@ class Samples:
         }
         time = tables[TRAJECTORY]["time_s"]
         touching = time[tables[TRAJECTORY]["colliding"] > 0]
-        # Time of the first recorded row in contact; None without one, and outside the window.
+        # Time of the first recorded row in contact; None if there is none or if it is outside of the window.
         self.first_touch_s = (
             float(touching[0]) if touching.size and window[0] <= touching[0] <= window[1] else None
         )
@@ -183,14 +186,14 @@ class Samples:
         return self.tables[TRAJECTORY]
 
     def of(self, q):
-        """Time, lower and upper edge; None when this run did not record it."""
+        """Returns time, lower and upper edge; None if this run did not record the quantity."""
         table = self.tables.get(q.file, {})
         return (table["time_s"], *q.of(table)) if set(q.columns) <= set(table) else None
 
 
 def settled_range(curves):
-    """The least and the greatest value of the bulk of settled contact with some air; None when all is to be shown. Each
-    curve: which rows are settled, and the lower and upper edge of every row."""
+    """Returns the range of the bulk of settled contact with a margin; None if all values are to be shown. Each curve:
+    True for settled rows, and the lower and upper edge of every row."""
     ends = [
         (np.nanpercentile(low[calm], BULK[0]), np.nanpercentile(high[calm], BULK[1]))
         for calm, low, high in curves

@@ -1,4 +1,4 @@
-"""A comparison as a picture: each metric by law, with its mean, the spread over seeds and every run."""
+"""Picture of a comparison: each metric by law, with its mean, the spread over seeds and every run."""
 from collections import Counter
 from pathlib import Path
 
@@ -31,23 +31,24 @@ SINGLE = {
     "ls": "none",
     "mew": 0,
     "alpha": 0.6,
-}  # below the mean, which would hide them
-# Height of a law, where one has a second line, and the least with one line [inch].
+}  # drawn below the mean, which would otherwise be hidden
+# Height of a law, height of a law with a second line, and smallest height with one line [inch].
 ROW, FAILED_ROW, LEAST_ROW = 0.2, 0.3, 0.14
 AROUND = 0.75  # height of a panel without its rows [inch]
 TOLERANCE = "#D9D9D9"
 BOUND = {"marker": "<", "ms": 5, "mfc": "none", "mew": 1.1, "ls": "none", "zorder": 3}
-EDGE = 0.93  # of a panel, for a bound that lies beyond it
+EDGE = 0.93  # position of a bound beyond the axis, as a fraction of the panel's width
 FAILED = {"color": RED, "marker": "x", "ls": "none", "ms": 5, "mew": 1.4}
 
 
 def is_ranking(folders):
-    """True if the words are one folder of a comparison with a ranking."""
+    """Returns True if the arguments are one folder of a comparison with a ranking."""
     return len(folders) == 1 and (Path(folders[0]) / RANKING).is_file()
 
 
 def metrics_of(names, scenes, words):
-    """The metrics of these names, or else those of the ranking. Raises InputError for a name that no run has."""
+    """Returns the metrics of these names, or without names the metrics of the ranking. Raises InputError for a name
+    that no run has."""
     runs = [run for scene in scenes for law in scene.laws for run in law.runs.values()]
     known = list(
         dict.fromkeys(
@@ -75,7 +76,7 @@ def ranked_metrics(scenes):
 
 
 def draw_ranking(runs, names=(), words=(), sheet=SHEET):
-    """A panel for each scene and metric."""
+    """Draws a panel for each scene and metric."""
     scenes = scenes_of(runs, [Path(word) for word in words])
     metrics = metrics_of(list(names), scenes, words)
     with plt.rc_context(SETTINGS):
@@ -96,7 +97,7 @@ def ranking_figure(scenes, metrics, sheet):
     is_compact = bool(sheet.height) or panel < wanted
     for ax, (scene, metric) in zip(axes.flat, panels):
         draw_panel(ax, scene, metric, is_compact)
-        # In a row of one scene, the first panel names it for all.
+        # In a row of one scene, only the first panel has the name of the scene.
         if len(scenes) > 1 and (columns != len(metrics) or metric == metrics[0]):
             ax.set_title(scene.name.replace("_", " "))
     for ax in axes.flat[len(panels) :]:
@@ -106,7 +107,8 @@ def ranking_figure(scenes, metrics, sheet):
 
 
 def draw_panel(ax, scene, metric, is_compact=False):
-    """One metric of one scene: a row for each law, the best on top. `is_compact`: each row has one line of text."""
+    """Draws one metric of one scene: a row for each law, the best law on top. `is_compact`: each row has one line of
+    text."""
     standings, laws = scene.standings(metric), scene.sorted_laws(metric)
     known = [of for of in standings.values() if not of.is_unknown]
     values = [v for of in known or standings.values() for v in of.values.values()]
@@ -118,7 +120,7 @@ def draw_panel(ax, scene, metric, is_compact=False):
             draw_law(ax, row, of, factor, own.dark if is_dark else own.colour, min(values) >= 0)
         if law.failures:
             ax.plot(1, row, **FAILED, transform=ax.get_yaxis_transform(), clip_on=False, zorder=5)
-    ax.use_sticky_edges = False  # of the grey bars, which would leave no margin
+    ax.use_sticky_edges = False  # otherwise the grey bars would remove the margins
     ax.margins(x=0.07)
     if values and spread_logarithmically(factor * np.array(values)):
         ax.set_xscale("log")
@@ -130,7 +132,7 @@ def draw_panel(ax, scene, metric, is_compact=False):
     }
     draw_bounds(ax, bounds, bool(known), is_dark)
     label_rows(ax, scene, metric, is_compact)
-    # Beside others, the label may be wider than the panel; on its left it has room below the names.
+    # Beside other panels, the label may be wider than the panel; the space below the names on its left is free.
     beside = ax.get_subplotspec().get_gridspec().ncols > 1
     ax.set_xlabel(f"{title} [{unit or 1}]", loc="right" if beside else "center")
     ax.grid(axis="y", visible=False)
@@ -138,7 +140,7 @@ def draw_panel(ax, scene, metric, is_compact=False):
 
 
 def draw_law(ax, row, of, factor, colour, is_positive):
-    """Mean, error, standard deviation and runs of a law."""
+    """Draws mean, error, standard deviation and runs of a law."""
     each, mean = factor * np.array(list(of.values.values())), factor * of.mean
     low, high = (mean + sign * factor * of.error for sign in (-1, 1))
     low = max(low, 0.0) if is_positive else low
@@ -150,8 +152,8 @@ def draw_law(ax, row, of, factor, colour, is_positive):
 
 
 def draw_bounds(ax, bounds, has_numbers, is_dark):
-    """A hollow mark at each bound, with its value; at the panel's edge where it lies beyond the numbers of other laws,
-    which alone determine the axis. `bounds`: row -> bound and look."""
+    """Draws a hollow mark at each bound, with its value. A bound beyond the numbers of the other laws is drawn at the
+    panel's edge, because only these numbers determine the axis. `bounds`: bound and look by row."""
     if not bounds:
         return
     if not has_numbers:
@@ -176,7 +178,7 @@ def draw_bounds(ax, bounds, has_numbers, is_dark):
 
 
 def label_rows(ax, scene, metric, is_compact):
-    """The rank and the name of each law; and in red how many of its runs failed, and how."""
+    """Writes rank and name of each law, and in red the number of failed runs with their outcome."""
     laws, ranks, labels = scene.sorted_laws(metric), scene.ranks(metric), []
     for law in laws:
         rank = ranks[law.label]
@@ -193,7 +195,7 @@ def label_rows(ax, scene, metric, is_compact):
 
 
 def failures_text(law):
-    """How many of its runs failed, and how: "1 of 5 passed through"."""
+    """Returns the number of failed runs of a law and their outcome: "1 of 5 passed through"."""
     how = Counter(law.failures.values())
     names = ", ".join(look_of_class(name)[0] for name in how)
     count = f"{len(law.failures)} of {len(law.runs)} " if len(law.runs) > 1 else ""
@@ -201,7 +203,7 @@ def failures_text(law):
 
 
 def legend_of(scenes, metrics):
-    """Handles and labels of the marks that are drawn."""
+    """Returns handles and labels of the marks that are drawn."""
     of = [
         standing
         for scene in scenes

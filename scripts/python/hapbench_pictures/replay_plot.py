@@ -1,5 +1,5 @@
-"""Logs of a haptic loop as a picture: the rendered force over time of a log or of `run --replay`, the difference of two
-of them, and the calls that came late."""
+"""Picture of the logs of a haptic loop: the rendered force over time of a log or of `run --replay`, the difference of
+two logs, and the late calls."""
 import json
 from pathlib import Path
 
@@ -13,16 +13,17 @@ from .panels import SPANS
 
 REPLAY, COMPARISON = "replay.csv", "replay_comparison.csv"
 HEADER = "# hapbench loop log:"
-# A call later than this ratio of the period missed its deadline.
+# A call missed its deadline if it is later than this factor times the period.
 LATE = 1.5
-MODES = {  # columns, title and factor of what the loop applies
+MODES = {  # columns, title and factor of the quantity that the loop applies
     "impedance": (("fx_N", "fy_N", "fz_N"), "force [N]", 1.0),
     "admittance": (("set_x_m", "set_y_m", "set_z_m"), "set position [mm]", 1e3),
 }
 
 
 def given_logs(words):
-    """The logs among the words: files of a haptic loop, and folders of `run --replay`. None if a word is neither."""
+    """Returns the logs among the arguments: files of a haptic loop, and folders of `run --replay`. Returns None if an
+    argument is neither."""
     files = [log_of(Path(word)) for word in words]
     if not any(files):
         return None
@@ -47,7 +48,7 @@ def log_of(path):
 
 
 class Log:
-    """Time from the first call [s], what the loop applies at each call, and which calls came late."""
+    """Time since the first call [s], the quantity that the loop applies at each call, and True for late calls."""
 
     def __init__(self, file):
         with file.open(encoding="utf-8") as lines:
@@ -67,7 +68,8 @@ class Log:
 
 
 def draw_logs(files, sheet):
-    """What the loop applies over time; of two logs also the difference at each call that both have."""
+    """Draws the quantity that the loop applies over time. For two logs, also draws the difference at each call that
+    both logs contain."""
     logs = [read_log(file) for file in files]
     if len({log.title for log in logs}) > 1:
         raise InputError(f"{files[0]}, {files[1]}: one log has forces, the other one positions")
@@ -111,7 +113,7 @@ def figure_of(logs, sheet):
 
 
 def draw_difference(ax, logs):
-    """The norm of the difference at the calls of both logs."""
+    """Draws the norm of the difference at the calls of both logs."""
     calls, first, second = np.intersect1d(logs[0].call, logs[1].call, return_indices=True)
     if not calls.size:
         raise InputError("the logs have no call in common")

@@ -1,5 +1,4 @@
-"""`hapbench report`: one page of the runs given, and nothing else. Curves are drawn on light and on
-dark ground, one drawing for each quantity."""
+"""`hapbench report`: one page about the given runs. Each quantity is drawn for light and for dark ground."""
 import math
 from pathlib import Path
 
@@ -42,7 +41,7 @@ STYLE = Path(__file__).parent / "page.css"
 
 
 def report(options):
-    """The exit status, which tells whether the two folders of --tolerance differ."""
+    """Writes the page and returns the exit status, which states whether the two folders of --tolerance differ."""
     if options.tolerance is not None:
         return test_of_regression(options)
     if given_sweep(options.runs):
@@ -62,7 +61,7 @@ def report(options):
     file = options.out or common_folder(options.runs) / "report.html"
     if file.suffix not in (".html", ".htm"):
         raise InputError(f'--out {file}: got "{file.suffix}"; allowed: .html')
-    write(file, page.encode(errors="replace"))  # a path need not be UTF-8
+    write(file, page.encode(errors="replace"))  # a path may contain bytes that are not UTF-8
     place_live_page(file.parent)
     if not options.quiet:
         print(
@@ -87,7 +86,7 @@ def test_of_regression(options):
 
 
 def differences_section(words):
-    """Of two runs what differs; of other folders nothing."""
+    """Returns the differences of two runs; empty for other numbers of folders."""
     a, b = map(Path, words) if len(words) == 2 else (Path(), Path())
     if a == b or not all(
         (folder / name).is_file() for folder in (a, b) for name in (SUMMARY, SCENARIO)
@@ -98,7 +97,7 @@ def differences_section(words):
 
 
 def sections(runs, names, words):
-    """The sections that have something to show."""
+    """Returns the sections that are not empty."""
     drawn = [(run, name) for run, name in zip(runs, names) if TRAJECTORY in tables_of(run)]
     found = (
         ("summary", "Summary", "Summary", summary_section(runs, names)),
@@ -132,7 +131,7 @@ def curves_section(runs, labels):
     light, surface = looks(runs, labels), surface_of(runs)
     span = [
         end(end(s.trajectory["time_s"]) for s in samples) for end in (min, max)
-    ]  # also of what begins with contact
+    ]  # includes the quantities that begin with the first contact
     figures = [
         drawing(
             SCENE_SIZE,
@@ -175,7 +174,7 @@ def curves_section(runs, labels):
 
 
 def spoken(quantity, samples, labels):
-    """The picture in words: the range of every run."""
+    """Returns the description of the picture for screen readers: the range of every run."""
     parts = []
     for s, label in zip(samples, labels):
         found = s.of(quantity)

@@ -1,4 +1,4 @@
-"""Runs as a picture: the scene in a section, and quantities over time."""
+"""Picture of runs: the scene in a section, and quantities over time."""
 import math
 from collections import Counter
 from textwrap import fill
@@ -25,14 +25,15 @@ from .panels import (
 )
 from .quantities import Samples
 
-LARGE, SMALL = 2.6, 1.35  # height of a scene or the first quantity, and of the others [inch]
-ROOM = 0.35  # for the title of the time axis [inch]
+# Height of a scene or of the first quantity, and of the other quantities [inch].
+LARGE, SMALL = 2.6, 1.35
+ROOM = 0.35  # height of the title of the time axis [inch]
 TITLE_LETTER = 0.085  # width of a letter of the title [inch]
-LONGEST_NAME = 90  # letters
+LONGEST_NAME = 90  # largest number of letters
 
 
 def draw_runs(runs, quantities, with_path, window, sheet=SHEET):
-    """The figure: a title with the names of the runs, the scenes, and the quantities over time."""
+    """Returns the figure: a title with the names of the runs, the scenes, and the quantities over time."""
     further = (*PATH_COLUMNS, *AXIS_COLUMNS) if with_path else ()
     samples = [Samples(run, quantities, further, window) for run in runs]
     shown = looks(runs, *named(runs))
@@ -43,7 +44,8 @@ def draw_runs(runs, quantities, with_path, window, sheet=SHEET):
 
 
 def figure_of(runs, shown, quantities, samples, groups, surfaces, sheet=SHEET):
-    """`groups`: the numbers of the runs in each section, `surfaces`: what surrounds them."""
+    """Returns the figure. `groups`: the numbers of the runs in each section; `surfaces`: the surface around each
+    group."""
     entries = legend_of(shown)
     columns = legend_columns(list(entries), sheet.width)
     head = 0.3 + (LINE * math.ceil(len(entries) / columns) if len(runs) > 1 else 0)
@@ -69,7 +71,7 @@ def figure_of(runs, shown, quantities, samples, groups, surfaces, sheet=SHEET):
 
 
 def rows_of(scenes, quantities, beside, sheet):
-    """Height, number of panels and their width ratios for each row of the picture."""
+    """Returns height, number of panels and width ratios of each row of the picture."""
     if sheet.height:
         rows, columns = sheet.grid(scenes + quantities)
         counts = [min(columns, scenes + quantities - row * columns) for row in range(rows)]
@@ -88,10 +90,10 @@ def rows_of(scenes, quantities, beside, sheet):
 
 
 def axes_of(figure, rows):
-    """Axes row by row."""
+    """Creates the axes row by row."""
     heights = [height for height, _, _ in rows]
     widths = {(columns, ratios) for _, columns, ratios in rows if len(ratios) == columns}
-    if len(widths) == 1:  # one grid, in which all columns are aligned
+    if len(widths) == 1:  # a single grid, in which all columns are aligned
         ((columns, ratios),) = widths
         grid = figure.add_gridspec(len(rows), columns, height_ratios=heights, width_ratios=ratios)
         cells = [grid[i, j] for i, (_, _, of) in enumerate(rows) for j in range(len(of))]
@@ -109,7 +111,7 @@ def axes_of(figure, rows):
 
 
 def name_times(axes, beside, sheet):
-    """The title of the time axis, where it is shown."""
+    """Writes the title of the time axis at the panels that show it."""
     if not axes:
         return
     marks = "   (triangles and dotted lines: first touch)"
@@ -124,12 +126,12 @@ def name_times(axes, beside, sheet):
 
 
 def width_of(rows, sheet):
-    """Of a panel in the row with most of them, without the room for its numbers [inch]."""
+    """Returns the width of a panel, without its tick labels, in the row with the largest number of panels [inch]."""
     return sheet.width / max(columns for _, columns, _ in rows) - 0.6
 
 
 def draw_scenes(axes, groups, runs, shown, samples, surfaces, width):
-    """One section for each group of runs; `width` of a panel [inch]."""
+    """Draws one section for each group of runs. `width`: width of a panel [inch]."""
     for ax, group, surface in zip(axes, groups, surfaces):
         of_samples, of_looks = ([entries[i] for i in group] for entries in (samples, shown))
         draw_section(ax, of_samples, of_looks, profile_of(runs[group[0]]), surface)
@@ -139,7 +141,7 @@ def draw_scenes(axes, groups, runs, shown, samples, surfaces, width):
 
 
 def texts_of(groups, runs, surfaces):
-    """What the marks of each section mean."""
+    """Returns the meaning of the marks in each section."""
     texts = []
     for group, surface in zip(groups, surfaces):
         said = [SAID, *surface_text(surface)]
@@ -150,7 +152,7 @@ def texts_of(groups, runs, surfaces):
 
 
 def explain_scenes(figure, axes, texts, sheet, rows):
-    """Writes below the sections what their marks mean: once if it is the same for all."""
+    """Writes the meaning of the marks below the sections, only once if it is the same for all."""
     if sheet.height and texts:
         every = dict.fromkeys("; ".join(texts).split("; "))
         figure.supxlabel(fill("; ".join(every), int(sheet.width / LETTER)), fontsize=7)
@@ -162,7 +164,8 @@ def explain_scenes(figure, axes, texts, sheet, rows):
 
 
 def scene_groups(runs, samples):
-    """The numbers of the runs in each section: runs of one scene, unless they are further apart than they are large."""
+    """Returns the numbers of the runs in each section. Runs of one scene share a section unless their distance is
+    larger than their size."""
     groups = []
     for i, (run, of) in enumerate(zip(runs, samples)):
         box = box_of(of)
@@ -177,19 +180,19 @@ def scene_groups(runs, samples):
 
 
 def box_of(samples):
-    """Corners of the box of the tip's path, without a tool that is thrown away."""
+    """Returns the corners of the bounding box of the tip's path, without rows of a tool that was thrown away."""
     tips = tip_of(samples)[framed(samples)]
     return np.array([tips.min(axis=0), tips.max(axis=0)])
 
 
 def are_near(box, other):
-    """True if the gap between two boxes is at most the sum of their largest edges."""
+    """Returns True if the gap between two boxes is at most the sum of their largest edges."""
     gap = np.maximum(box[0] - other[1], other[0] - box[1]).max()
     return gap <= (box[1] - box[0]).max() + (other[1] - other[0]).max()
 
 
 def profile_of(run):
-    """Profile of the tool; None for springs, which have no tool."""
+    """Returns the profile of the tool; None for a scene of springs, which has no tool."""
     return (
         None
         if at(run.scenario, "/environment/type") == "springs"
@@ -198,7 +201,7 @@ def profile_of(run):
 
 
 def legend_of(shown):
-    """Label -> look: the first run of each group stands for all of it."""
+    """Returns the look by label; the first run of each group represents the group."""
     counts = Counter(one.group or one.label for one in shown)
     entries = {}
     for one in shown:
@@ -216,7 +219,7 @@ def shortened(name, longest=LONGEST_NAME):
 
 
 def write_title(top, head, runs, entries, columns, sheet):
-    """The names of the scenes, and a legend if there are several runs."""
+    """Writes the names of the scenes, and a legend if there are several runs."""
     scenes = ", ".join(dict.fromkeys(run.name for run in runs))
     name = next(iter(entries)) if len(runs) == 1 else scenes
     room = int(sheet.width / TITLE_LETTER)

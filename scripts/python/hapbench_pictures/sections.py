@@ -57,7 +57,8 @@ def first_table(runs, labels):
 
 
 def outcome_cell(run):
-    """What a copy of a bundled scenario inherits may surprise its owner."""
+    """Returns a cell with the outcome. It also names the expected outcome, because a copy of a bundled scenario
+    inherits the expectation."""
     how = text(run.outcome.replace("_", " ") or "–")
     if run.expected:
         return cell(how)
@@ -79,7 +80,7 @@ def contact_text(run):
 
 
 def said_section(runs, labels, of_run):
-    """What is said of each run, by its label: warnings; what is wrong by the rules of the program, and what to try."""
+    """Returns the texts about each run by label: warnings, or the diagnosis by the rules of the program with advice."""
     said = "".join(
         f"<li><b>{text(label)}:</b> {words}</li>"
         for run, label in zip(runs, labels)
@@ -96,7 +97,7 @@ def diagnosed(run):
 
 
 def metric_names(runs):
-    """Section and name of every metric of the runs."""
+    """Returns section and name of every metric of the runs."""
     return dict.fromkeys(
         (section, name)
         for run in runs
@@ -106,7 +107,7 @@ def metric_names(runs):
 
 
 def metrics_section(runs, labels):
-    """All that the summaries measured, section by section."""
+    """Returns all metrics of the summaries, section by section."""
     rows = [
         [
             cell(text(section)),
@@ -171,7 +172,8 @@ def commands_section(runs, words):
 
 
 def plugin_option(run):
-    """Options that load the run's modules: a law, known by its file's name, and a source of contacts."""
+    """Returns the options that load the run's modules: a law, identified by the name of its file, and a source of
+    contacts."""
     files = [at(run.summary, "/provenance/plugin/file")]
     source = at(run.scenario, "/rendering/contact_source")
     if isinstance(source, dict) and source.get("type") == "plugin":

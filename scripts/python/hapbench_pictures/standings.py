@@ -1,4 +1,4 @@
-"""The runs of a comparison by scene and law: mean, spread, error and rank of each metric by the rules of
+"""The runs of a comparison by scene and law: mean, spread, error and rank of each metric. Implements the rules of
 scenarios/batch/ranking.hpp, so that pictures and pages agree with ranking.csv."""
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -12,13 +12,13 @@ from .given import field_entries, plain, seed_of
 
 FAILURES = ("not_dragged", "stuck", "no_contact", "lost_contact", "went_through", "diverges")
 FREE = (None, "free")
-RESOLUTION = 1e-3  # means closer than this ratio share a rank
+RESOLUTION = 1e-3  # means with a smaller relative difference share a rank
 RANKING = "ranking.csv"
 USUAL = ("force_rms_above_30Hz_N", "force_step_p99_N", "inside_max_m")
 
 
 def failed(run):
-    """True if the run's metrics do not characterise its law."""
+    """Returns True if the run's metrics do not characterise its law."""
     wanted = at(run.scenario, "/expect/outcome")
     wanted = [wanted] if isinstance(wanted, str) else wanted
     led = run.outcome == "went_through" and at(run.scenario, "/motion/position/type") not in FREE
@@ -26,7 +26,8 @@ def failed(run):
 
 
 def value_of(run, metric):
-    """A metric of the section metrics, or SECTION.NAME of another section; None without a finite number."""
+    """Returns a metric of the section metrics, or SECTION.NAME of another section; None if it is not a finite
+    number."""
     section, _, name = metric.rpartition(".")
     values = run.summary.get(section or "metrics")
     return number_or_none(values.get(name)) if isinstance(values, dict) else None
@@ -41,8 +42,8 @@ def tolerance_of(run, metric):
 class Standing:
     """One law in one scene for one metric."""
 
-    values: dict  # repetition -> value, of the runs that did not fail
-    mean: float | None = None  # over the common repetitions
+    values: dict  # value by repetition, without failed runs
+    mean: float | None = None  # mean over the common repetitions
     spread: float | None = (
         None  # standard deviation; None for one repetition, or if the seed changes nothing
     )
@@ -55,7 +56,7 @@ class Standing:
 
     @property
     def shown_error(self):
-        """The error that the digits of the mean follow: as in the ranking that `compare` prints, the largest of the
+        """Error that determines the digits of the mean, as in the ranking that `compare` prints: the largest of the
         error of its numbers, the standard error over seeds, and a tenth of RESOLUTION."""
         if self.spread is None or self.mean is None:
             return self.tolerance
@@ -64,12 +65,12 @@ class Standing:
 
     @property
     def bound(self):
-        """The largest size that the number may have."""
+        """The largest magnitude that the number may have."""
         return abs(self.mean) + self.error
 
     @property
     def seeds_agree(self):
-        """True if the runs differ by less than the ranking tells apart."""
+        """True if the runs differ by less than the resolution of the ranking."""
         return self.spread is not None and self.spread <= RESOLUTION * abs(self.mean or 0.0)
 
     @property
@@ -84,11 +85,11 @@ class Law:
 
     label: str
     algorithm: str
-    runs: dict = field(default_factory=dict)  # repetition -> run
+    runs: dict = field(default_factory=dict)  # run by repetition
 
     @cached_property
     def failures(self):
-        """Repetition -> outcome, of the failed runs."""
+        """Outcome of each failed run, by repetition."""
         return {seed: run.outcome for seed, run in self.runs.items() if failed(run)}
 
     def values(self, metric):
@@ -105,12 +106,13 @@ class Scene:
 
     def __init__(self, name, laws, better=None):
         self.name, self.laws = name, laws
-        self.better = better or {}  # metric -> "less" or "more", where one is better
+        self.better = better or {}  # "less" or "more" by metric, if one direction is better
 
     @cached_property
     def seeds(self):
-        """The repetitions that means are taken over: those in which no law failed that succeeds at all; without any,
-        all in which the laws without a failure ran."""
+        """The repetitions over which means are computed: repetitions in which no law failed, among the laws that have
+        successful runs. If there are none, the repetitions in which all laws without a failure ran.
+        """
         succeeding = [law for law in self.laws if len(law.failures) < len(law.runs)]
         for laws in (succeeding, [law for law in self.laws if not law.failures]):
             shared = [set(law.runs) - set(law.failures) for law in laws]
@@ -124,7 +126,7 @@ class Scene:
         return any(len({run.state_hash for run in law.runs.values()}) > 1 for law in self.laws)
 
     def standings(self, metric):
-        """Label of a law -> its standing, in the order of the laws."""
+        """Returns the standing by label of a law, in the order of the laws."""
         found = {law.label: self.standing(law, metric) for law in self.laws}
         direction = self.better.get(metric)
         if direction and any(of.mean is not None for of in found.values()):
@@ -140,8 +142,8 @@ class Scene:
         return found
 
     def ranks(self, metric):
-        """Label of a law -> its rank. None where the metric has no better direction, where only a bound of the
-        number is known, and for all laws if their ranks would be equal."""
+        """Returns the rank by label of a law. The rank is None if the metric has no better direction, if only a bound
+        of the number is known, and for all laws if their ranks would be equal."""
         return {label: of.rank for label, of in self.standings(metric).items()}
 
     def standing(self, law, metric):
@@ -162,7 +164,7 @@ class Scene:
         )
 
     def sorted_laws(self, metric):
-        """The laws, best first: by failures, then by the mean; laws without a mean come last."""
+        """Returns the laws, best first: by failures, then by the mean; laws without a mean come last."""
         found, sign = self.standings(metric), -1 if self.better.get(metric) == "more" else 1
 
         def key(law):
@@ -173,7 +175,7 @@ class Scene:
 
 
 def is_better(failures, own, other_failures, other, direction):
-    """True if the first law ranks before the other one."""
+    """Returns True if the first law ranks before the other law."""
     if failures != other_failures:
         return failures < other_failures
     if failures or own.mean is None:
@@ -188,8 +190,8 @@ def is_better(failures, own, other_failures, other, direction):
 
 
 def scenes_of(runs, words=()):
-    """The scenes of these runs, each with its laws. `words`: the folders that were given, whose ranking.csv has the
-    direction in which each metric is better."""
+    """Returns the scenes of these runs, each with its laws. `words`: the given folders, whose ranking.csv states the
+    better direction of each metric."""
     scenes, better = {}, directions(words)
     for run, fields in zip(runs, field_entries(runs)):
         laws = scenes.setdefault(run.name, {})
@@ -201,7 +203,7 @@ def scenes_of(runs, words=()):
 
 
 def directions(words):
-    """Metric -> direction, of the ranking.csv in these folders."""
+    """Returns the better direction by metric from the ranking.csv in these folders."""
     return {
         row["metric"]: row["better"]
         for word in words
@@ -213,7 +215,7 @@ def directions(words):
 
 
 def has_repetitions(scenes):
-    """True if the runs of some law differ in their seeds, and none are the same run in several folders."""
+    """Returns True if the runs of some law differ in their seeds, and no run is contained in several folders."""
     laws = [law for scene in scenes for law in scene.laws]
     is_copied = any(isinstance(seed, str) for law in laws for seed in law.runs)
     return not is_copied and any(len(law.runs) > 1 for law in laws)

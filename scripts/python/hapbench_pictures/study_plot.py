@@ -1,4 +1,4 @@
-"""The picture of a folder of `limit`, `tune` or `converge`, which the files in it tell apart."""
+"""Selects the picture of a folder of `limit`, `tune` or `converge` by the files in the folder."""
 from hapbench.errors import InputError
 from hapbench.results import Files, MissingResult
 from hapbench_style import SETTINGS, SHEET, plt

@@ -1,5 +1,5 @@
-"""A sweep's table as a picture: a metric over one varied field; over two as curves or a heat map;
-of a sample, or over more fields, points over each of them, with how much each matters."""
+"""Picture of a sweep's table: a metric over one varied field; over two fields as curves or a heat map; for a sample, or
+for more fields, as points over each field with the influence of each field."""
 import textwrap
 from dataclasses import dataclass
 
@@ -20,12 +20,14 @@ from .over_axes import Axis, look_of, over_axes, spread_logarithmically
 
 USUAL = ("force_rms_above_30Hz_N", "force_max_N")
 FAILURES = ("diverges", "error")
-# The look of places without a number.
+# Look of cells without a number.
 NO_VALUE = {"facecolor": "#F4F4F4", "edgecolor": "#C8C8C8", "lw": 0.5}
-WIDTH = 100  # of text
+WIDTH = 100  # width of the text [characters]
 MOST_COSINES, ROWS_PER_COSINE = 6, 10
-LEAST_ROWS = 20  # of a sample that tells how much a field matters
-# Positive values with a larger ratio of largest to smallest also get the index of their logarithm.
+# Smallest number of rows of a sample for which the influence of a field is computed.
+LEAST_ROWS = 20
+# If the ratio of the largest to the smallest positive value is larger, the Sobol index of the logarithm is also
+# computed.
 DECADE = 10.0
 
 
@@ -67,7 +69,8 @@ class Sweep:
         failed = np.array(
             [row["outcome"] in FAILURES or row.get("expected") == "false" for row in self.rows]
         )
-        # Whose outcome is each of those whose metric says nothing: diverged, not computed, or ended not as expected.
+        # For each class of failed runs (diverged, not computed, or an unexpected outcome), True for the runs of this
+        # class. Their metrics have no meaning.
         self.classes = {name: failed & (outcomes == name) for name in by_class(outcomes[failed])}
         self.values = np.array(
             [
@@ -77,12 +80,13 @@ class Sweep:
         )
 
     def column(self, field):
-        """The numbers of a field, or its texts as they are."""
+        """Returns the values of a field as numbers if all are numbers, else as texts."""
         texts = [row[field] for row in self.rows]
         return np.array([float(text) for text in texts]) if all(map(is_number, texts)) else texts
 
     def is_logarithmic(self, i):
-        """As the field was varied: in equal ratios or steps; a list of other values by its span."""
+        """Returns True if the field was varied in equal ratios, False for equal steps; for a list of other values, the
+        range decides."""
         if "scale" in self.axes[i]:
             return self.axes[i]["scale"] == "log"
         values = self.column(self.fields[i])
@@ -102,7 +106,7 @@ class Sweep:
         )
 
     def sensitivities(self):
-        """One for each field, over the runs that have the metric; empty where there is none."""
+        """Returns the Sensitivity of each field over the runs that have the metric; empty if there is none."""
         ok = np.isfinite(self.values)
         found = []
         for i, entry in enumerate(self.axes):
@@ -123,12 +127,12 @@ class Sweep:
 
     @property
     def spans_decades(self):
-        """Whether the metric is positive and its values span more than a decade."""
+        """Returns True if the metric is positive and its values span more than a decade."""
         return spans_decades(self.values[np.isfinite(self.values)])
 
     @property
     def is_cloud(self):
-        """Whether its points are on no grid that a picture shows."""
+        """Returns True if the points form no grid that a picture can show."""
         return len(self.fields) > 2 or self.sampled and len(self.fields) > 1
 
 
@@ -152,7 +156,7 @@ def draw_sweep(sweep, sheet=SHEET):
 
 
 def draw_cloud(sweep, over, sheet):
-    """The metric over each field."""
+    """Draws the metric over each field."""
     value = Axis.of(axis(sweep.metric), sweep.values)
     high, wide = sheet.grid(len(over))
     figure, axes = sheet.panels(high, wide, 0.5 + sheet.panel(2.4) * high)
@@ -185,7 +189,7 @@ def draw_cloud(sweep, over, sheet):
 
 
 def mark_classes(ax, sweep, x):
-    """Marks below the axis of runs without a number, in the looks of their classes."""
+    """Draws marks below the axis for runs without a number, in the looks of their classes."""
     for name, mine in sweep.classes.items():
         title, colour, _ = look_of_class(name)
         ax.plot(
@@ -209,12 +213,13 @@ def sensitivity_text(found):
 
 
 def hundredths(number):
-    """Two places behind the point, and no "-0.00"."""
+    """Formats a number with two decimals, without "-0.00"."""
     return f"{round(number, 2) + 0.0:.2f}"
 
 
 def draw_curves(ax, sweep, over):
-    """Over the field of numbers, a curve for each text of the other one; without numbers, over the texts."""
+    """Draws a curve over the numeric field for each text of the other field; if both have texts, draws over the
+    texts."""
     x = next((of for of in over if not of.names), over[0])
     other = next((of for of in over if of is not x), None)
     value, series = Axis.of(axis(sweep.metric), sweep.values), []
@@ -267,7 +272,7 @@ def draw_map(figure, ax, sweep, over):
 
 
 def edges(values):
-    """Borders of the cells around the values of a grid."""
+    """Returns the borders of the cells around the values of a grid."""
     if spread_logarithmically(values):
         return np.exp(edges(np.log(values)))
     middle = (values[1:] + values[:-1]) / 2
@@ -275,7 +280,7 @@ def edges(values):
 
 
 def patch_of(name):
-    """The look of a class's cell; None: of a cell without a number."""
+    """Returns the look of a class's cell; None stands for a cell without a number."""
     if name is None:
         return NO_VALUE
     _, colour, hatch = look_of_class(name)
@@ -283,7 +288,8 @@ def patch_of(name):
 
 
 def on_grid(over, values):
-    """The values of the first field, of the second, and the metric by both; None when these are points of a sample."""
+    """Returns the values of the first field, of the second field, and the metric by both; None if the points form no
+    grid."""
     (rows, i), (cells, j) = (np.unique(of.values, return_inverse=True) for of in over)
     if len(rows) * len(cells) > 4 * len(values) or min(len(rows), len(cells)) < 2:
         return None
@@ -293,7 +299,7 @@ def on_grid(over, values):
 
 
 def sensitivity_table(sweep):
-    """The lines that say how much each field of a sample matters, the most first, and how that was told."""
+    """Returns the lines with the influence of each field of a sample, largest first, and the method."""
     if not (sweep.sampled and sweep.is_cloud):
         return []
     found, runs = sweep.sensitivities(), np.isfinite(sweep.values).sum()
@@ -334,14 +340,14 @@ def sensitivity_table(sweep):
 
 
 def numbers_of(found, logarithm):
-    """The cells of a field's line."""
+    """Returns the cells of a field's line."""
     numbers = [found.rank, found.first_order, found.error]
     numbers += [found.of_logarithm, found.error_of_logarithm] if logarithm else []
     return ["-" if number is None else hundredths(number) for number in numbers]
 
 
 def most_telling(found):
-    """The index by which fields are ordered: the logarithm's, if there is one."""
+    """Returns the index that orders the fields: the index of the logarithm, if there is one."""
     if found is None:
         return -1
     return found.first_order if found.of_logarithm is None else found.of_logarithm
@@ -353,32 +359,32 @@ def spans_decades(values):
 
 @dataclass(frozen=True)
 class Sensitivity:
-    """How much each field of a sampled sweep matters for a metric, from the sweep's rows alone:
-    Spearman's rank correlation, and the first-order Sobol index S_i = Var(E[y | x_i]) / Var(y), the
-    share of the metric's variance that the field explains by itself.
+    """Influence of each field of a sampled sweep on a metric, computed from the sweep's rows: Spearman's rank
+    correlation, and the first-order Sobol index S_i = Var(E[y | x_i]) / Var(y), the fraction of the metric's variance
+    that field i explains alone.
 
-    E[y | x_i] is a least-squares fit: up to six cosines of the field's place in its range, cos(pi k
-    u) (Plischke, "How to compute variance-based sensitivity indicators with your spreadsheet
-    software", Environmental Modelling & Software 35, 2012), or for listed values the mean of each.
-    S_i is the fit's R^2, adjusted for the number of functions (Ezekiel), so that a field without
-    influence has 0 in the mean. Its standard error is the jackknife's over the rows; a Latin
-    hypercube or a Sobol sequence errs less. What changes faster than the sixth cosine, as the edge
-    of a jump, is not seen: of a step in the middle a fifteenth.
+    E[y | x_i] is a least-squares fit. For a field with a range, it has up to six cosines cos(pi k u) of the relative
+    position u in the range (Plischke, "How to compute variance-based sensitivity indicators with your spreadsheet
+    software", Environmental Modelling & Software 35, 2012). For listed values, it is the mean at each value. S_i is the
+    R^2 of the fit, adjusted for the number of functions (Ezekiel), so that a field without influence has the mean 0.
+    Its standard error is the jackknife's over the rows; the error of a Latin hypercube or a Sobol sequence is smaller.
+    Variation faster than the sixth cosine, such as a jump, is underestimated: for a step in the middle by a fifteenth.
 
-    A variance is dominated by the largest values. Of a positive metric that spans more than a decade, the index
-    of the logarithm is computed, too: three outliers do not hide a field that decides all other values.
+    The largest values dominate a variance. For a positive metric that spans more than a decade, the index of the
+    logarithm is also computed, so that three outliers do not hide a field that determines all other values.
     """
 
-    rank: float | None  # none for texts, which have no order
+    rank: float | None  # None for texts, which have no order
     first_order: float
     error: float  # standard error of first_order
-    of_logarithm: float | None = None  # first-order index of log(y); none unless spans_decades(y)
+    of_logarithm: float | None = None  # first-order index of log(y); None unless spans_decades(y)
     error_of_logarithm: float | None = None
 
 
 def sensitivity(column, place, y):
-    """Of y to a field: `column` its values, `place` where they are in the range (0 ... 1), None for
-    listed values. None with too few rows, and where either is constant."""
+    """Returns the Sensitivity of y to a field. `column`: values of the field; `place`: their relative positions in the
+    range (0 ... 1), None for listed values. Returns None if there are too few rows, or if y or the field is constant.
+    """
     if len(y) < LEAST_ROWS or np.ptp(y) == 0 or len(set(column)) < 2:
         return None
     if place is None:
@@ -395,10 +401,9 @@ def sensitivity(column, place, y):
 
 
 def adjusted_share(functions, y):
-    """The adjusted R^2 of a fit by functions that span the constant, and the jackknife's standard
-    error: without row i the squares of the residuals e sum up to less by e_i^2 / (1 - h_i), h_i the
-    row's leverage, those of y - mean by n / (n - 1) (y_i - mean)^2.
-    """
+    """Returns the adjusted R^2 of a fit by functions that span the constant, and the jackknife's standard error.
+    Without row i, the sum of the squared residuals e is smaller by e_i^2 / (1 - h_i), with the leverage h_i of the row,
+    and the sum of the squares of y - mean is smaller by n / (n - 1) (y_i - mean)^2."""
     n, fitted = len(y), functions.shape[1]
     q, _ = np.linalg.qr(functions)
     residual, leverage, off = y - q @ (q.T @ y), (q**2).sum(axis=1), y - y.mean()
@@ -408,7 +413,7 @@ def adjusted_share(functions, y):
 
     alone = (
         leverage > 1 - 1e-9
-    )  # a listed value that one row has: it is fitted without the row, too
+    )  # a listed value that only one row has; the fit without this row is also defined
     without = np.where(alone, 0.0, residual**2 / np.where(alone, 1.0, 1 - leverage))
     each = adjusted(residual @ residual - without, off @ off - n / (n - 1) * off**2, n - 1)
     return adjusted(residual @ residual, off @ off, n), float(

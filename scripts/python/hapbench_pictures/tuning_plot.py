@@ -25,7 +25,7 @@ QUANTITIES = {
 
 
 class Trials:
-    """The trials of one law that ran at their K: values of QUANTITIES, which are feasible, and which is the choice."""
+    """The trials of one law at their K: values of QUANTITIES, True for feasible trials, and the chosen trial."""
 
     def __init__(self, law, trials):
         self.name = law["algorithm"]
@@ -47,8 +47,8 @@ class Trials:
 
 
 def draw_tune(files, sheet=SHEET):
-    """Stiffness against depth and against vibration, and both against each other with the Pareto front of the
-    feasible trials. Filled marks are feasible, hollow ones are not, and the choice of each law is ringed.
+    """Draws stiffness against depth and against vibration, and depth against vibration with the Pareto front of the
+    feasible trials. Filled marks are feasible, hollow marks are not, and the choice of each law has a ring.
     """
     trials, laws = files.records(TRIALS), files.records(LAWS)
     drawn = [Trials(law, trials) for law in laws]
@@ -67,7 +67,7 @@ def draw_tune(files, sheet=SHEET):
 
 
 def bounds_of(laws):
-    """For each of QUANTITIES the values of --bound. A table of an older version has no bounds."""
+    """Returns the values of --bound for each of QUANTITIES. A table of an older version has no bounds."""
     given = json.loads(laws[0].get("bounds") or "{}")
     return [
         [factor * value for value in given.get(name, {}).values()]
@@ -105,7 +105,7 @@ def draw_panel(ax, x, y, drawn, shown, bounds):
 
 
 def axis_of(title, values):
-    """A logarithmic axis only if no value, such as a vibration of 0, would be lost on it."""
+    """Returns a logarithmic axis unless a value, such as a vibration of 0, could not be drawn on it."""
     return Axis(title, np.array([]), log=spread_logarithmically(values))
 
 
@@ -121,7 +121,7 @@ def range_of(values):
 
 
 def legend_of(drawn, bounds):
-    """Handles and labels of what is drawn, and of nothing else."""
+    """Returns handles and labels of the drawn elements only."""
     entries = [
         (Line2D([], [], **look_of(of.name, ls="none", ms=4)), law_name(of.name))
         for of in drawn

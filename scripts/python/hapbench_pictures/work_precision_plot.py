@@ -1,5 +1,5 @@
-"""The settings of `converge --over` as a picture: the error of each time step over its processor time, a panel
-for each problem and a curve for each integrator."""
+"""Picture of the settings of `converge --over`: the error of each time step over its processor time, with a panel for
+each problem and a curve for each integrator."""
 from itertools import cycle
 
 import numpy as np
@@ -19,22 +19,24 @@ FRONT = {
     "lw": 0.9,
     "ls": "-",
     "zorder": 1,
-}  # settings that no other one beats in error and time
-MOST_STEPS = 5  # labels of a panel
-ROOM = np.array([0.2, 0.13])  # of a label, in widths and heights of a panel
+}  # settings that no other setting beats in both error and time
+MOST_STEPS = 5  # largest number of labels of a panel
+ROOM = np.array([0.2, 0.13])  # size of a label, as fractions of the panel's width and height
 KNEE = {"marker": "o", "ms": 10, "mfc": "none", "mec": GREY, "ls": "none"}
 ASKED = {"color": GREY, "lw": 0.8, "ls": ":"}
 SPEED = {"color": GREY, "lw": 0.8, "ls": "--"}
-REAL_TIME = 1000.0  # processor time of a simulated second that passes in real time [ms]
+# Processor time per simulated second at which the simulation runs in real time [ms].
+REAL_TIME = 1000.0
 
 
 MODEL_ERRORS, MODEL_TIMES = "convergence_model.csv", "convergence_model_timing.csv"
 
 
 def draw_model_errors(files, sheet=SHEET):
-    """Laws against a reference force: the error of the force's direction, and of the force, over the time of a step.
-    A mark is the median, a line reaches to the 99.9th percentile. Grey: the deadline of a step. Hollow: a law that
-    renders by the constraints of the reference. Nothing is joined: laws are no sequence."""
+    """Draws laws against a reference force: the error of the force's direction, and of the force, over the time of a
+    step. A mark is the median, and a line reaches to the 99.9th percentile. Grey: the deadline of a step. Hollow: a law
+    that renders by the constraints of the reference. Marks are not joined, because laws have no order.
+    """
     errors, times = files.records(MODEL_ERRORS), files.records(MODEL_TIMES)
     median, late = (1e6 * numbers(times, name) for name in ("step_median_s", "step_p99_9_s"))
     deadline = 1e6 * float(times[0]["deadline_s"])
@@ -77,8 +79,8 @@ def draw_model_errors(files, sheet=SHEET):
 
 
 def draw_work_precision(files, sheet=SHEET):
-    """Filled marks: resolved errors; hollow marks: errors below ten times the error of the reference solution;
-    a ring: the knee of the front. Grey lines: the error that was asked for, and real time."""
+    """Draws the picture. Filled marks: resolved errors. Hollow marks: errors below ten times the error of the reference
+    solution. A ring: the knee of the front. Grey lines: the requested error, and real time."""
     errors, times = files.records(ERRORS), files.records(TIMES)
     cost, error = 1e3 * numbers(times, "seconds_per_simulated_second"), 1e6 * numbers(
         errors, "position_error_m"
@@ -123,10 +125,20 @@ def draw_work_precision(files, sheet=SHEET):
         if not np.isfinite(error[of_problem]).any():
             note(ax, 0.5, 0.5, "no error: not predictable", ha="center")
         ax.set_title(problem.replace("_", " "))
-        ax.margins(x=0.1, y=0.13)  # room for the labels of the front
+        ax.margins(x=0.1, y=0.13)  # leaves room for the labels of the front
         ax.label_outer()
     for ax in list(axes.flat)[len(problems) :]:
         ax.set_visible(False)
+    unresolved = (np.isfinite(error) & (error > 0) & ~is_true(errors, "resolved")).any()
+    marks, names = legend_of(looks, asked, is_knee.any(), unresolved, cost.max() > 0.1 * REAL_TIME)
+    legend_above(figure, marks, names, columns=None)
+    return figure
+
+
+def legend_of(looks, asked, has_knee, has_unresolved, has_real_time):
+    """Returns handles and labels of the elements that are drawn. `looks`: look of each integrator; `asked`: requested
+    error [µm]."""
+    integrators = list(looks)
     marks = [
         Line2D([], [], marker=looks[name].marker, color=looks[name].colour, ls=looks[name].line)
         for name in integrators
@@ -134,31 +146,30 @@ def draw_work_precision(files, sheet=SHEET):
     names = [name.replace("_", " ") for name in integrators]
     marks.append(Line2D([], [], **FRONT))
     names.append("front, with time steps [ms]")
-    if is_knee.any():
+    if has_knee:
         marks.append(Line2D([], [], **KNEE))
         names.append("knee")
-    if (np.isfinite(error) & (error > 0) & ~is_true(errors, "resolved")).any():
+    if has_unresolved:
         marks.append(Line2D([], [], marker="s", color=GREY, mfc="white", ls="none"))
         names.append("not resolved by the reference")
     marks.append(Line2D([], [], **ASKED))
     names.append(f"error that is asked for: {asked:g} µm")
-    if cost.max() > 0.1 * REAL_TIME:
+    if has_real_time:
         marks.append(Line2D([], [], **SPEED))
         names.append("real time")
-    legend_above(figure, marks, names, columns=None)
-    return figure
+    return marks, names
 
 
 def draw_front(ax, errors, cost, error, chosen, is_knee):
-    """A line through the settings of the front, and the time steps of a few: the knee, both ends, and those between
-    that have room. Labels stand below the front, where no setting is."""
+    """Draws a line through the settings of the front, and labels of some time steps: the knee, both ends, and settings
+    between them that have room. Labels stand below the front, where there are no settings."""
     rows = np.flatnonzero(chosen & np.isfinite(error) & (error > 0))
     rows = rows[np.argsort(cost[rows])]
     ax.plot(cost[rows], error[rows], **FRONT)
     shown = np.isfinite(error) & (error > 0)
     place = np.array(
         [np.log(of) / (np.ptp(np.log(of[shown])) or 1.0) for of in (cost, error)]
-    )  # in widths and heights of the panel
+    )  # in units of the panel's width and height
     first = [row for row in rows if is_knee[row]] + list(rows[[0, -1]] if rows.size else ())
     labelled = []
     for row in dict.fromkeys([*first, *rows]):
@@ -184,7 +195,7 @@ def is_true(rows, column):
 
 
 def curves(name, own, chosen, errors, cost, error):
-    """The curve of an integrator, and its unresolved errors as hollow marks."""
+    """Draws the curve of an integrator, and its unresolved errors as hollow marks."""
     resolved = is_true(errors, "resolved")
     look = {"color": own.colour, "marker": own.marker}
     shown = chosen & np.isfinite(error) & (error > 0)

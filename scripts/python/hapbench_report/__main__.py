@@ -24,7 +24,8 @@ from .ledger import load_claims
 from .page import place_live_page, thesis_page
 from .runs import REPLAY_DIRECTORY, load_runs
 
-# Scenes of the replay: a scenario, further settings, and its algorithms, of which the first two are shown at first.
+# Scenes of the replay: a scenario, further settings, and its algorithms. The page initially shows the first two
+# algorithms.
 REPLAYED = (
     (
         "task2_rotate_signed_distance",
@@ -37,7 +38,7 @@ REPLAYED = (
         ("original_averaging", "shaped_stiffness", "summation", "mean", "exact_shaping"),
     ),
 )
-# Every step, for the sound and the peaks. The bundled expectations are for the scenario's own algorithm.
+# Record every step, for the sound and the peaks. Remove the expectations, which are for the scenario's own algorithm.
 RECORDED = (
     "record.contacts=true",
     "record.stiffness_tensor=true",

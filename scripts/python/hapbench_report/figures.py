@@ -1,5 +1,4 @@
-"""The drawn figures: figures.json tells what they show; each with its caption, and the claims and
-files it belongs to."""
+"""The drawn figures from figures.json, each with its caption, and the claims and files that it belongs to."""
 import base64
 import re
 from dataclasses import dataclass
@@ -18,7 +17,7 @@ class Figure:
     thesis_figure: str
     caption: str
     sources: list
-    drawing: bytes  # an SVG
+    drawing: bytes  # SVG file
 
     @property
     def name(self):
@@ -29,7 +28,8 @@ class Figure:
         )
 
     def is_about(self, claim):
-        """The claim's place names the figure, or a scenario that decides it is drawn there."""
+        """Returns True if the claim's location names the figure, or if the figure draws a scenario that decides the
+        claim."""
         named = " ".join(re.findall(r"Fig\. (?:[A-F]\.?)?\d+", str(claim.get("place", ""))))
         drawn = {Path(source).parent.name for source in self.sources}
         return bool(
@@ -39,7 +39,7 @@ class Figure:
 
 
 def labels(thesis_figure):
-    """ "7a–c, B.4" -> {"7", "B.4"}: the numbers without their parts."""
+    """Returns the numbers of figures without their parts: "7a–c, B.4" gives {"7", "B.4"}."""
     return {
         prefix + digits
         for prefix, digits in re.findall(
@@ -62,7 +62,7 @@ def figure(entry, i, file):
         member(entry, key, str, file, place, "") for key in ("id", "title", "caption")
     )
     sources, files = (member(entry, key, list, file, place, []) for key in ("sources", "files"))
-    # Only the name: a figure lies beside its list.
+    # Use only the name, because a figure is in the folder of its list.
     drawing = next(
         (file.parent / Path(str(name)).name for name in files if str(name).endswith(".svg")), None
     )

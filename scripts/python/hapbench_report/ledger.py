@@ -1,5 +1,5 @@
-"""The ledger: what the thesis claims, what it publishes, what we measure, and the verdict; with the
-summary of the page."""
+"""The ledger: the claims of the thesis, published numbers, measured numbers and verdicts, and the summary of the page.
+"""
 from collections import Counter
 
 from hapbench.errors import InputError
@@ -8,8 +8,8 @@ from hapbench.results import at, objects, read_object, shown
 from .figures import claim_link
 from .markup import cell, command, folded, heading_cell, listed, table, text, typeset
 
-# Verdict -> (mark, tone), what is contradicted first; the last two are of findings of ours. The
-# mark tells verdicts apart without colour.
+# (mark, tone) by verdict, contradicted claims first. The last two verdicts are for findings of this project. The mark
+# distinguishes verdicts without colour.
 VERDICTS = {
     "contradicted": ("⊘", "bad"),
     "not replicated": ("✗", "bad"),
@@ -29,7 +29,7 @@ FILTER = (
 
 
 def load_claims(file):
-    """The ledger's claims, its sentence with the counts, and the sentences of the abstract."""
+    """Returns the ledger's claims, the sentence with their counts, and the sentences of the abstract."""
     ledger = read_object(file)
     claims = objects(ledger, "claims", file)
     for i, claim in enumerate(claims):
@@ -42,7 +42,7 @@ def load_claims(file):
 
 
 def of_thesis(claims):
-    """Those of the thesis, the contradicted ones first."""
+    """Returns the claims of the thesis, contradicted claims first."""
     order = list(VERDICTS)
     return sorted(
         (claim for claim in claims if not claim.get("ours")),
@@ -83,7 +83,7 @@ def summary_section(runs, claims, headline, abstract, figures):
 
 
 def main_results(claims, abstract):
-    """The sentences of the abstract, with the claims that test them and the command of each."""
+    """Returns the sentences of the abstract, with the claims that test them and the command of each claim."""
     by_id = {claim["id"]: claim for claim in claims}
 
     def each(of_sentence, text_of):
@@ -112,13 +112,13 @@ def main_results(claims, abstract):
 
 
 def warnings(runs):
-    """The runs that ended otherwise than expected, by name: they must not hide in a long table."""
+    """Returns the runs with an unexpected outcome by name, so that they are visible outside of the long table."""
     missed = [f"{text(run.path)} ({text(run.outcome)})" for run in runs if not run.expected]
     return f'<p><b class="bad">✗ Not as expected:</b> {", ".join(missed)}.</p>' if missed else ""
 
 
 def refusals(claims):
-    """The claims of the thesis that are not confirmed. They belong into the summary."""
+    """Returns the claims of the thesis that are not confirmed, for the summary."""
     items = "".join(
         f"<li>{verdict_mark(c['verdict'])} {claim_link(c)} ({text(c.get('place', ''))}): "
         f"{typeset(c.get('claim', ''))}</li>"
@@ -141,8 +141,9 @@ def ledger_section(claims, figures):
         "<p>Each claim of the thesis, what it publishes, what our runs give, and a verdict by a rule, which unfolds "
         "with the figures and scenarios behind it. "
         "Hands are calibrated to mean and standard deviation of the raw colliding points; all else is a prediction. "
-        "Decided by: each assumption that the thesis leaves open (<code>results/reference/assumptions.json</code>) was set "
-        "to its other plausible values, one at a time. Exact: no assumption enters; robust: none changes the verdict.</p>"
+        "Decided by: each assumption that the thesis leaves open (<code>results/reference/assumptions.json</code>) "
+        "was set to its other plausible values, one at a time. Exact: no assumption enters; robust: none changes the "
+        "verdict.</p>"
         + FILTER
         + table(headings, rows, "<b>The ledger</b>", "sortable stack", "ledger-table")
         + (

@@ -1,4 +1,4 @@
-"""HTML from values. Every text from outside goes through `text`."""
+"""HTML from values. Every text that is not written in this program is escaped by `text`."""
 import html
 import json
 import math
@@ -12,9 +12,9 @@ from hapbench.table import ending_of, unit_of
 
 ABSENT = "–"
 ASSETS = Path(__file__).parent / "assets"
-PER = "seconds_per_"  # time of a step or of a call
-SMALL_M = 0.01  # lengths below are shown in millimetres
-# Title, unit and factor of the metrics of the program's tables, with the words of its headings (kRunHeadings).
+PER = "seconds_per_"  # prefix of metrics of the time of a step or of a call
+SMALL_M = 0.01  # [m]; smaller lengths are printed in mm
+# Title, unit and factor of the metrics in the program's tables, with the words of its headings (kRunHeadings).
 TITLES = {
     "force_max_N": ("largest force", "N", 1),
     "contact_share": ("in contact", "%", 100),
@@ -32,18 +32,18 @@ def text(value):
 
 
 def named(value):
-    """A name as text that may go on in another line behind an underscore or a slash, and nowhere within a word."""
+    """Escapes a name and allows line breaks only after underscores and slashes."""
     return re.sub(r"([_/])(?=\w)", r"\1<wbr>", text(value))
 
 
-# A number's exponent, or the minus before a number that begins a word.
+# Matches a number's exponent, or the minus sign before a number at the beginning of a word.
 EXPONENT = re.compile(r"(?<=\d)e([+-]?)0*(\d+)\b")
 MINUS = re.compile(r"(?<![\w.)])-(?=\d)")
 SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 def typeset(value):
-    """Text whose numbers are set as printers do: "-1.2e-07" as "−1.2 × 10⁻⁷"."""
+    """Returns text with typographic numbers: "-1.2e-07" becomes "−1.2 × 10⁻⁷"."""
     shown = EXPONENT.sub(
         lambda found: " × 10" + (found[1].replace("+", "") + found[2]).translate(SUPERSCRIPT),
         str(value),
@@ -52,19 +52,19 @@ def typeset(value):
 
 
 def number(value, digits=4):
-    """A number with so many significant digits, or a dash."""
+    """Formats a number with `digits` significant digits, or as a dash if there is no number."""
     value = number_or_none(value)
     if value is None:
         return ABSENT
     if isinstance(value, int) and abs(value) < 10**7:
         return str(value)
     short = f"{value:.{digits}g}"
-    # Powers of ten only where the zeros would have to be counted.
+    # Powers of ten are used only for numbers with many zeros.
     return typeset(format(Decimal(short), "f") if 1e-4 <= abs(value) < 1e7 else short)
 
 
 def cell(value, sort_key=None, classes=""):
-    """A table cell from ready HTML; sort_key overrides the shown text when the table is sorted."""
+    """Returns a table cell from ready HTML. `sort_key` replaces the shown text when the table is sorted."""
     attributes = f' class="{classes}"' if classes else ""
     if sort_key is not None:
         attributes += f' data-sort="{text(sort_key)}"'
@@ -72,8 +72,8 @@ def cell(value, sort_key=None, classes=""):
 
 
 def known_number(value, tolerance, most=3):
-    """A number with the digits that its tolerance leaves, at most `most`. Where the tolerance is not smaller than the
-    number, only the bound is known: "≤ 0.4"."""
+    """Formats a number with the digits that are significant at its tolerance, at most `most`. If the tolerance is not
+    smaller than the number, returns a bound: "≤ 0.4"."""
     value = number_or_none(value)
     if value is not None and tolerance and tolerance >= abs(value):
         sign = "≤ " if value >= 0 else "0 ± "
@@ -82,13 +82,13 @@ def known_number(value, tolerance, most=3):
 
 
 def rounded_up(value):
-    """The smallest number with one significant digit that is not below a positive value."""
+    """Returns the smallest number with one significant digit that is at least a positive value."""
     size = 10.0 ** math.floor(math.log10(value))
     return math.ceil(value / size * (1 - 1e-12)) * size
 
 
 def number_cell(value, digits=4, tolerance=None):
-    """`tolerance`: by how much the number may be wrong, in its unit."""
+    """Returns a cell with a number. `tolerance`: largest error of the number, in its unit."""
     value = number_or_none(value)
     return cell(
         known_number(value, tolerance, digits), "" if value is None else json.dumps(value), "number"
@@ -96,20 +96,19 @@ def number_cell(value, digits=4, tolerance=None):
 
 
 def heading_cell(title, numeric=False, unit=""):
-    """The unit stands below the title."""
+    """Returns a heading cell with the unit below the title."""
     below = f"<br><span class=unit>{text(unit)}</span>" if unit else ""
     return f'<th scope="col"{" class=number" if numeric else ""}>{title}{below}</th>'
 
 
 def table(headings, rows, caption="", classes="", element_id=""):
-    """Rows are lists of cells (ready HTML). The wrapper scrolls where the page is narrower than the
-    table; with the class "stack" each row becomes a card there instead, its cells named by their
-    headings."""
+    """Returns a table. Rows are lists of cells (ready HTML). If the page is narrower than the table, the wrapper
+    scrolls; with the class "stack", each row becomes a card with the headings beside its cells."""
     identity = f' id="{element_id}"' if element_id else ""
     shown_caption = f"<caption>{caption}</caption>" if caption else ""
     shown_headings, shown_rows, role = "".join(headings), ["".join(row) for row in rows], ""
     if "stack" in classes.split():
-        # A table that is laid out otherwise stays one to those who hear it.
+        # Keeps the role of a table for screen readers if the layout of the table changes.
         role = ' role="table"'
         names = [
             text(" ".join(strip(heading.replace("<br>", " ")).split())) for heading in headings
@@ -132,13 +131,13 @@ def table(headings, rows, caption="", classes="", element_id=""):
 
 
 def folded(summary, content, classes=""):
-    """Ready HTML that opens at a click, and when a link leads into it."""
+    """Returns a section of ready HTML that opens on a click, or if a link leads into it."""
     attributes = f' class="{classes}"' if classes else ""
     return f"<details{attributes}><summary>{summary}</summary>{content}</details>"
 
 
 def strip(markup):
-    """Ready HTML without its tags, for labels."""
+    """Removes the tags from ready HTML, for labels."""
     return html.unescape(re.sub(r"<[^>]*>", "", markup))
 
 
@@ -147,18 +146,18 @@ def command(line):
 
 
 def embedded_json(value):
-    """JSON for a script element: it cannot end the element, nor hold what JSON does not know."""
+    """Returns JSON for a script element: it cannot end the element, and contains only valid JSON values."""
     packed = json.dumps(value, separators=(",", ":"), allow_nan=False, ensure_ascii=False)
     return packed.replace("<", "\\u003c")
 
 
 def in_colour(one, shown):
-    """Ready HTML in the colour of a look, on light and on dark ground."""
+    """Returns ready HTML in the colours of a look for light and for dark ground."""
     return f'<span class=run-name style="--light:{one.colour};--dark:{one.dark}">{shown}</span>'
 
 
 def column(name, values=()):
-    """Title, unit (empty for numbers without one) and factor of a column with these numbers, by its name."""
+    """Returns title, unit (empty for numbers without a unit) and factor of a column with this name and these values."""
     if name.startswith(PER):
         return f"time of a {name.removeprefix(PER)}", "µs", 1e6
     if name in TITLES:
@@ -175,7 +174,7 @@ def column(name, values=()):
 
 
 def deserved_digits(value, tolerance, most):
-    """How many of `most` significant digits a tolerance leaves a number, one at least."""
+    """Returns the number of significant digits at a tolerance, from 1 to `most`."""
     if not value or not tolerance:
         return most
     return max(
@@ -184,8 +183,8 @@ def deserved_digits(value, tolerance, most):
 
 
 def columns(names, rows, tolerances):
-    """Heading cells of numbers, and for each row its cells; `rows`: lists of numbers or None, of
-    these names, `tolerances`: of them."""
+    """Returns the heading cells of numbers, and the cells of each row. `names`: names of the columns; `rows`: lists of
+    numbers or None; `tolerances`: errors of the numbers."""
     heads = [
         column(name, [v for v in values if v is not None])
         for name, values in zip(names, zip(*rows))
@@ -203,13 +202,13 @@ def columns(names, rows, tolerances):
 
 
 def fill(file, values):
-    """The file's text with values in the places of {{name}}."""
-    # In one pass, so that a value which looks like a placeholder stays what it is.
+    """Returns the file's text with each {{name}} replaced by its value."""
+    # A single pass, so that a value which looks like a placeholder is not replaced.
     return re.sub(
         r"\{\{(\w+)\}\}", lambda match: values[match[1]], file.read_text(encoding="utf-8")
     )
 
 
 def listed(title, links):
-    """A line of links; nothing where there are none."""
+    """Returns a line of links; empty if there are no links."""
     return f"<p class=links><b>{title}</b> {', '.join(links)}</p>" if links else ""

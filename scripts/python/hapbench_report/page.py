@@ -1,5 +1,5 @@
-"""The page: its sections in order, with style and scripts inlined, and its links to the live page,
-where a scene is under the reader's own hand."""
+"""The page: its sections in order, with inlined style and scripts, and its links to the live page, on which the reader
+moves the tool of a scene."""
 import json
 import os
 import shutil
@@ -30,13 +30,13 @@ SCRIPTS = (
     "replay_player.js",
     "replay_controls.js",
 )
-LIVE = "live.html"  # a copy of it lies beside every page that links to it
-BUILT = Path(__file__).resolve().parents[3] / "build" / "live" / LIVE  # by scripts/live/make
+LIVE = "live.html"  # a copy of this file is placed beside every page that links to it
+BUILT = Path(__file__).resolve().parents[3] / "build" / "live" / LIVE  # output of scripts/live/make
 NO_REPLAY = '<p class="note">No recorded runs were given (<code>--program</code>).</p>'
 
 
 def thesis_page(runs, ledger, figures, replayed):
-    """The HTML of the report on the thesis, from what load_claims returns and more. Depends on nothing but its
+    """Returns the HTML of the report on the thesis. `ledger`: the result of load_claims(). Depends only on its
     arguments."""
     claims, headline, abstract = ledger
     replay = (
@@ -62,7 +62,7 @@ def thesis_page(runs, ledger, figures, replayed):
 
 
 def whole_page(sections, title="hapbench report", further_style=""):
-    """The page of sections, each a key, a short title for the navigation, a title and its HTML."""
+    """Returns the page. Each section has a key, a short title for the navigation, a title and its HTML."""
     return fill(
         ASSETS / "page.html",
         {
@@ -79,7 +79,7 @@ def whole_page(sections, title="hapbench report", further_style=""):
 
 
 def section(key, _, title, body):
-    # The summary has the heading of the page.
+    # The summary has the heading of the page as its heading.
     heading = "" if key == "summary" else f"<h2>{text(title)}</h2>"
     return f'<section id="{key}" aria-label="{text(title)}">{heading}{body}</section>'
 
@@ -107,14 +107,14 @@ def rerun_section():
 
 
 def live_page():
-    """The built page, or None. HAPBENCH_LIVE names another, or, empty, none."""
+    """Returns the live page, or None. HAPBENCH_LIVE names another file; if it is empty, there is no live page."""
     named = os.environ.get("HAPBENCH_LIVE")
     page = BUILT if named is None else Path(named)
     return page if page.is_file() else None
 
 
 def live_link(scenario):
-    """A sentence with the link; nothing where there is no live page or a pointer cannot lead the scene's tool."""
+    """Returns a sentence with the link; empty if there is no live page or if a pointer cannot move the scene's tool."""
     position = at(scenario, "/motion/position")
     is_free = position is None or at(scenario, "/motion/position/type") == "free"
     names_a_file = any(isinstance(part.get("file"), str) for part in objects_in(scenario))
@@ -130,7 +130,7 @@ def live_link(scenario):
 
 
 def place_live_page(folder):
-    """Puts the live page beside the pages in the folder that link to it."""
+    """Copies the live page beside the pages in the folder that link to it."""
     page = live_page()
     if page and page != folder / LIVE:
         shutil.copyfile(page, folder / LIVE)

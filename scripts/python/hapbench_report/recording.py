@@ -1,5 +1,5 @@
-"""A recorded run as the replay reads it: its tool, the rows that are shown, the moments to jump to,
-and the rendered force above 30 Hz as a sound, what a hand feels as vibration."""
+"""A recorded run for the replay: its tool, the shown rows, the moments to jump to, and the rendered force above 30 Hz
+as a sound. A hand feels this part of the force as vibration."""
 import base64
 import math
 import sys
@@ -12,7 +12,8 @@ from hapbench.columns import read_columns
 from hapbench.results import at, number_or_none
 
 TENSOR_COLUMNS = ("sxx", "sxy", "sxz", "syy", "syz", "szz")
-# Per row: time, tip, axis, rendered force, ratio range, deepest point; with the tensor S where it was recorded.
+# Columns of each row: time, tip, axis, rendered force, range of ratios, largest depth; and the tensor S if it was
+# recorded.
 MEASURED_COLUMNS = (
     "time_s",
     "px_m",
@@ -39,20 +40,23 @@ CONTACT_COLUMNS = (
     "weight",
 )
 NORMAL_COLUMNS = ("nx", "ny", "nz")
-ARC_POINTS = 48  # of a rounded tip: off the circle by 0.013 % of its radius
-SPANS = 500  # of a run; each keeps up to five rows
+# Number of points of a rounded tip: deviates from the circle by 0.013 % of its radius.
+ARC_POINTS = 48
+SPANS = 500  # number of time spans of a run; each keeps up to five rows
 SETTLING_S = 0.05
 CUTOFF_HZ = 30.0
-LONGEST = 1 << 18  # of a sound [rows]: two minutes at 2 kHz, half a megabyte in the page
+# Largest number of rows of a sound: two minutes at 2 kHz, half a megabyte in the page.
+LONGEST = 1 << 18
 LEAST_SETTLED_S = (
     1 / 30
-)  # less tells nothing: the run hammers, and it has no metrics of settled contact
+)  # with fewer settled rows, the run bounces and has no metrics of settled contact
 
 
 def tool_profile(scenario, summary):
-    """The tool as a solid of revolution: pairs (s, r) in metres, at s along the axis, counted from the tip centre, the
-    radius r; from the far end to the tip. A cylinder's follows from the scenario, that of any other
-    tool is in the run's summary; of a mesh it is the silhouette. None if there is neither."""
+    """Returns the tool as a solid of revolution: pairs (s, r) [m] of the position s along the axis, relative to the tip
+    centre, and the radius r there, from the far end to the tip. The profile of a cylinder follows from the scenario;
+    the profile of another tool is in the run's summary. For a mesh it is the silhouette. Returns None if there is
+    neither."""
     outline = at(summary, "/tool/outline_m")
     if outline is not None:
         pairs = (
@@ -81,18 +85,19 @@ def is_list_of_pairs(value):
 
 
 def forces(columns):
-    """The rendered force in every row [N], n × 3."""
+    """Returns the rendered force in every row [N], n × 3."""
     return np.column_stack([columns[f"f{axis}_N"] for axis in "xyz"])
 
 
 def force_steps(columns):
-    """Size of the change of the rendered force from the row before [N]; zero in the first."""
+    """Returns the magnitude of the change of the rendered force from the previous row [N]; zero in the first row."""
     return np.append(0.0, np.linalg.norm(np.diff(forces(columns), axis=0), axis=1))
 
 
 def rows_to_show(columns):
-    """All rows of a short run. Of a long one, in equal spans of rows, those of the least and the greatest force, of the
-    greatest depth, and both ends of the largest step of the force: no peak is lost."""
+    """Returns all rows of a short run. For a long run, returns from equal spans of rows the rows with the smallest
+    force, the largest force and the largest depth, and both ends of the largest force step, so that no peak is lost.
+    """
     n = len(columns["time_s"])
     if n <= 4 * SPANS:
         return np.arange(n)
@@ -115,10 +120,9 @@ def rows_to_show(columns):
 
 
 def settled_rows(columns, scenario):
-    """Which rows are in contact and no landing, by the settings of the run's metrics: not within
-    settling_s after a first touch, which is a contact at the start or after at least that time
-    without one; from_s, if there is one, replaces that rule.
-    """
+    """Returns True for rows in contact that are not part of a landing, by the settings of the run's metrics. A landing
+    lasts settling_s from a first touch. A first touch is a contact at the start, or a contact after at least settling_s
+    without contact. If from_s is set, it replaces this rule."""
     settling_s, from_s = (
         number_or_none(at(scenario, f"/metrics/{key}")) for key in ("settling_s", "from_s")
     )
@@ -135,8 +139,8 @@ def settled_rows(columns, scenario):
 
 
 def worst_moments(columns, scenario):
-    """Where the settled force steps most (in a run that hardly settles: the force of all its rows),
-    and where the tool is deepest: title, time, value, unit."""
+    """Returns (title, time, value, unit) of the largest step of the settled force and of the largest depth. In a run
+    that hardly settles, uses the force of all rows."""
     times, step, depth = columns["time_s"], force_steps(columns), columns["depth_max_m"]
     rows = np.flatnonzero(settled_rows(columns, scenario))
     is_settled = len(times) > 1 and len(rows) * (times[1] - times[0]) >= LEAST_SETTLED_S
@@ -154,11 +158,11 @@ def worst_moments(columns, scenario):
 
 
 class Recording:
-    """One algorithm's run through a scene."""
+    """The run of one algorithm in a scene."""
 
     def __init__(self, run):
         self.run, self.tool = run, tool_profile(run.scenario, run.summary)
-        # All rows, for the sound and the worst moments.
+        # All rows, for the sound and the moments to jump to.
         self.columns = read_columns(
             run.folder / "trajectory.csv", ("step", *MEASURED_COLUMNS, "colliding")
         )
@@ -169,10 +173,11 @@ class Recording:
         )  # None if they were not recorded
         self.contacts = self.rows_of(
             "contacts", (*CONTACT_COLUMNS, *NORMAL_COLUMNS)
-        )  # of every shown row, with their normals
+        )  # for every shown row, with their normals
 
     def rows_of(self, table, columns):
-        """The rows of a table for every shown row, in the order of the file; none if it was not recorded."""
+        """Returns the rows of a table for every shown row, in the order of the file; None if the table was not
+        recorded."""
         steps = self.columns["step"][self.shown]
         rows = {step: [] for step in steps.tolist()}
         if table in self.run.tables:
@@ -188,7 +193,7 @@ class Recording:
         return list(rows.values())
 
     def rows(self):
-        """The shown rows as they are packed."""
+        """Returns the shown rows as lists of numbers for the page, with the tensor appended if it was recorded."""
         measured = np.column_stack(
             [self.columns[name][self.shown] for name in MEASURED_COLUMNS]
         ).tolist()
@@ -199,14 +204,14 @@ class Recording:
         )
 
     def tips(self, touching):
-        """Places of the tip in the shown rows; with `touching`, of those in contact."""
+        """Returns the positions of the tip in the shown rows; with `touching`, only in rows in contact."""
         rows = self.shown[self.columns["colliding"][self.shown] > 0] if touching else self.shown
         return np.column_stack([self.columns[f"p{axis}_m"][rows] for axis in "xyz"]).tolist()
 
 
 def base64_of(code, values):
-    """Numbers as text for a page: little endian, base64. Raises OverflowError for one that the type
-    of array cannot hold."""
+    """Encodes numbers as base64 text, little-endian. Raises OverflowError for a number outside of the range of the
+    array's type."""
     packed = array(code, values)
     if sys.byteorder == "big":
         packed.byteswap()
@@ -214,8 +219,9 @@ def base64_of(code, values):
 
 
 def sound(columns):
-    """Samples for the page, empty where too few rows a second were recorded. One direction is heard, that in which the
-    force above 30 Hz is strongest: its size alone would hide a force that turns round."""
+    """Returns sound samples for the page; empty if the recording rate is too low. The sound is the component of the
+    force above 30 Hz along its strongest direction: the magnitude would hide a force that reverses.
+    """
     times = columns["time_s"][:LONGEST]
     if len(times) < 3 or not times[-1] > times[0]:
         return None
@@ -240,11 +246,13 @@ def sound(columns):
 
 
 def high_passed(samples, rate):
-    """Butterworth of fourth order, as in results/observe/contact_forces.hpp, at rest at the first sample."""
+    """Applies the fourth-order Butterworth high-pass of results/observe/contact_forces.hpp, with zero output at the
+    first sample."""
     sections = signal.butter(4, CUTOFF_HZ, "high", fs=rate, output="sos")
     return signal.sosfilt(sections, samples, zi=signal.sosfilt_zi(sections) * samples[0])[0]
 
 
 def strongest(signals):
-    """Unit vector along which the three signals have most power: the last eigenvector of their covariance."""
+    """Returns the unit vector along which the three signals have the largest power: the last eigenvector of their
+    covariance."""
     return np.linalg.eigh(signals @ signals.T)[1][:, -1]

@@ -1,6 +1,6 @@
-"""The interactive replay: recorded runs of whatever scene, packed for the page with as many rows
-and points as a browser draws in a frame (contacts quantised to 16 bits, rows in single precision,
-base64), and its markup."""
+"""The interactive replay: recorded runs of any scene and the replay's markup. The data is reduced to the number of rows
+and points that a browser can draw in a frame. Contacts have 16 bits, rows have single precision, and both are encoded
+as base64."""
 import json
 import subprocess
 import tempfile
@@ -29,26 +29,26 @@ from .recording import (
     worst_moments,
 )
 
-# The shell is shown this far around the contacts and the tool's way along them, in units of the tool's radius.
+# Margin around the contacts and the tool's path along them within which the shell is shown, in tool radii.
 MARGIN = 1.8
 SHELL_COLUMNS = ("x_m", "y_m", "z_m", *NORMAL_COLUMNS)
-# Points drawn: near the contacts, and with the rest.
+# Number of points near the contacts, and number of all points.
 NEAR, ALL = 5000, 8000
-SPEEDS = (0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 10)  # as in the player's menu
-WATCHED_S = 10.0  # how long a replay should take at first
+SPEEDS = (0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 10)  # equal to the player's menu
+WATCHED_S = 10.0  # initial duration of a replay [s]
 PATIENCE_S = 120
 
 
 @dataclass(frozen=True, eq=False)
 class Surface:
-    """The surface that tools touch."""
+    """The surface that the tools touch."""
 
-    points: np.ndarray  # each a row of position and outward normal [m]
-    is_solid: bool  # False for an open mesh, whose inside is not known
+    points: np.ndarray  # rows of position [m] and outward normal
+    is_solid: bool  # false for an open mesh, whose inside is not defined
 
 
 def replays(runs, labels):
-    """A packed scene for each environment and tool among the runs."""
+    """Returns a packed scene for each environment and tool among the runs."""
     scenes = {}
     for run, label in zip(runs, labels):
         key = json.dumps(
@@ -85,12 +85,12 @@ def scene(i, runs, labels):
     try:
         return about | packed_scene(recordings, shell, labels)
     except (ValueError, OverflowError) as error:
-        # Numbers that no run writes: steps left empty, normals far from unit length.
+        # Numbers that hapbench never writes, such as empty steps or normals far from unit length.
         raise InputError(f"{runs[0].folder}: not what hapbench records: {error}") from error
 
 
 def packed_scene(recordings, shell, labels):
-    """`shell`: points with their normals, all of which are drawn."""
+    """Returns the packed scene. `shell`: points with their normals; all are drawn."""
     scale = float(np.abs(shell[:, :3]).max(initial=0.0)) / 32767 or 1.0
     scenario = recordings[0].run.scenario
     orientation = at(scenario, "/motion/orientation") or {}
@@ -151,7 +151,8 @@ def packed_recording(recording, label):
 
 
 def points_of(run, recordings):
-    """The surface: from the program, or else the points that were in contact; and what to say about it."""
+    """Returns the points of the surface, from the program or else the recorded contact points, and a remark about their
+    origin."""
     surface, failure = shell(run)
     every = surface and surface.points
     if every is None:
@@ -175,7 +176,8 @@ def points_of(run, recordings):
 
 
 def touched_box(recordings):
-    """Corners of the box that the contacts and the tips of rows in contact span; of all tips where nothing touched."""
+    """Returns the corners of the bounding box of the contacts and of the tips of rows in contact; if nothing touches,
+    of all tips."""
     places = [contact[:3] for r in recordings for of_row in r.contacts for contact in of_row]
     places += [tip for r in recordings for tip in r.tips(touching=True)]
     places = places or [tip for r in recordings for tip in r.tips(touching=False)]
@@ -183,7 +185,8 @@ def touched_box(recordings):
 
 
 def thinned(points, box, margin):
-    """All around the box first: `margin` is how far that goes along any axis."""
+    """Returns a subset of the points. Points near the box are preferred: `margin` is the distance from the box along
+    any axis."""
     low, high = np.array(box)
     near = ((points[:, :3] >= low - margin) & (points[:, :3] <= high + margin)).all(axis=1)
     kept = some(points[near], NEAR)
@@ -191,14 +194,14 @@ def thinned(points, box, margin):
 
 
 def some(points, most):
-    """At most so many, spread over all of them. Drawn by lot, as every nth of a grid's points makes stripes."""
+    """Returns at most `most` points, chosen at random: every n-th point of a grid would form stripes."""
     if len(points) <= most:
         return points
     return points[np.sort(np.random.default_rng(1).choice(len(points), most, replace=False))]
 
 
 def surface_of(runs):
-    """The Surface that all runs share; None where they do not, or there is none to be had."""
+    """Returns the Surface that all runs share; None if they do not share one or if it is not available."""
     environments = [run.scenario.get("environment") for run in runs]
     if any(environment != environments[0] for environment in environments) or not environments[0]:
         return None
@@ -206,13 +209,13 @@ def surface_of(runs):
 
 
 def shell(run):
-    """The Surface and an empty text; None with the reason where there is none to be had."""
+    """Returns the Surface and an empty text, or None and the reason."""
     if at(run.scenario, "/environment/type") == "springs":
         return None, ""
     return shell_of(run.folder / "scenario.effective.json")
 
 
-@lru_cache(maxsize=4)  # curves and replay of a page ask for the same surfaces
+@lru_cache(maxsize=4)  # cached, because curves and replay of a page use the same surfaces
 def shell_of(scenario):
     program = the_program()
     if not program:
@@ -222,7 +225,8 @@ def shell_of(scenario):
         )
     with tempfile.TemporaryDirectory(prefix="hapbench-report-") as scratch:
         file = Path(scratch) / "shell.csv"
-        # Whatever the algorithm: it may have come from a module that is not at hand.
+        # Replaces the algorithm, because it may belong to a module that is not available. The surface does not depend
+        # on it.
         plain = ["--set", "rendering.algorithm=mean", "--set", "rendering.parameters={}"]
         line = [program, "validate", str(scenario), "--points", str(file), "--json", *plain]
         try:
@@ -241,7 +245,7 @@ def shell_of(scenario):
 
 
 def player(scenes):
-    """The replay's markup and data. A page holds one."""
+    """Returns the replay's markup and data. A page contains one replay."""
     sides = "".join(fill(ASSETS / "replay_side.html", {"which": which}) for which in "ABCD")
     return (
         fill(ASSETS / "replay.html", {"sides": sides})

@@ -1,4 +1,4 @@
-"""The runs in a results directory, which is every directory with a summary.json, and what produced them."""
+"""The runs in a results directory (every directory with a summary.json), and their provenance."""
 import json
 from functools import cached_property
 from pathlib import Path
@@ -8,12 +8,12 @@ from hapbench.results import at, member, number_or_none
 
 from .markup import cell, heading_cell, table, text
 
-# Written for the replay, not as results of their own.
+# Runs in this folder were written for the replay and are not results.
 REPLAY_DIRECTORY = "replay"
 
 
 class Run(results.Run):
-    """A run as pages know it: `path` is that of its folder, relative to the results."""
+    """A run for pages. `path` is the path of its folder relative to the results."""
 
     path = ""
 
@@ -23,8 +23,8 @@ class Run(results.Run):
 
     @property
     def expected(self):
-        """True unless the scenario said that the run must end otherwise; what it says is not about
-        other algorithms that it is compared by."""
+        """False if the run ended otherwise than its scenario expects. The expectation does not apply to other
+        algorithms of a comparison."""
         return (
             self.summary.get("expected") is not False
             or (self.folder.resolve().parent / "comparison.csv").exists()
@@ -34,7 +34,7 @@ class Run(results.Run):
         return number_or_none(self.metrics.get(key))
 
     def tolerance(self, section, key):
-        """By how much a metric may be wrong; empty where that is not known."""
+        """Returns the error of a metric; None if it is unknown."""
         return number_or_none(
             self.summary.get("tolerances", {}).get(
                 key if section == "metrics" else f"{section}.{key}"
@@ -43,7 +43,7 @@ class Run(results.Run):
 
     @cached_property
     def sections(self):
-        """The groups of metrics in summary.json, by their names: what columns.json documents."""
+        """Returns the groups of metrics in summary.json by name, as documented in columns.json."""
         file = self.folder / "columns.json"
         documented = (
             {entry["name"] for entry in results.read_json(file).get("summary.json", ())}
@@ -59,7 +59,7 @@ class Run(results.Run):
 
 
 def load_runs(directory: Path, but=None):
-    """Those below a directory, without its folder `but`."""
+    """Returns the runs below a directory, except in the folder `but`."""
     paths = [
         file.parent.relative_to(directory).as_posix()
         for file in sorted(directory.rglob(results.SUMMARY))
@@ -68,7 +68,7 @@ def load_runs(directory: Path, but=None):
 
 
 def load_run(directory, path):
-    """The run of one directory, which is known as `path`."""
+    """Returns the run in a directory, under the name `path`."""
     run = results.load_run(directory, Run)
     for key in ("metrics", "provenance", "targets", "tolerances"):
         member(run.summary, key, dict, directory / results.SUMMARY)
@@ -82,10 +82,10 @@ def plugin_text(run):
 
 
 def provenance_of(runs):
-    """Distinct builds and machines, with the number of their runs."""
+    """Returns distinct builds and machines, with the number of their runs."""
     found = {}
     for run in runs:
-        # The scenario and a plugin's law do not make another build.
+        # A build does not depend on the scenario or on a plugin's law.
         build = {
             k: v
             for k, v in (run.summary.get("provenance") or {}).items()

@@ -62,7 +62,8 @@ std::pair<Vec3, Vec3> runge_kutta(const Vec3& p, const Vec3& v1, const Vec3& for
   return {p + (v1 + 2.0 * v2 + 2.0 * v3 + v4) * (h / 6.0), v1 + (a1 + 2.0 * a2 + 2.0 * a3 + a4) * (h / 6.0)};
 }
 
-/// The classical Runge-Kutta method of order 4, with the axis at t, t + dt/2 and t + dt. Reference for smooth
+/// The classical Runge-Kutta method of order 4, which evaluates the force at t, t + dt/2 and t + dt with the
+/// tool axis of that time. Reference for smooth
 /// forces. Contacts that begin or end within a step reduce its order to 1, and so does the held force f_in.
 ///
 /// Stable on an undamped spring while K dt^2 / M < 8. Each step then loses the fraction (K dt^2 / M)^3 / 72 of

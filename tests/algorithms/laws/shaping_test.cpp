@@ -239,10 +239,11 @@ TEST(MergedShaping, IsOptimalForTheTensorsOfItsGroups) {
     const double rounding = 4 * kEps * static_cast<double>(given + 8);
     ASSERT_LE((force.S - S).norm(), rounding * (1 + S.norm())) << family;
     ASSERT_LE((force.spring - dense.spring(kK, c)).norm(), rounding * kK * 0.001 * 3) << family;  // sum c <= 3
-    // The bound of exact_shaping, whose proof needs tensors of trace 1 only; the optimality of a tensor is 1e-14.
+    // The bound of exact_shaping. Its proof only requires that each tensor has trace 1. The solver satisfies the
+    // optimality condition to 1e-14.
     ASSERT_GE(S.trace() + 1e-12, S.squaredNorm()) << family;
     ASSERT_LE(lambda_max(S), (1 + std::sqrt(3.0)) / 2 + 1e-12) << family;
-    bool same_weight = true;  // in the same direction
+    bool same_weight = true;  // same weight for contacts with the same gradient
     for (Eigen::Index i = 0; i < c.size(); ++i) {
       double ratios = 0.0, members = 0.0;
       for (Eigen::Index j = 0; j < c.size(); ++j) {

@@ -15,14 +15,15 @@
 #include "sim/mesh/marching_cubes.hpp"
 #include "sim/tool/cylinder.hpp"
 
-// Predictions about the force of a 6-DOF device as reference for the force of a 3-DOF device, each with its closed
-// form. Symbols are those of algorithms/six_dof: K_t and K_r of the coupling, K_h and K_phi of the hand, K' and K_r' of
-// both in series, c from the force point to the grip, l from the force point to the contact, both towards the tip.
+// Predictions about the force of a 6-DOF device, used as reference for the force of a 3-DOF device, each with its
+// closed form. Symbols as in algorithms/six_dof: K_t and K_r are the translational and rotational stiffness of the
+// coupling, K_h and K_phi those of the hand, K' and K_r' the stiffness of both in series. c is the distance from the
+// force point to the grip, l the distance from the force point to the contact, both positive towards the tip.
 namespace hapbench::six_dof {
 namespace {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
-/// A coupling that does not turn, against the 0.2 N m/rad of a hand: K_r' is K_phi to 2e-5.
+/// Rotational stiffness of a nearly rigid coupling [N m/rad]. With a hand of 0.2 N m/rad, K_r' equals K_phi to 2e-5.
 constexpr double kRigid = 1e4;
 constexpr double kRadius = 0.0005, kLength = 0.01;
 
@@ -38,7 +39,8 @@ RenderingConfig proxy(double stiffness, double rotation) {
   return config;
 }
 
-/// An upright drill whose intent is tilted about +y, so that its tip moves towards -x, and displaced.
+/// Returns the intent of a hand that tilts an upright drill about +y, so that its tip moves towards -x, and displaces
+/// it.
 Intent intent_of(const HandAndCoupling& springs, const Vec3& tip, double tilt, double pivot = 0.0) {
   Intent intent;
   intent.orientation = turn_by({0.0, tilt, 0.0});
@@ -48,8 +50,8 @@ Intent intent_of(const HandAndCoupling& springs, const Vec3& tip, double tilt, d
 }
 
 /// A contact that touches the side of an upright drill from -x, at the distance `lever` from the force point towards
-/// the tip, and a press of both devices against it. It has two points at 45 degrees to either side: a drill on one
-/// point slides off it sideways when the force exceeds K r, 1 N.
+/// the tip, and the displacement by which both devices press against it. The contact consists of two points at +-45
+/// degrees. On a single point, the drill would slide off sideways when the force exceeds K r = 1 N.
 struct OneContact {
   explicit OneContact(const HandAndCoupling& s, double lever)
       : springs(s), tool(kRadius, kLength, Tip::flat), shell(notch(s.force_point - lever), 0.0) {}
@@ -58,8 +60,8 @@ struct OneContact {
     return {{{-kRadius * s, -kRadius * s, height}, {s, s, 0.0}}, {{-kRadius * s, kRadius * s, height}, {s, -s, 0.0}}};
   }
 
-  /// Presses in two hundred steps. The press is short, so that turns stay below 1e-4 rad and the closed forms, which
-  /// are linear, hold to that fraction.
+  /// Presses in two hundred steps. The displacement is so small that rotations stay below 1e-4 rad, and the linear
+  /// closed forms are accurate to this fraction.
   template <class Device>
   Vec3 pressed(Device& device) const {
     for (int k = -10; k <= 190; ++k) device.follow(intent_of(springs, {-1e-6 / 190 * k, 0.0, 0.0}, 0.0));
@@ -73,7 +75,7 @@ struct OneContact {
     ThreeDofDevice device(shell, tool, springs, config, 0.0005);
     return pressed(device).x();
   }
-  /// Compliance against the press, of the 6-DOF device and of a proxy with rotational stiffness k.
+  /// Compliance [m/N] of the 6-DOF device, and of a proxy with the rotational stiffness k.
   double compliance() const {
     const double l = lever(), c = springs.grip;
     return 1.0 / series() + (l - c) * (l - c) / springs.hand_rotation + l * l / springs.coupling_rotation;
@@ -96,7 +98,8 @@ constexpr HandAndCoupling kSprings = {.coupling = 2000.0,
                                       .hand_rotation = 0.2,
                                       .force_point = 0.035,
                                       .grip = 0.0};
-/// The turn, 1e-4 rad, by which the normal and the lever of the one contact differ from those of the closed forms.
+/// Relative error of the closed forms: they neglect the rotation of 1e-4 rad, which changes the normal and the lever of
+/// the contact.
 constexpr double kLinear = 1e-4;
 
 HandAndCoupling with(HandAndCoupling springs, const std::function<void(HandAndCoupling&)>& change) {
@@ -104,18 +107,18 @@ HandAndCoupling with(HandAndCoupling springs, const std::function<void(HandAndCo
   return springs;
 }
 
-// ---- Rotations and energies.
+// ---- Rotations and energies
 
 TEST(Turns, AreTheInverseOfEachOtherAndHaveTheirDerivative) {
   const Vec3 v(0.3, -0.9, 0.5), w = 1e-6 * Vec3(0.2, 0.7, -0.4);
   const Eigen::Quaterniond from = turn_by({1.0, 0.2, -0.3});
   EXPECT_LE((turn_between(from, turned(from, v)) - v).norm(), 1e-14);
-  // The rest is of the second order in w: 1e-12.
+  // The remainder is of second order in w: 1e-12.
   EXPECT_LE(
       (turn_between(Eigen::Quaterniond::Identity(), turned(turn_by(v), w)) - v - rotation_vector_derivative(v) * w)
           .norm(),
       1e-12);
-  // Both forms of the derivative where they meet.
+  // The two formulas of the derivative agree at the angle at which the function changes from one to the other.
   const Vec3 small = 0.0099999 * v.normalized(), larger = 0.0100001 * v.normalized();
   EXPECT_LE((rotation_vector_derivative(small) - rotation_vector_derivative(larger)).norm(), 3e-7);
 }
@@ -127,7 +130,7 @@ TEST(PoseSprings, HaveTheDerivativesOfTheirEnergy) {
                                .grip = 0.012,
                                .grip_target = {0.001, 0.002, -0.01},
                                .target = turn_by({0.1, 0.3, 0.0})};
-  // The energy with the handle's turn at its minimum, by Newton steps of the model.
+  // Returns the energy, minimised over the rotation of the handle by Newton steps of the model.
   const auto energy_at = [&](CoupledPose pose) {
     for (int i = 0; i < 50; ++i) move(pose, energy_model(springs, pose), Vec6::Zero());
     return 0.5 * spring_force(springs, pose).squaredNorm() / springs.stiffness +
@@ -138,11 +141,12 @@ TEST(PoseSprings, HaveTheDerivativesOfTheirEnergy) {
   for (int i = 0; i < 50; ++i) move(pose, energy_model(springs, pose), Vec6::Zero());
   const EnergyModel model = energy_model(springs, pose);
   EXPECT_LE(model.handle_gradient.norm(), 1e-14);
-  EnergyModel still = model;  // moves the tool alone
+  EnergyModel still = model;  // model in which only the tool moves
   still.handle_turn.setZero();
   still.handle_follows.setZero();
   for (int k = 0; k < 6; ++k) {
-    // Central differences with a step h of the energy E of 1e-2 J: rounding 1e-18 / h, the rest h^2.
+    // Central differences of the energy E = 1e-2 J with a step h: the rounding error is 1e-18 / h, the truncation error
+    // of order h^2.
     const double h = k < 3 ? 1e-6 : 1e-4;
     const auto at = [&](double sign) {
       CoupledPose moved = pose;
@@ -156,7 +160,7 @@ TEST(PoseSprings, HaveTheDerivativesOfTheirEnergy) {
   }
 }
 
-// ---- Prediction 1: one contact with the lever l, grip at the force point: f / F = 1 + K' l^2 / K_r'.
+// ---- Prediction 1: with one contact at the lever l and the grip at the force point, f / F = 1 + K' l^2 / K_r'
 
 TEST(OneContact, IsTooStiffUnderAProxyThatDoesNotTurn) {
   for (const double rotation : {kRigid, 0.4}) {
@@ -177,7 +181,7 @@ TEST(OneContact, IsRightUnderAProxyThatDoesNotTurnIfTheForceActsThere) {
   EXPECT_NEAR(contact.with(law("proxy", 2000.0)) / contact.reference(), 1.0, kLinear);
 }
 
-// ---- Prediction 2: the matching stiffness, and the error of K_r' elsewhere.
+// ---- Prediction 2: the matching stiffness, and the error for other values of K_r'
 
 TEST(OneContact, HasTheForcesOfTheClosedForms) {
   for (const auto& [l, c, error] : {std::array{0.03, 0.01, -0.18}, {0.03, -0.01, 0.13}, {0.04, 0.02, -0.32}}) {
@@ -198,8 +202,8 @@ TEST(OneContact, HasTheForcesOfTheClosedForms) {
   }
 }
 
-// Where 1/K' < c (l - c) / K_phi, the force turns the tip into the wall: no equilibrium nearby. At the limit there is
-// one.
+// If 1/K' < c (l - c) / K_phi, the force rotates the tip into the wall, and there is no equilibrium near the start.
+// Tests one value of c for which the inequality holds and one for which it does not.
 TEST(OneContact, HasNoEquilibriumWhereTheForceTurnsTheTipIntoTheWall) {
   for (const auto& [c, stable] : {std::pair{0.015, false}, {0.008, true}}) {
     const OneContact contact(with(kSprings,
@@ -214,16 +218,17 @@ TEST(OneContact, HasNoEquilibriumWhereTheForceTurnsTheTipIntoTheWall) {
     for (int k = -1; k <= 20; ++k) rest = device.follow(intent_of(contact.springs, {-1e-5 * k, 0.0, 0.0}, 0.0));
     const double force = device.handle().force.x();
     const double expected = 2e-4 / contact.compliance_of_proxy(kInfinite);
+    // The drill rotates by 0.02 rad. The compliance is a difference, which amplifies the resulting errors about ten
+    // times.
     if (stable)
-      EXPECT_NEAR(force, expected,
-                  0.05 * expected);  // turns of 0.02 rad, which act ten times on the difference of compliances
+      EXPECT_NEAR(force, expected, 0.05 * expected);
     else
-      // A stationary pose of the wrong sign of the force is none: the wall would pull.
+      // A stationary pose with the opposite sign of the force is no equilibrium, because the wall would pull.
       EXPECT_TRUE(rest > kBalanced || force > 0.5) << "far away, or nowhere";
   }
 }
 
-// Grip at the force point: the proxy with K_r' renders the force of the 6-DOF device.
+// With the grip at the force point, the proxy with the stiffness K_r' renders the force of the 6-DOF device.
 
 struct Path {
   std::vector<SurfacePoint> points;
@@ -251,7 +256,7 @@ class GripAtTheForcePoint : public testing::TestWithParam<int> {
                   intent.grip = Vec3(1e-5 * t, 0.002, 7.5e-4 - 1e-3 * t) + (s.grip - s.force_point) * axis;
                   return intent;
                 }};
-      case 1: {  // task 2: a drill in a drilled hole of 504 points near it
+      case 1: {  // task 2: a drill in a hole, near 504 of its points
         BlockWithHole block;
         block.size = {0.004, 0.004, 0.006};
         const IsoSurface surface = marching_cubes(density_field(block, 1e-4, Density::signed_distance));
@@ -291,7 +296,7 @@ TEST_P(GripAtTheForcePoint, TheMatchedProxyRendersTheForceOfTheSixDofDevice) {
       force = std::max(force, reference.handle().force.norm());
       turn = std::max(turn, turn_between(intent.orientation, reference.tool().orientation).norm());
     }
-    // The test would not fail without forces, or without a turn.
+    // Check that there are forces and rotations, because otherwise the comparison would not test anything.
     EXPECT_GT(force, 0.1);
     EXPECT_GT(turn, 1e-3);
     EXPECT_GT((stiff.handle().force - reference.handle().force).norm(), 1e-3);
@@ -299,10 +304,10 @@ TEST_P(GripAtTheForcePoint, TheMatchedProxyRendersTheForceOfTheSixDofDevice) {
 }
 INSTANTIATE_TEST_SUITE_P(Scenes, GripAtTheForcePoint, testing::Values(0, 1, 2));
 
-// ---- Predictions 3 and 4: a tight peg.
+// ---- Predictions 3 and 4: a tight peg
 
 TEST(TightPeg, HasNoForceButATorqueAndPenaltyLawsRenderAGhost) {
-  // Rings of points 1 nm away from the peg, which lets it tilt by 1e-6 rad.
+  // Rings of points at a distance of 1 nm from the peg, so that the peg can tilt by 1e-6 rad.
   std::vector<SurfacePoint> points;
   for (int ring = 0; ring <= 20; ++ring)
     for (int k = 0; k < 32; ++k) {
@@ -326,18 +331,20 @@ TEST(TightPeg, HasNoForceButATorqueAndPenaltyLawsRenderAGhost) {
       alpha = 5e-4 * k;
       const Intent intent = intent_of(springs, -pivot * Vec3(0.0, 0.0, -1.0) + Vec3(0.0, 0.0, -pivot), alpha, 0.0);
       Intent about = intent;
-      // The pivot stays on the axis, at the height `pivot` above the tip.
+      // The pivot is on the axis, at the height `pivot` above the tip.
       about.grip = Vec3(0.0, 0.0, pivot) + (pivot - a) * (about.orientation * Vec3(0.0, 0.0, -1.0));
       ASSERT_TRUE(reference.follow(about).solved) << k;
       shaping.follow(about);
     }
     const Vec3 force = reference.handle().force, torque = reference.handle().torque;
-    // The peg may tilt by 1e-6 rad, and rise: the axial force is K' a (1 - cos alpha) where nothing holds it.
+    // The peg may tilt by 1e-6 rad and may rise: the axial force is K' a (1 - cos alpha), because nothing holds the peg
+    // axially.
     const double free = 1e-6 * (series * a + rotation / a);
     EXPECT_NEAR(torque.norm(), rotation * alpha, 0.02 * rotation * alpha + 1e-6);
     if (pivot == a) {
       EXPECT_LE(force.norm(), free) << "F = 0 while T does not vanish";
-      // f = 0 has the error |F| = 0 and wins; the law has a ghost force.
+      // The law f = 0 has the smaller error |F| = 0, because the shaping law renders a force that the 6-DOF device does
+      // not have.
       EXPECT_GT(shaping.handle().force.norm(), 100 * free);
     } else {
       EXPECT_NEAR(std::hypot(force.x(), force.y()), series * a * std::sin(alpha), free);
@@ -345,11 +352,11 @@ TEST(TightPeg, HasNoForceButATorqueAndPenaltyLawsRenderAGhost) {
   }
 }
 
-// ---- Prediction 5: press 1 mm, turn 0.1 rad, release, turn back.
+// ---- Prediction 5: a cycle of pressing by 1 mm, rotating by 0.1 rad, releasing, and rotating back
 
 TEST(OneContact, CreatesEnergyUnderEveryStiffness) {
   const double l = 0.03, press = 1e-3, angle = 0.1;
-  // The hand does not yield: it leads the handle.
+  // A nearly rigid hand, so that the handle follows the intent.
   const HandAndCoupling rigid_hand = with(kSprings, [](auto& s) { s.hand = 1e8; });
   const OneContact contact(rigid_hand, l);
   for (const auto& [k, millijoules] : {std::pair{kInfinite, 6.0}, {0.4, 1.1}, {0.4 * 0.2 / 0.6, 0.41}}) {
@@ -360,7 +367,7 @@ TEST(OneContact, CreatesEnergyUnderEveryStiffness) {
       const double t = i / 100.0;
       const double pressed = t < 1 ? t : t < 2 ? 1 : t < 3 ? 3 - t : 0;
       const double turned = t < 1 ? 0 : t < 2 ? t - 1 : t < 3 ? 1 : 4 - t;
-      // About the force point, so that only the release is paid back.
+      // The hand rotates about the force point, so that the energy of the rotation is returned only during the release.
       const Intent intent = intent_of(rigid_hand, Vec3(-press * pressed, 0.0, rigid_hand.force_point), angle * turned,
                                       rigid_hand.force_point);
       ASSERT_LE(device.follow(intent), kBalanced) << k << ' ' << i;
@@ -369,16 +376,16 @@ TEST(OneContact, CreatesEnergyUnderEveryStiffness) {
       last_force = handle.force;
       last_position = handle.position;
     }
-    // The turn adds l sin(0.1) to the depth of 1 mm, and the release gives it back over 1 mm. The closed form takes the
-    // lever and the normal of the upright drill: 1 - cos 0.1 is 0.5 %, sin 0.1 of the radius over l 0.2 %, and the work
-    // of the deeper contact's normal, which turns by 0.1 rad, 1 %.
+    // The rotation increases the depth of 1 mm by l sin(0.1), and the release returns this depth over 1 mm. The closed
+    // form uses lever and normal of the upright drill. Its errors are: 1 - cos 0.1 = 0.5 %, sin 0.1 of the radius over
+    // l = 0.2 %, and 1 % for the work along the normal, which rotates by 0.1 rad.
     const double stiffness = 1.0 / (1.0 / 2000.0 + l * l / k);
     EXPECT_NEAR(1e3 * work, 1e3 * stiffness * press * l * std::sin(angle), 0.03 * millijoules);
     EXPECT_NEAR(1e3 * work, millijoules, 0.05 * millijoules) << "as published, with two digits";
   }
 }
 
-// ---- Prediction 6: a hand that is not as it was tuned for.
+// ---- Prediction 6: a hand that differs from the hand for which the proxy was matched
 
 TEST(OneContact, IsWrongUnderAnotherHand) {
   for (const auto& [hand, ratio] : {std::pair{0.05, 2.93}, {1.0, 0.49}}) {
@@ -394,10 +401,11 @@ TEST(OneContact, IsWrongUnderAnotherHand) {
   }
 }
 
-// Springs in series are exact for isotropic stiffness and any turn. With different stiffness about different axes they
-// are not: half a radian makes some per mille.
+// The formula of springs in series is exact for isotropic stiffness and any rotation. It is not exact for different
+// stiffness about different axes: at half a radian, the error is some tenths of a per cent.
 TEST(SpringsInSeries, AreExactForIsotropicStiffnessOnly) {
-  // Smallest energy of two rotational springs A and B in series over a turn v, by descent of the turn between.
+  // Returns the smallest energy of two rotational springs A and B in series at a total rotation v. Gradient descent
+  // finds the rotation between the springs.
   const auto smallest = [](const Vec3& A, const Vec3& B, const Vec3& v) {
     Vec3 w = 0.5 * v;
     const auto energy = [&](const Vec3& u) {
@@ -431,9 +439,10 @@ TEST(SpringsInSeries, AreExactForIsotropicStiffnessOnly) {
   EXPECT_LT(error, 2e-2);
 }
 
-// ---- The reference.
+// ---- The reference device
 
-// The energy of a device with torque is a potential: a closed path without jumps creates none, with a grip anywhere.
+// The energy of a device with torque is a potential. A closed path without jumps therefore creates no energy, wherever
+// the grip is.
 TEST(SixDofDevice, CreatesNoEnergyOnAClosedPath) {
   const PointShell shell(surface_points(Plane{.size = 0.004}), 0.0);
   const Cylinder tool(kRadius, kLength, Tip::flat);
@@ -457,7 +466,7 @@ TEST(SixDofDevice, CreatesNoEnergyOnAClosedPath) {
       last = handle;
     }
     EXPECT_GT(moved, 1e-6);
-    // The trapezoidal rule on 400 steps of a path of curvature 1: (2 pi / 400)^2 / 12 of the work, 2e-5.
+    // Error of the trapezoidal rule with 400 steps on a path of curvature 1: (2 pi / 400)^2 / 12 of the work, 2e-5.
     EXPECT_LE(std::abs(work), 1e-3 * moved);
   }
 }
@@ -486,8 +495,8 @@ TEST(SixDofDevice, AllocatesNothingAndRepeatsItself) {
   EXPECT_EQ(force(), first);
 }
 
-// Presses an upright drill 1.5 radii against points at the height of its force point, so that it does not turn. Returns
-// the tool's position at the end.
+// Presses an upright drill by 1.5 radii against points at the height of its force point, so that the drill does not
+// rotate. Returns the tool's position at the end.
 Vec3 pressed_against(const std::vector<SurfacePoint>& points) {
   const PointShell shell(points, 0.0);
   const Cylinder tool(kRadius, kLength, Tip::flat);
@@ -498,15 +507,17 @@ Vec3 pressed_against(const std::vector<SurfacePoint>& points) {
   return device.tool().position;
 }
 
-// On one point, the drill slides off sideways when the force exceeds K' r: from there on, the pose straight above the
-// point is a saddle. The drill goes around to the other side of the point, where the press still holds it.
+// Against one point, the drill slides off sideways when the force exceeds K' r: the pose straight above the point is
+// then a saddle of the energy. The drill moves around the point to its other side, where the point no longer holds the
+// press.
 TEST(SixDofDevice, LeavesASaddle) {
   const Vec3 position = pressed_against({{{-kRadius, 0.0, 0.005}, {1.0, 0.0, 0.0}}});
   EXPECT_LE((position - Vec3(-2 * kRadius, 0.0, 0.005)).norm(), 1e-9);
 }
 
-// Two points 1 um apart are a notch. The drill rests in it at any force, because each point blocks one of both ways,
-// although their normals differ by 2e-3 rad only and the energy descends beyond a fraction of a micrometre.
+// Two points 1 um apart form a notch. The drill rests in the notch at any force, because each point blocks the motion
+// in one direction. Their normals differ by only 2e-3 rad, and the energy decreases again beyond a fraction of a
+// micrometre.
 TEST(SixDofDevice, RestsInAShallowNotch) {
   const double angle = 1e-3;
   std::vector<SurfacePoint> points;
@@ -517,7 +528,7 @@ TEST(SixDofDevice, RestsInAShallowNotch) {
   EXPECT_LE((pressed_against(points) - Vec3(0.0, 0.0, 0.005)).norm(), 1e-9);
 }
 
-// No room: a slot that is narrower than the tool.
+// A slot that is narrower than the tool: no pose satisfies all constraints.
 TEST(SixDofDevice, SaysThatThereIsNoRoom) {
   const PointShell shell(surface_points(Slot{.gap = 0.0009, .depth = 0.004, .length = 0.004}), 0.0);
   const Cylinder tool(kRadius, kLength, Tip::flat);

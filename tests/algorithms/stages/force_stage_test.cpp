@@ -31,7 +31,7 @@ class Foreseen {
     energy -= given.dot(velocity) * kDt;
     return given;
   }
-  /// Rounding error of this number of steps.
+  /// Rounding error of the steps so far.
   double rounding() const { return 20 * kEpsilon * static_cast<double>(rows_) * turnover; }
 
   double energy = 0.0, turnover = 0.0;

@@ -31,7 +31,7 @@ class Watch final : public Observer {
   double least = std::numeric_limits<double>::infinity();
   double turnover = 0.0;
   double force_max = 0.0;
-  /// Rounding error of one step, in the scale s, the force and its work.
+  /// Rounding error of one step, for the scale s, the force and its work.
   double rounding() const { return 50 * kEpsilon * turnover; }
 
  private:

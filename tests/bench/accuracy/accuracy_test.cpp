@@ -38,7 +38,7 @@ TEST(Integrators, ConvergeWithTheirOrdersToTheExactSolution) {
     double step = NAN, error = NAN, order = NAN;
     for (const Setting& setting : those(panel, "integrators/" + std::string(integrator->info.name) + " ")) {
       const accuracy::Errors errors = setting.errors();
-      // A hundred times the rounding error with which rk4 ends.
+      // Stop at a hundred times the final rounding error of rk4.
       if (errors["error_rms_m"] < 5e-12) break;
       order = std::log(error / errors["error_rms_m"]) / std::log(step / errors["step_s"]);
       step = errors["step_s"];

@@ -62,7 +62,7 @@ Exact exact_solution(const Scenario& scenario) {
   return exact;
 }
 
-/// The mechanical energy of a run on springs of constant S, without the contacts: M v^2 / 2 + K p S p / 2.
+/// The mechanical energy of a run on springs with constant S, without contact forces: M v^2 / 2 + K p S p / 2.
 class SpringEnergy final : public Observer {
  public:
   SpringEnergy(const RenderingConfig& rendering, const Mat3& S) : K_(rendering.stiffness), M_(rendering.mass), S_(S) {}
@@ -73,7 +73,7 @@ class SpringEnergy final : public Observer {
     last_ = energy;
     largest_ = std::max(largest_, std::abs(energy - first_));
   }
-  /// Return (E_end - E_0) / E_0 and the largest |E - E_0| / E_0.
+  /// Returns (E_end - E_0) / E_0 and the largest |E - E_0| / E_0.
   double gain() const { return (last_ - first_) / first_; }
   double swing() const { return largest_ / first_; }
 

@@ -7,8 +7,9 @@
 
 #include "algorithms/module/hapbench_module.h"
 
-/// Collision libraries that the benchmark compares with our search. Eigen is not used: the libraries are compiled with
-/// their own flags, and a type whose layout depends on flags must not pass between them and the benchmark.
+/// Collision libraries that the benchmark compares with hapbench's search. Eigen is not used: the libraries are
+/// compiled with their own flags, and a type whose layout depends on flags must not pass between them and the
+/// benchmark.
 namespace hapbench::bench {
 
 struct PeerContact {

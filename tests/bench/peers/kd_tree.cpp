@@ -13,7 +13,7 @@
 #include "tests/bench/peers/contact_library.hpp"
 
 /// CGAL: a k-d tree over the points of the shell. A query takes the points in the box around the drill and compares
-/// each point with the drill. Its result is the same as the result of our search.
+/// each point with the drill. Its result equals the result of hapbench's search.
 namespace hapbench::bench {
 namespace {
 

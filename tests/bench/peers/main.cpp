@@ -13,8 +13,8 @@
 #include "tests/bench/benchmark_program.hpp"
 #include "tests/bench/peers/contact_library.hpp"
 
-/// Times our search and other libraries at the same poses of the same scenes, as peers/<library>/<task>. Libraries that
-/// are not installed are omitted.
+/// Times hapbench's search and other libraries at the same poses of the same scenes, as peers/<library>/<task>.
+/// Libraries that are not installed are omitted.
 namespace hapbench::bench {
 namespace {
 
@@ -74,7 +74,7 @@ std::unique_ptr<Peer> made(const Library& library, const std::string& task) {
                        .tool_length = drill.length()});
 }
 
-/// The results of our search and depths at the poses of the queries.
+/// The results of hapbench's search and depths at the poses of the queries.
 struct Ours {
   std::vector<HapbenchPose> poses;
   std::vector<std::vector<std::uint32_t>> points;
@@ -100,8 +100,8 @@ const Ours& ours(const std::string& task) {
   return known.emplace(task, std::move(answers)).first->second;
 }
 
-/// Compares the results of a library with ours before timing. The results must be equal if the library solves the same
-/// problem. Otherwise reports how often both find a contact, and the depths.
+/// Before timing, compares the results of a library with the results of hapbench. They must be equal if the library
+/// solves the same problem. Otherwise reports how often both find a contact, and the depths.
 void time_library(benchmark::State& state, const Library& library, const std::string& task) {
   const Ours& known = ours(task);
   const std::unique_ptr<Peer> peer = made(library, task);

@@ -124,7 +124,7 @@ const NamedWay kWays[] = {
 
 class ThroughAPlate : public testing::TestWithParam<std::size_t> {};
 
-/// Plates from a twentieth of the tool's radius to three radii thick.
+/// Tests plates from a twentieth of the tool's radius to three radii thick.
 TEST_P(ThroughAPlate, OnEveryWay) {
   const NamedTool tool = tools()[GetParam()];
   constexpr double kShares[] = {0.05, 0.1, 0.3, 0.6, 1.0, 1.8, 3.0};

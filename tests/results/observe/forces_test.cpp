@@ -207,7 +207,7 @@ TEST(ForceFidelity, FindsNoLagBeyondItsReach) {
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
-/// Keeps the largest exchanged energy, relative to which rounding is measured.
+/// Records the largest exchanged energy, which is the scale of rounding errors.
 class Turnover final : public Observer {
  public:
   explicit Turnover(const EnergyLedger& ledger) : ledger_(&ledger) {}

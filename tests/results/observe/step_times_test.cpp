@@ -52,7 +52,7 @@ std::vector<std::uint64_t> samples(std::uint64_t steps, milliseconds step, milli
 TEST(StepSampler, LeavesOutWhatObserversTake) {
   const std::vector<std::uint64_t> times = samples(3, milliseconds(0), milliseconds(5));
   ASSERT_EQ(times.size(), 2u);  // no step follows the last step
-  // Another task of the machine can only make a sample longer, and not twice by chance.
+  // Other processes of the machine can only make a sample longer, and hardly twice in succession.
   EXPECT_LT(*std::min_element(times.begin(), times.end()), 5'000'000u);
 }
 
@@ -71,7 +71,7 @@ TEST(StepSampler, TakesAFewOfManySteps) {
 
 using Times = std::vector<std::uint64_t>;
 
-/// Returns the numbers 1 … n in a scrambled order: 7919 is a prime that divides none of the n used here.
+/// Returns the numbers 1 … n in a scrambled order: 7919 is a prime that divides none of the values of n in these tests.
 Times scrambled(std::uint64_t n) {
   Times times(n);
   for (std::uint64_t i = 0; i < n; ++i) times[i] = 1 + i * 7919 % n;

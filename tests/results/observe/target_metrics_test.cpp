@@ -61,7 +61,7 @@ double depth_at(const ToolPose& pose, double angle, double height) {
 /// by ternary search.
 double deepest_at(const ToolPose& pose, double angle) {
   constexpr int kHeights = 400;
-  constexpr double kApart = 0.006 / kHeights;  // the rest of the tool is in the air
+  constexpr double kApart = 0.006 / kHeights;  // distance at which the rest of the tool is in free air [m]
   double best = 0.0;
   for (int h = 0; h < kHeights; ++h) {
     if (depth_at(pose, angle, h * kApart) > depth_at(pose, angle, best)) best = h * kApart;

@@ -30,7 +30,8 @@ using test::lines_of;
 using test::read_file;
 using test::TemporaryDirectory;
 
-// Tests what the known answers do not test of a run's tables; the known answers test the numbers of every column.
+// Tests properties of a run's tables that the known answers do not test; the known answers test the numbers of every
+// column.
 
 /// Returns the lines of the table that a recorder writes for these steps, without the header.
 std::vector<std::string> recorded(const RowSource& source, const std::vector<StepRecord>& rows,

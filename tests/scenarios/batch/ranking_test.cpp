@@ -30,7 +30,8 @@ Ranking rank_comparison(const Values& values, Better better = Better::less, std:
   return league;
 }
 
-/// The proxy renders by the constraints of rigid contact: its fidelity has no rank, and moves no other law.
+/// The proxy renders by the constraints of rigid contact, which also define the reference. Its fidelity therefore has
+/// no rank and does not change the ranks of other laws.
 TEST(Ranking, DoesNotRankTheFidelityOfTheReferencesOwnConstraints) {
   for (const bool is_rigid : {true, false}) {
     Ranking league{{"scene"},

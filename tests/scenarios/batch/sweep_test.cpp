@@ -79,7 +79,7 @@ TEST(SweepPlan, HasExactlyTheMetricsOfItsRuns) {
   scenarios.push_back({"with_ideal_trajectory", block});
   std::set<std::string> all;
   for (const auto& [name, json] : scenarios) {
-    // Tasks that take a long time.
+    // Limit the length of tasks that take a long time.
     const bool has_targets = json.contains("hand") && json["hand"]["type"] == "tracking";
     const SweepPlan plan = plan_of(json, {has_targets ? "seed=1" : "time.steps=2"});
     std::vector<std::string> names;

@@ -112,7 +112,7 @@ TEST_F(TableFiles, OnAFullDiskAreAnErrorThatNamesThem) {
   } catch (const IoError& error) {
     EXPECT_NE(std::string(error.what()).find(part_.string()), std::string::npos) << error.what();
   }
-  EXPECT_EQ(added, 3u);  // 8 bytes of header and 63 bytes for each row
+  EXPECT_EQ(added, 3u);  // header of 8 bytes, and 63 bytes for each row
 }
 
 TEST_F(TableFiles, OfShardsAreJoinedWhenAllAreThere) {

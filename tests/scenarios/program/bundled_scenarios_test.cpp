@@ -234,8 +234,8 @@ std::vector<std::string> shortened(const Scenario& scenario) {
   return arguments;
 }
 
-/// Returns the scenarios that are run in full: all scenarios. With AddressSanitizer, scenarios of 10^5 steps are left
-/// out, because they take minutes and their first steps find the same errors.
+/// Returns the scenarios that are run in full: all scenarios, except with AddressSanitizer. It leaves out scenarios of
+/// 10^5 steps, because they take minutes and their first steps find the same errors.
 std::vector<BundledScenario> scenarios_in_full() {
   std::vector<BundledScenario> scenarios = bundled_scenarios();
   constexpr std::int64_t kMostSanitizedSteps = 10'000;

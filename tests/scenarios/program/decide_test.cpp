@@ -209,11 +209,11 @@ TEST_F(ConvergeCommand, NamesTheCoarsestLevelThatIsEnough) {
   }
 }
 
-// The ledger of claims and their robustness that are committed, and the command that makes them.
+// Compares the committed ledger of claims and its robustness with the output of the command that creates them.
 
 const fs::path kReference = fs::path(HAPBENCH_SCENARIOS) / "../../results/reference";
 
-/// By id, without the claims whose findings hold times, and without the time that each took.
+/// Returns the claims by id, without the processor time of each claim, and without claims whose findings contain times.
 std::map<std::string, Json> repeatable_claims(const Json& ledger) {
   std::map<std::string, Json> claims;
   for (Json claim : ledger["claims"]) {
@@ -233,7 +233,7 @@ TEST(Ledger, HasFourPartsWithANumberInEveryRow) {
     ++rows;
     std::vector<std::string> cells;
     for (const std::string_view cell : parts_of(line, '|')) cells.emplace_back(cell);
-    if (cells.size() != 8) continue;  // of the table of revised rules
+    if (cells.size() != 8) continue;  // skips rows of the table of revised rules
     for (std::size_t i = 1; i < 7; ++i) EXPECT_GT(cells[i].size(), 2u) << line;
     EXPECT_NE(cells[4], " – ") << "no number: " << line;
   }
@@ -254,7 +254,7 @@ TEST(Ledger, OpensWithTheSentencesOfTheAbstract) {
   }
 }
 
-/// Compares what the program says of these claims with the ledger in the tree.
+/// Compares the program's findings on these claims with the ledger in the source tree.
 void expect_on_record(const Json& ledger, const std::vector<Claim>& claims) {
   const auto made = repeatable_claims(ledger),
              kept = repeatable_claims(Json::parse(test::read_file(kReference / "claims.json")));
@@ -266,8 +266,8 @@ void expect_on_record(const Json& ledger, const std::vector<Claim>& claims) {
   }
 }
 
-// The subjects of appendix D take four fifths of the time of all claims; their trajectories are on record in
-// numbers.txt.
+// The subjects of appendix D take four fifths of the time of all claims, so their claims are left out. numbers.txt
+// contains their trajectories.
 TEST(Ledger, OfClaimsWithoutSubjectsIsTheOneTheProgramMakes) {
   std::vector<Claim> claims = all_claims();
   std::erase_if(claims, [](const Claim& claim) { return claim.timing || claim.costly; });
@@ -289,7 +289,7 @@ TEST(WholeLedger, InTheTreeIsTheOneTheProgramMakes) {
              on_record = Json::parse(test::read_file(kReference / "claims.json"));
   ASSERT_EQ(ledger["claims"].size(), on_record["claims"].size());
   EXPECT_EQ(ledger["headline"], headline_of(ledger["claims"]));
-  // Claims about time have the verdict that the machine gives them.
+  // The verdict on a claim about time depends on the machine.
   Json claims = ledger["claims"];
   for (std::size_t i = 0; i < claims.size(); ++i)
     if (claims[i]["timing"]) claims[i] = on_record["claims"][i];
@@ -297,7 +297,7 @@ TEST(WholeLedger, InTheTreeIsTheOneTheProgramMakes) {
   expect_on_record(ledger, all_claims());
 }
 
-// It would replace the ledger of all claims.
+// A ledger of single claims would replace the ledger of all claims, so it is written only if --out names a folder.
 TEST(Ledger, IsNotWrittenOfSingleClaimsUnlessItIsSaidWhere) {
   const test::TemporaryDirectory directory;
   const std::string out = (directory / "out").string(), ledger = (directory / "b3.json").string();
@@ -315,7 +315,7 @@ TEST(Ledger, IsNotWrittenOfSingleClaimsUnlessItIsSaidWhere) {
 
 using Verdicts = std::map<std::string, std::string>;
 
-/// The ledger's verdicts by claim, without those on claims about times and those that take long to judge.
+/// Returns the ledger's verdicts by claim, without claims about times and claims that take long to judge.
 Verdicts verdicts_on_record() {
   Verdicts verdicts;
   const Json ledger = Json::parse(test::read_file(kReference / "claims.json"));
@@ -326,7 +326,7 @@ Verdicts verdicts_on_record() {
   return verdicts;
 }
 
-/// The verdicts on these claims under an assumption set.
+/// Returns the verdicts on these claims with an assumption set.
 Verdicts verdicts_under(const Assumptions& assumptions, AssumptionSet set) {
   std::vector<Claim> claims = all_claims();
   std::erase_if(claims, [](const Claim& claim) { return claim.timing || claim.costly || claim.judge == nullptr; });
@@ -339,7 +339,7 @@ Verdicts verdicts_under(const Assumptions& assumptions, AssumptionSet set) {
   return verdicts;
 }
 
-// Takes a minute of a core.
+// Takes a minute on one core.
 TEST(RobustnessOnRecord, HasTheVerdictsThatTheProgramMakesWithAnotherAssumption) {
   const Json record = read_json(kReference / "sensitivity.json");
   if (record.at("claims").empty()) GTEST_SKIP() << "hapbench reproduce --sensitivity has not made the record yet";
@@ -360,7 +360,7 @@ TEST(RobustnessOnRecord, HasTheVerdictsThatTheProgramMakesWithAnotherAssumption)
   EXPECT_GT(compared, 10u);
 }
 
-/// An assumption set gets its verdicts as the ledger does.
+/// The ledger's own values, given as an assumption set, must give the verdicts of the ledger.
 TEST(RobustnessOnRecord, OfTheAssumptionsOnRecordIsTheLedger) {
   const Assumptions assumptions(kReference / "assumptions.json");
   Verdicts on_record = verdicts_on_record();
@@ -369,7 +369,7 @@ TEST(RobustnessOnRecord, OfTheAssumptionsOnRecordIsTheLedger) {
   EXPECT_EQ(verdicts_under(assumptions, {assumptions.recorded_values()}), on_record);
 }
 
-/// The ledger has the record: a claim with all its cases is not "not sampled".
+/// The ledger contains the record: a claim with all its cases is not "not sampled".
 TEST(RobustnessOnRecord, IsInTheLedger) {
   const SensitivityRecord record(kReference / "sensitivity.json");
   const Json ledger = read_json(kReference / "claims.json");

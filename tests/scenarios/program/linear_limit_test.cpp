@@ -1,5 +1,5 @@
-// run, limit and tune answer the question "what is the linear limit of K?" alike, also where the slope of the contact
-// is not K times the stiffness ratio: on laws without weights, and under a hand that is sampled with the device.
+// `run`, `limit` and `tune` must compute the same linear limit of K, also if the slope of the contact is not K times
+// the stiffness ratio: for laws without weights, and with a hand that is sampled with the device.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -64,8 +64,8 @@ TEST_F(LinearLimitOfCommands, IsOneInRunAndLimit) {
         for (const double factor : {1.2, 1.6}) {
           const auto edge = edge_at(scene, factor * *linear);
           if (!edge) continue;  // the run does not vibrate
-          // Both find the limit to 1e-7 from derivatives that are known to 1e-7; a nonlinear contact has another
-          // slope at another equilibrium, and `edge` has six digits.
+          // Both compute the limit to 1e-7 from derivatives with an error of 1e-7. A nonlinear contact has another
+          // slope at another equilibrium, and `edge` is printed with six digits.
           EXPECT_NEAR(*edge, factor, 1e-4 * factor) << law << " " << device << " " << tip;
           ++compared;
         }

@@ -1,4 +1,4 @@
-// The lines with which `tune` opens its scenario in a haptic loop, at other scales of the mount.
+// The lines by which `tune` opens its scenario in a haptic loop, for other scales of the mount.
 
 #include "scenarios/program/tune/loop_lines.hpp"
 
@@ -50,7 +50,7 @@ TEST(LoopLines, GiveTheForceOfScaleOneAtEveryScale) {
     const std::vector<std::string> overrides = overrides_for_scale(Json::parse(kScene), scale);
     EXPECT_EQ(overrides.size(), 4u);  // stiffness, mass and both coefficients of friction
     const std::vector<double> scaled = forces(scale, overrides), plain = forces(scale, {});
-    // Some hundred roundings of numbers known to 1e-16, whose sums are as large as the largest force.
+    // Some hundred rounding errors of 1e-16 each, relative to the largest force.
     for (std::size_t i = 0; i < known.size(); ++i)
       EXPECT_NEAR(scaled[i], known[i], 1e-12 * largest) << scale << " " << i;
     EXPECT_NE(plain, known);

@@ -1,4 +1,4 @@
-// run --replay and compare --replay: the log of a haptic loop goes through the function that rendered it.
+// `run --replay` and `compare --replay`: the function that rendered the log of a haptic loop renders it again.
 
 #include <gtest/gtest.h>
 
@@ -29,8 +29,8 @@ const char* const kScene = R"({
   "rendering": {"algorithm": "shaped_stiffness", "stiffness_N_per_m": 2000, "damping_ratio": 0.2}
 })";
 
-/// Returns a log: the handle moves into the hole and around its wall, with a gap of 50 ms and a fault, and out and in
-/// again.
+/// Returns a log in which the handle moves into the hole, around its wall, out and in again, with a gap of 50 ms and a
+/// fault.
 std::string recorded(const std::string& scenario) {
   HapbenchMount mount = HAPBENCH_MOUNT_INIT;
   mount.max_force = 5.0;

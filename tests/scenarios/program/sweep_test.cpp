@@ -87,7 +87,7 @@ TEST_F(SweepCommand, CountsRunsThatFailAndEndsThemEarly) {
   EXPECT_EQ(cell(1, "force_max_N"), "");
   EXPECT_EQ(cell(3, "ended_at_s"), "");
   EXPECT_NE(cell(3, "force_max_N"), "");
-  // In full, the same outcomes, and numbers.
+  // With --full, the outcomes are the same, and failed runs also have numbers.
   ASSERT_EQ(sweep_of("full", {"--full"}).status, 0);
   const auto full = lines_of(table("full"));
   for (std::size_t row = 1; row < 4; ++row) EXPECT_EQ(cells_of(full[row])[2], cells_of(lines[row])[2]);

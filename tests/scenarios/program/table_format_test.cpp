@@ -56,7 +56,7 @@ TEST(TableFormat, Latex) {
             "\\end{tabular}\n");
 }
 
-/// Each special character stands escaped, and the text around it stays.
+/// Special characters are escaped, and the surrounding text is unchanged.
 TEST(TableFormat, EscapesEverySpecialCharacter) {
   const Table table{{{"name", false}}, {{"a\\b{c}_d%e&f#g$h~i^j<k>l|m\"n--o\np"}}, "50 % of\nit"};
   EXPECT_NE(formatted(table, "latex")

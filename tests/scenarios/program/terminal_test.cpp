@@ -180,7 +180,7 @@ TEST(Installation, HasItsScenariosBesideTheProgramAndMissesThemAloud) {
 TEST(DescribeCommand, ExplainsEveryNameThereIs) {
   std::set<std::string> listed;
   for (const Json& entry : hapbench_in_process({"describe", "--json"}).json()) {
-    EXPECT_NE(entry["summary"], "") << entry;  // an entry without a summary would be listed without an explanation
+    EXPECT_NE(entry["summary"], "") << entry;  // a list would print an entry without a summary without any explanation
     listed.insert(entry["name"].get<std::string>());
   }
   std::vector<std::string> models;

@@ -41,10 +41,10 @@ TEST(OneSpringDamper, FollowsEquationA2ToRounding) {
   const auto rows = rows_of(bundled("single_spring", {"time.steps=2000", "initial.velocity_m_per_s=[0.5,0,0]"}));
   ASSERT_EQ(rows.size(), 2000u);
   State expected{1e-3, 0.5};
-  // In each step, both sides make a few roundings of the current state. With the modulus rho = sqrt(1 - B dt / M) =
-  // 0.83 of the eigenvalues, an error made k steps ago has grown to k rho^k of its size, at most 2. A factor of 4
-  // allows for powers of A that are larger than the powers of its eigenvalues. Together 8 * 2 * 4 units of the largest
-  // state.
+  // In each step, both sides make a few rounding errors relative to the current state. The eigenvalues have the modulus
+  // rho = sqrt(1 - B dt / M) = 0.83. After k steps, an error has grown by a factor of k rho^k, which is at most 2. A
+  // factor of 4 allows for powers of A that are larger than the powers of its eigenvalues. In total, the error is 8 * 2
+  // * 4 units in the last place of the largest state.
   const double x_tolerance = 64 * kEpsilon * 1e-3, v_tolerance = 64 * kEpsilon * 1e-3 / dt;
   for (std::size_t k = 0; k < rows.size(); ++k) {
     ASSERT_NEAR(rows[k].tool.pose.position.x(), expected.x, x_tolerance) << k;
@@ -282,7 +282,8 @@ TEST_P(ProxyOverAWholeRun, NeitherEntersTheShellNorGetsStifferThanOneSpringNorTa
   EXPECT_LE(points.most_passes, 10u);
 }
 
-/// The peg is 0.4 mm deep in both walls of a hole of the same width; the tilted peg fits nowhere.
+/// At the start, the peg penetrates both walls of a hole of the same width by 0.4 mm. A tilted peg does not fit into
+/// this hole.
 TEST(ProxyInATightHole, LeavesSlowly) {
   const PointsInProxy points = watch("peg_in_hole_2d_shaped_stiffness", 2'000);
   // A move is only nearly proportional to the depths.

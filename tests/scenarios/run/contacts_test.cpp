@@ -57,7 +57,7 @@ TEST(LinearContacts, OfAPlaneAreFreshForEveryAlgorithm) {
     overrides.insert(overrides.end(), pressed.begin(), pressed.end());
     const auto fresh = rows_of(bundled("poke_plane", pressed)), linear = rows_of(bundled("poke_plane", overrides));
     ASSERT_EQ(fresh.size(), linear.size());
-    // Does not hold for a model with a memory of the steps, nor for depths to the nearest side.
+    // False for depth models with a memory, and for depth models that measure to the nearest side.
     const bool depths_are_the_normals =
         algorithm.fixed_depth_model.empty() || algorithm.fixed_depth_model == "normal_projection";
     for (std::size_t k = 0; k < fresh.size(); ++k) {
@@ -195,8 +195,8 @@ TEST(ContactPlugin, SaysWhatItMisses) {
   EXPECT_NE(said(folder + "sphere.so", "3").find("config: got 3; allowed: an object"), std::string::npos);
 }
 
-// Skipped work must not change results: without skips, a run writes the same bytes, except the counts of work.
-// tests/scenarios/program/bundled_scenarios_test.cpp tests the bundled scenarios.
+// Tests that skipped work does not change results: without skips, a run writes the same bytes, except the work
+// counters. tests/scenarios/program/bundled_scenarios_test.cpp tests the bundled scenarios.
 
 /// Returns summary.json without the counts of work, as text, so that every digit is compared. Writes the counts to
 /// `work`.

@@ -40,11 +40,13 @@ void compare(const CheckedScenario& scene, std::map<Outcome, int>& early) {
 /// Every bundled scenario with its own gains, and with gains and forces that make the tool sink in, fly off and
 /// diverge.
 TEST(EarlyEnd, HasTheOutcomeOfTheFullRun) {
-  constexpr std::int64_t kMostSteps = 1500;  // also what ends before its failure must have the same outcome
+  // Runs that are cut off before their failure must also have the same outcome.
+  constexpr std::int64_t kMostSteps = 1500;
   std::map<Outcome, int> early;
   for (const auto& [name, group, file] : bundled_scenarios()) {
     const LoadedScenario own = load_scenario(file);
-    if (std::holds_alternative<TrackingHandFields>(own.scenario.hand)) continue;  // many trials, which never end early
+    // Many trials: such a run never ends early.
+    if (std::holds_alternative<TrackingHandFields>(own.scenario.hand)) continue;
     const std::string steps = "time.steps=" + std::to_string(std::min(kMostSteps, own.scenario.time.steps));
     const double K = own.scenario.rendering.stiffness;
     for (const double factor : {1.0, 0.01, 300.0}) {
@@ -97,7 +99,7 @@ TEST(EarlyEnd, LeavesOnlyIfNoHandBringsTheToolBack) {
     SCOPED_TRACE(patch);
     const Result run = ended(patch);
     EXPECT_EQ(run.end.outcome, run_scenario(above_plane(patch), {}, false).end.outcome);
-    // A tool that comes back may end otherwise, but it does not leave.
+    // A tool that returns may have another outcome, but it does not leave the surface.
     if (!early && run.end.ended_at) {
       EXPECT_EQ(run.end.outcome, Outcome::went_through);
     }

@@ -31,8 +31,8 @@ std::optional<FolderLock> try_lock(NewDirectories& directories, const fs::path& 
   }
 }
 
-/// Returns the number of files below a folder. Not counted: an empty parent that one process created and in which
-/// another process still had an empty folder when the first process ended.
+/// Returns the number of files below a folder. An empty parent folder is not counted: one process created it, and when
+/// this process ended, another process still had an empty folder in it.
 std::ptrdiff_t files_in(const fs::path& folder) {
   return std::count_if(fs::recursive_directory_iterator(folder), fs::recursive_directory_iterator(),
                        [](const fs::directory_entry& entry) { return entry.is_regular_file(); });
@@ -61,7 +61,8 @@ TEST(FolderLock, IsHeldByOneOfManyThreads) {
   EXPECT_EQ(files_in(directory.path()), 0) << "lock files are left";
 }
 
-/// Threads lock, write and unlock without a barrier: the lock file and the folder come and go under the others.
+/// Threads lock, write and unlock without a barrier, so that the lock file and the folder are repeatedly created and
+/// removed by other threads.
 TEST(FolderLock, ExcludesWhileItsFileIsRemoved) {
   const test::TemporaryDirectory directory;
   std::atomic<int> inside = 0, conflicts = 0, successes = 0;
@@ -99,7 +100,7 @@ int status_of(pid_t process) {
   return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
-/// The same for processes, which begin when the pipe closes. A process ends when the second pipe closes.
+/// The same test with processes. They start when the first pipe closes, and each ends when the second pipe closes.
 TEST(FolderLock, IsHeldByOneOfManyProcesses) {
   constexpr int kProcesses = 4, kRounds = 50;
   const test::TemporaryDirectory directory;

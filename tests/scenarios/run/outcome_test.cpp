@@ -150,9 +150,9 @@ TEST(Drag, PressesWithItsForceAndLagsAsItsSpringSays) {
     json["rendering"]["algorithm"] = algorithm;
     const StepRecord last = test::rows_of(read_scenario(json, "").scenario).back();
     // On a plane all contacts have the same gradient and, with normal projection, the same depth, also at the rim of
-    // the tip. All laws are therefore one spring K and one damper B = 62.6 N s/m, whichever points are in contact.
-    // Along the normal, s^2 + (B + 50) / M s + K / M has the roots -221 and -905 /s. After 2.5 s only rounding is left:
-    // the rounding of a depth of 0.05 mm times K.
+    // the tip. Every law is therefore equivalent to one spring K and one damper B = 62.6 N s/m, whichever points are in
+    // contact. Along the normal, s^2 + (B + 50) / M s + K / M has the roots -221 and -905 /s. After 2.5 s, the
+    // remaining error is the rounding of a depth of 0.05 mm times K.
     EXPECT_NEAR(last.force.rendered.z(), 1.0, 1e-10) << algorithm;
     // Tangentially, the spring must overcome the friction (5 + 10 F) N s/m; the roots are -15 and -195 /s, exp(-15.4 *
     // 2.5) = 2e-17.
@@ -397,7 +397,7 @@ TEST(Diagnosis, AdvisesNoLawThatIsInUse) {
   }
 }
 
-/// A run that a rule might misinterpret, with the advice that would be wrong.
+/// A run that a rule might misinterpret, and the advice that would be wrong.
 struct Trap {
   const char* rule;
   Scene scene;
@@ -569,7 +569,8 @@ TEST(Diagnosis, BlamesTheStepWhereThatIsTooLong) {
   EXPECT_EQ(far.warnings[0].text.find("time.step_s"), std::string::npos) << far.warnings[0].text;
 }
 
-/// The diagnosis is computed only on request. Other runs have a warning if the numbers are not an effect of the law.
+/// The diagnosis is computed only on request. A run without it has a warning if its numbers do not characterise the
+/// law.
 TEST(Diagnosis, OfARunThatNobodyDiagnosesIsAWarning) {
   for (const auto& [override, rule] : {std::pair("rendering.friction.mu_f_s_per_m=1000", "friction"),
                                        {R"(rendering.reduction={"threshold":0.9})", "reduction"}}) {

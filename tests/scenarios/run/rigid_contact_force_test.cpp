@@ -12,9 +12,9 @@
 namespace hapbench::rigid_contact_force_test {
 namespace {
 
-// The reference force of rigid contact in a scenario, and what is refused.
+// Tests the reference force of rigid contact in a scenario, and the scenarios for which it is refused.
 
-/// A round drill that comes down on a cube of 10 mm and is drawn over its upper face, 0.1 mm deep.
+/// A round drill that moves down onto a cube of 10 mm and along its upper face, at a depth of 0.1 mm.
 Json over_a_cube() {
   return Json::parse(R"({
     "time": {"step_s": 0.0005, "steps": 1000},
@@ -58,7 +58,7 @@ TEST(RigidContactForce, OnAFaceIsStiffnessTimesDepth) {
   const LoadedScenario loaded = read_scenario(over_a_cube(), test::data_directory());
   const auto force = rigid_contact_force(loaded.scenario, loaded.files);
   EXPECT_EQ(*force->at(0.0), Vec3(0, 0, 0)) << "outside";
-  // K times rounding of 1e-17 m.
+  // K times a rounding error of 1e-17 m.
   for (const double t : {0.25, 0.3, 0.4995}) EXPECT_NEAR((*force->at(t) - Vec3(0, 0, 2)).norm(), 0.0, 1e-10) << t;
   EXPECT_GT(force->error(), 0.0);
   EXPECT_LT(force->error(), 1e-9);
@@ -72,15 +72,16 @@ TEST(RigidContactForce, DoesNotDependOnTheLawAndScalesWithK) {
   EXPECT_NEAR(rigid_contact_force(loaded.scenario, loaded.files)->at(0.3)->z(), 0.5, 1e-10);
 }
 
-/// The fidelity of a run, with its tolerance: ten times the error of the reference for two laws.
+/// The fidelity of a run for two laws, with its tolerance of ten times the error of the reference.
 TEST(RigidContactForce, IsComparedWithTheRenderedForce) {
   Json json = over_a_cube();
-  json["rendering"]["algorithm"] = "proxy";  // the law with the constraints of rigid contact, on points
+  json["rendering"]["algorithm"] = "proxy";  // the proxy uses the constraints of rigid contact on points
   const Result run = run_scenario(checked(read_scenario(json, test::data_directory())), std::nullopt, false);
   const Metric* error = find_metric(run.metrics, "fidelity.force_error_rms_N");
   ASSERT_NE(error, nullptr);
-  // Half the diagonal of four points 0.1 mm apart is 0.0707 mm. A point so far from the axis of a ball of 0.5 mm turns
-  // a force of 2 N by 0.142 rad, 0.28 N across, and lowers it by K times 5 um, 0.1 N.
+  // Half the diagonal of a square of points 0.1 mm apart is 0.0707 mm. A point at this distance from the axis of a ball
+  // of 0.5 mm rotates a force of 2 N by 0.142 rad, which is 0.28 N sideways. It also reduces the depth by 5 um, which
+  // is 0.1 N.
   EXPECT_LT(*number_of(error->value), 0.3);
   const Json summary = summary_json(run);
   const double reference_error = summary["fidelity"]["reference_error_N"].get<double>();

@@ -104,7 +104,7 @@ TEST_F(Extends, AnotherTimeStepReplacesTheSamplesOfADelayInSeconds) {
   };
   EXPECT_EQ(samples(R"({"extends": "base.json"})"), 0.0023 / 0.0005);
   EXPECT_EQ(samples(R"({"extends": "base.json", "time": {"step_s": 0.001}})"), 0.0023 / 0.001);
-  // Values of the file itself are kept.
+  // A value that the extending file itself sets is kept.
   EXPECT_EQ(samples(R"({"extends": "base.json", "time": {"step_s": 0.001}, "device": {"delay_samples": 3}})"), 3.0);
 }
 

@@ -24,13 +24,13 @@ const fs::path kReference = fs::path(HAPBENCH_SCENARIOS) / "../../results/refere
 Json effective(const BundledScenario& bundled, const Texts& overrides) {
   const LoadedScenario loaded = load_scenario(bundled.file, overrides);
   Json json = effective_scenario(loaded.scenario, loaded.scenario.directory);
-  json.erase("expect");  // an overridden run is judged by less
+  json.erase("expect");  // an overridden run has fewer expectations
   return json;
 }
 
 std::vector<BundledScenario> thesis_scenarios() {
   std::vector<BundledScenario> all = bundled_scenarios();
-  // Beside the thesis's, claim C2 is judged on two of ours.
+  // Keep the thesis's scenarios and the two scenarios of this project on which claim C2 is judged.
   std::erase_if(all, [](const BundledScenario& bundled) {
     return bundled.group != "thesis" && !bundled.name.starts_with("turned_into_wall");
   });
@@ -41,7 +41,8 @@ std::vector<BundledScenario> thesis_scenarios() {
 TEST(AssumptionsOnRecord, AreWhatTheScenariosHaveAndOthersChangeThem) {
   const Assumptions assumptions(kReference / "assumptions.json");
   const Texts on_record = assumptions.recorded_values();
-  // Ends of ranges and options other than the one on record; one of them differs from it.
+  // Returns the ends of ranges, and options other than the committed option; at least one value differs from the
+  // committed value.
   Texts low, high;
   for (const Assumption& assumption : assumptions.all()) {
     low.push_back(assumption.range ? fmt::format("{}", assumption.range->first) : assumption.options.front());

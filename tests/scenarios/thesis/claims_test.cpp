@@ -15,7 +15,7 @@
 namespace hapbench::claims_test {
 namespace {
 
-/// x = exp(-zeta t) cos(sqrt(1 - zeta^2) t), a hundred samples a unit of time.
+/// Samples x = exp(-zeta t) cos(sqrt(1 - zeta^2) t), a hundred samples per unit of time.
 std::optional<double> measured(double zeta) {
   std::vector<double> x;
   for (int i = 0; i < 3000; ++i) {
@@ -26,8 +26,8 @@ std::optional<double> measured(double zeta) {
 }
 
 TEST(DampingRatioOfSwings, IsThatOfADampedOscillation) {
-  // Sampling misses an extreme by at most half a step: a relative error of its height of (0.005)^2 / 2 ~ 1e-5, which
-  // is small beside ln q = pi zeta / sqrt(1 - zeta^2) >= 0.15.
+  // Sampling misses an extreme by at most half a step. The relative error of its height is (0.005)^2 / 2 ~ 1e-5, which
+  // is small compared with ln q = pi zeta / sqrt(1 - zeta^2) >= 0.15.
   for (const double zeta : {0.05, 0.1, 0.3, 0.5}) EXPECT_NEAR(measured(zeta).value(), zeta, 1e-3 * zeta) << zeta;
 }
 
@@ -40,7 +40,7 @@ TEST(DampingRatioOfSwings, IsNoneWithoutSwings) {
   EXPECT_FALSE(measured(1.0)) << "it creeps";
 }
 
-// The files that claims are judged by.
+// Files by which claims are judged.
 
 class ResultFile : public testing::Test {
  protected:
@@ -111,8 +111,8 @@ const PublishedNumbers& published() {
   return numbers;
 }
 
-/// Sets "name=number,number…" in a case, or "1.name=…" in the case of that index; without an index in all that have
-/// the name.
+/// Sets "name=number,number…" in a case: "1.name=…" in the case with this index; without an index, in all cases that
+/// have the name.
 void set(Measured& measured, std::string_view text) {
   const bool indexed = text.size() > 1 && text[1] == '.';
   const std::size_t equals = text.find('=');
@@ -126,8 +126,8 @@ void set(Measured& measured, std::string_view text) {
   }
 }
 
-/// Cases "CASE: name=number … | name=number …", each with the name and the numbers of the one before it where its text
-/// says nothing else.
+/// Returns cases from a text "CASE: name=number … | name=number …". A case inherits the name and the numbers of the
+/// case before it unless its text sets them.
 Measured cases_in(std::string_view text) {
   Measured measured;
   for (std::string_view part : parts_of(text, '|')) {
@@ -156,7 +156,7 @@ struct Rule {
 
 using enum Verdict;
 
-/// Measured numbers on either side of every threshold.
+/// Tests measured numbers on both sides of every threshold.
 TEST(Claims, AreJudgedByTheirThresholds) {
   const std::string_view
       counts = "raw_mean=41 raw_deviation=19 reduced_mean=6.9 reduced_deviation=1.8 reduced_max=25 outside_taps=14|",
@@ -167,7 +167,7 @@ TEST(Claims, AreJudgedByTheirThresholds) {
           "damped_1=1 damped_2=1 damped_3=0.96 | | | | average signed_distance: | average binary:",
       vibration = "velocity_variation=0.1 vibration_power=1e-5 force_reversals=6 | | |";
   const std::vector<Rule> rules = {
-      // The deepest of all tilts counts.
+      // The largest depth over all tilts counts.
       {"V1",
        depths,
        {{"", replicated},
@@ -192,8 +192,9 @@ TEST(Claims, AreJudgedByTheirThresholds) {
       {"T1",
        "raw_mean=40 raw_deviation=10 reduced_mean=1 reduced_deviation=0 reduced_max=1 outside_taps=1 |",
        {{"", replicated}, {"1.reduced_mean=1.1 1.reduced_max=2", not_replicated}}},
-      // Published: raw 37.8 ± 17.7 and 34.1 ± 19.5, reduced 6.21 ± 1.7 and 5.5 ± 1.9, so near is within 3.7, 1.8, 0.71,
-      // 0.2. The raw counts of one recording do not go with the reduced ones of the other.
+      // Published: raw 37.8 ± 17.7 and 34.1 ± 19.5, reduced 6.21 ± 1.7 and 5.5 ± 1.9. Numbers within 3.7, 1.8, 0.71 and
+      // 0.2 of the means are therefore near. The raw counts of one recording do not match the reduced counts of the
+      // other recording.
       {"T2",
        counts,
        {{"", replicated},
@@ -201,18 +202,18 @@ TEST(Claims, AreJudgedByTheirThresholds) {
         {"1.reduced_mean=7", qualitatively},
         {"reduced_deviation=3.1", qualitatively},
         {"reduced_mean=7", not_replicated},
-        // The raw counts are an input.
+        // The raw counts are an input of the claim.
         {"raw_mean=42", not_judged},
         {"raw_deviation=22", not_judged},
         {"1.raw_mean=42", qualitatively},
         {"0.raw_mean=42 1.reduced_mean=7", not_replicated},
         {"reduced_mean=4.9", not_replicated}}},
-      // Published: raw 231.5 ± 116.1 and 163.7 ± 103.1, reduced 6.5 ± 2.1 and 5.2 ± 1.7, below 15.
+      // Published: raw 231.5 ± 116.1 and 163.7 ± 103.1, reduced 6.5 ± 2.1 and 5.2 ± 1.7, below 15 contacts.
       {"T3",
        "raw_mean=200 raw_deviation=110 reduced_mean=6 reduced_deviation=2 reduced_max=14 outside_taps=14",
        {{"", replicated}, {"outside_taps=15", qualitatively}, {"raw_mean=50", not_judged}}},
       {"T2b", "force=0.2 raw=55 kept=20 | force=1.9 raw=56", {{"", holds}, {"0.raw=56 1.raw=57", does_not_hold}}},
-      // 0.5 ms, with a factor 1.25 to either side.
+      // Published: 0.5 ms; a factor of 1.25 in either direction is accepted.
       {"T4", costs, {{"", replicated}, {"matrix=6e-4", qualitatively}, {"reduced=4.1e-4", not_replicated}}},
       {"T4b", costs, {{"", holds}, {"tensor=4.1e-4", does_not_hold}}},
       {"T5",
@@ -250,13 +251,13 @@ TEST(Claims, AreJudgedByTheirThresholds) {
         {"onset=2", qualitatively},
         {"onset=inf plateau_spread=0.5", not_replicated},
         {"deviation=0.03", not_replicated}}},
-      // The limit is 2 N, around it 2.4 N.
+      // The limit is 2 N; forces up to 2.4 N count as around the limit.
       {"L2",
        "rows=100 limit=2 median=1.99 p99=2.39 max=2.5 against=0.5",
        {{"", replicated},
         {"p99=2.41", qualitatively},
         {"p99=2.6 median=2.5", not_replicated},
-        {"p99=nan median=nan", not_replicated}}},  // no such row: nothing is shown
+        {"p99=nan median=nan", not_replicated}}},  // no such row exists, so that nothing is shown
       {"L3",
        "frequency=2 mass=0.1 mass_unlimited=0.1 force=0.5 | frequency=4 mass=0.7 force=20",
        {{"", replicated},
@@ -264,7 +265,7 @@ TEST(Claims, AreJudgedByTheirThresholds) {
         {"0.force=2.1", qualitatively},
         {"1.mass=0.15", not_replicated}}},
       {"L4", "off=1e4 on=2e4", {{"", replicated}, {"on=1.9e4", qualitatively}, {"on=1e4", not_replicated}}},
-      // Published: 0.25 mm, both; "around" is 0.3 mm.
+      // Published: 0.25 mm for both; up to 0.3 mm count as around this value.
       {"J1",
        "low_height=-1.8e-4 high_height=-8e-4 low_lateral=2e-4 high_lateral=2.9e-4 inside=2.9e-4",
        {{"", replicated},
@@ -277,10 +278,10 @@ TEST(Claims, AreJudgedByTheirThresholds) {
       {"A1",
        vibration,
        {{"0.velocity_variation=0.5 0.vibration_power=2.5e-4", replicated},
-        // Much more power, not as much more variation.
+        // The vibration power is much larger, and the velocity variation is not larger to the same extent.
         {"0.velocity_variation=0.4 0.vibration_power=1e-3 2.velocity_variation=0.5 2.vibration_power=2.5e-4",
          qualitatively},
-        // The force turns to and fro as much more often.
+        // The number of force reversals increases by the same factor.
         {"0.velocity_variation=0.11 0.vibration_power=1.1e-5 0.force_reversals=30", replicated},
         {"0.force_reversals=30", not_replicated},
         {"2.velocity_variation=0.5 2.vibration_power=2.5e-4", not_replicated}}},
@@ -298,7 +299,7 @@ TEST(Claims, AreJudgedByTheirThresholds) {
        {{"", replicated},
         {"pairs=4", qualitatively},
         {"3.swings=6", not_replicated},
-        {"2.swings=3 3.swings=20", not_replicated},  // it fluctuates without the limits, too
+        {"2.swings=3 3.swings=20", not_replicated},  // the force also fluctuates without the limits
         {"1.overshoot=1.11e-4", not_replicated}}},
       {"A4",
        "K_max (B = 0): limit=1.616e6 | B_max (K = 0): limit=399",
@@ -313,7 +314,7 @@ TEST(Claims, AreJudgedByTheirThresholds) {
       {"G1",
        "shortest_product=-1 normal_product=1",
        {{"", replicated}, {"normal_product=0.9", qualitatively}, {"shortest_product=1", not_replicated}}},
-      // 5 % of 0.25 mm are 12.5 µm.
+      // 5 % of 0.25 mm is 12.5 µm.
       {"G1b",
        "contacts=100 depth_mean=1e-6 depth_95=1.3e-5 depth_max=5e-5 share=0.1 force=0.05 way=1.2e-5",
        {{"", replicated},
@@ -326,7 +327,7 @@ TEST(Claims, AreJudgedByTheirThresholds) {
       {"B1",
        "with_shortest_distance=-1 with_surface_normal=1",
        {{"", replicated}, {"with_surface_normal=-1", qualitatively}, {"with_shortest_distance=1", not_replicated}}},
-      // What does not swing is not under-damped.
+      // A motion that does not oscillate is not under-damped.
       {"B2",
        "given=0.7 groove_friction_original_averaging=0.3 groove_swing_original_averaging=0 | "
        "groove_friction_original_averaging=0",
@@ -371,8 +372,8 @@ TEST(Claims, AreJudgedByTheirThresholds) {
       {"C6",
        "1: count=1 damping_ratio=0.1 | 4: count=4 damping_ratio=0.209",
        {{"", replicated}, {"1.damping_ratio=0.1", not_replicated}}},
-      // Published of D1: rates 0.32 ± 0.09 and 0.97 ± 0.02, speeds 0.009 and 0.002 m/s; of D2: rates 0.64 ± 0.13 and
-      // 0.63 ± 0.19, no difference. The force is no measure: subjects regulate it.
+      // Published for D1: rates 0.32 ± 0.09 and 0.97 ± 0.02, speeds 0.009 and 0.002 m/s; for D2: rates 0.64 ± 0.13 and
+      // 0.63 ± 0.19, no difference. The force is not compared, because subjects regulate it.
       {"D1 D3 D4",
        "success rate: original=0.2,0.3,0.4 shaped=0.9,1,1 | speed: original=9e-3,8e-3,8.5e-3 shaped=2e-3,2e-3,2e-3",
        {{"", consistent},
@@ -384,13 +385,14 @@ TEST(Claims, AreJudgedByTheirThresholds) {
        "success rate: original=0.2,0.3,0.4 shaped=0.9,1,1 | model force: original=1,2,1.5 shaped=2,1,1.5",
        {{"", consistent}}},
       {"D2",
-       "success rate: original=0.5,0.6,0.4 shaped=0.6,0.4,0.5 | speed: original=2e-3,2.1e-3,2.2e-3 shaped=2.1e-3,2e-3,2.2e-3",
+       "success rate: original=0.5,0.6,0.4 shaped=0.6,0.4,0.5 | speed: original=2e-3,2.1e-3,2.2e-3 "
+       "shaped=2.1e-3,2e-3,2.2e-3",
        {{"", consistent},
         {"0.original=0.2,0.3,0.4 0.shaped=0.9,1,1", not_consistent},
         {"0.original=0.1,0.2,0.15 0.shaped=0.12,0.1,0.2", not_consistent},
-        // Both would be printed as 0.002; the difference is significant.
+        // Both speeds would be printed as 0.002; their difference is significant.
         {"1.original=1.6e-3,1.7e-3,1.65e-3 1.shaped=2.1e-3,2.2e-3,2.15e-3", not_consistent}}},
-      // Published: 0.64 ± 0.13 → 0.32 ± 0.09 and 0.63 ± 0.19 → 0.97 ± 0.02.
+      // Published: 0.64 ± 0.13 changes to 0.32 ± 0.09, and 0.63 ± 0.19 to 0.97 ± 0.02.
       {"D7",
        "centre: original=0.6,0.7,0.8 shaped=0.6,0.7,0.8 | side: original=0.3,0.4,0.5 shaped=0.9,1,1",
        {{"", consistent}, {"1.original=0,0,0", consistent}, {"1.original=0.7,0.7,0.7", not_consistent}}},
@@ -401,7 +403,7 @@ TEST(Claims, AreJudgedByTheirThresholds) {
         {"2.original=0.2", not_consistent},
         {"1.original=0.2", not_consistent},
         {"0.shaped=0.2", consistent}}},
-      // A threshold further out than the published one.
+      // A threshold beyond the published threshold.
       {"D6",
        "offset: value=0.4e-3 original=0.9 shaped=1 | value=0.6e-3 original=0.5 | height: value=2e-3 | "
        "value=4e-3 original=0.9 | offset: value=0.7e-3 original=0",
@@ -432,7 +434,7 @@ TEST(Claims, AreJudgedByTheirThresholds) {
       }
     }
   }
-  for (const char* id : {"C4", "C9", "D5", "F6"}) {  // not for a simulation
+  for (const char* id : {"C4", "C9", "D5", "F6"}) {  // claims that a simulation cannot test
     judged.emplace(id);
     const Finding finding = claim(id).finding({published(), {}, {}});
     EXPECT_EQ(finding.verdict, not_testable) << id;
@@ -457,7 +459,7 @@ TEST(Claims, OfTheRangeAfterOneUpdateCoverBothReadingsOfTheFigure) {
   EXPECT_NE(claim("R1").judge(measured, averaged).why.find("0.80, 0.73 and 0.68"), std::string::npos);
 }
 
-/// The rules' texts are written from the thresholds, so this is also a test of those.
+/// The texts of the rules contain the thresholds, so this test also covers the thresholds.
 TEST(Claims, AreThoseOfTheLedger) {
   const Json ledger = read_json(HAPBENCH_SCENARIOS "/../../results/reference/claims.json").at("claims");
   const std::vector<Claim> claims = all_claims();

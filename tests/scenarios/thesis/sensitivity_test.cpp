@@ -28,7 +28,7 @@ JudgedClaim judged(const std::string& id, const std::string& reach) {
 
 class Sensitivity : public testing::Test {
  protected:
-  /// A record with cases "ASSUMPTION VALUE" of one claim.
+  /// Returns a record of one claim with cases "ASSUMPTION VALUE".
   SensitivityRecord record(const std::vector<std::pair<std::string, Verdict>>& cases) const {
     SensitivityRecord made;
     made.begin("T9", "reach", found(Verdict::replicated), complete_ > 0 ? complete_ : cases.size());
@@ -78,7 +78,7 @@ TEST_F(Sensitivity, IsKeptInAFileAndContinued) {
   EXPECT_TRUE(read.has("T9", "a", "2"));
   EXPECT_FALSE(read.has("T9", "a", "3"));
   EXPECT_TRUE(read.entry("T9", "other assumptions").is_null());
-  // Another verdict, another number or other assumptions: the cases are made anew.
+  // A changed verdict, number or list of assumptions: the cases are computed again.
   for (const auto& [reach, recorded] : {std::pair("reach", found(Verdict::qualitatively)),
                                         {"reach", found(Verdict::replicated, "2")},
                                         {"other assumptions", found(Verdict::replicated)}}) {

@@ -10,10 +10,10 @@
 namespace hapbench::rigid_contact_test {
 namespace {
 
-// The free position of a tool between rigid triangles, against closed forms.
+// Tests the free position of a tool between rigid triangles against closed forms.
 
 constexpr double kRadius = 0.0005;        // of the tool [m]
-constexpr RoundTool kBall{kRadius, 0.0};  // a tool of which only the tip touches
+constexpr RoundTool kBall{kRadius, 0.0};  // a tool of which only the tip can touch
 const Vec3 kDown = -Vec3::UnitZ();
 constexpr double kExact = 1e-14;  // [m]: rounding of centimetres in some additions
 
@@ -31,7 +31,7 @@ TriangleSoup square(double height = 0.0) {
   return soup;
 }
 
-/// A sphere around the origin: the octahedron's faces, divided `levels` times.
+/// Returns a sphere around the origin: an octahedron whose faces are divided `levels` times.
 TriangleSoup sphere(double radius, int levels) {
   TriangleSoup soup;
   const auto add = [&](const auto& self, const Vec3& a, const Vec3& b, const Vec3& c, int level) -> void {
@@ -65,11 +65,11 @@ TEST(RigidContact, OnAPlaneIsAboveThePrescribedPosition) {
   RigidContact contact(square(), kBall);
   const Vec3 free = moved(contact, {0, 0, 0.001}, {0.003, 0.002, -0.0007});
   EXPECT_NEAR((free - Vec3(0.003, 0.002, kRadius)).norm(), 0.0, kExact);
-  // Without contact it is the prescribed position itself.
+  // Without contact, the free position is the prescribed position itself.
   EXPECT_EQ(contact.follow({0.001, 0, 0.0021}, kDown), Vec3(0.001, 0, 0.0021));
 }
 
-/// The triangles are inside the sphere by at most their sagitta s, so that the tool is, too.
+/// The triangles are inside the sphere by at most their sagitta s, and so is the tool.
 TEST(RigidContact, OnASphereIsRadial) {
   constexpr double kLarge = 0.004;
   constexpr int kLevels = 6;
@@ -95,7 +95,7 @@ TEST(RigidContact, OnASphereIsRadial) {
   EXPECT_LT(contact.error(), 1e-10);
 }
 
-/// Around a convex edge the tip's centre moves on a cylinder.
+/// Around a convex edge, the tip's centre moves on a cylinder.
 TEST(RigidContact, OnAnEdgeIsRadial) {
   TriangleSoup soup;  // x < 0 and z < 0 is solid
   add_square(soup, {-0.01, -0.01, 0}, {0, -0.01, 0}, {0, 0.01, 0}, {-0.01, 0.01, 0});
@@ -103,12 +103,13 @@ TEST(RigidContact, OnAnEdgeIsRadial) {
   RigidContact contact(soup, kBall);
   ASSERT_TRUE(contact.start({-0.001, 0, 0.001}, kDown));
   for (int i = 0; i <= 90; ++i) {
-    // From the face above over the edge to the face at the side, 0.1 mm deep.
+    // Moves from the upper face around the edge to the side face, at a depth of 0.1 mm.
     const double angle = std::numbers::pi / 180.0 * i;
     const Vec3 out(std::sin(angle), 0, std::cos(angle));
     const Vec3 wanted = Vec3(0, 1e-5 * i, 0) + (kRadius - 1e-4) * out;
     const Vec3 free = contact.follow(wanted, kDown);
-    // A search shrinks its error by depth / radius = 1/5 in each move, and ends at 1e-12 of the radius.
+    // Each move of the search reduces its error by the factor depth / radius = 1/5, and the search ends at 1e-12 of the
+    // radius.
     EXPECT_NEAR((free - wanted - 1e-4 * out).norm(), 0.0, 2e-15) << i;
   }
 }
@@ -139,7 +140,7 @@ TEST(RigidContact, StaysOnTheSideFromWhichItCame) {
   }
 }
 
-/// The side of a tilted tool leans on the edge of a wall: the distance of the two lines is the tool's radius.
+/// The side of a tilted tool rests on the edge of a wall: the distance between tool axis and edge is the tool's radius.
 TEST(RigidContact, SideOfTheToolTouchesAnEdge) {
   TriangleSoup wall;  // a vertical wall in the plane x = 0 below z = 0, whose upper edge is the y axis
   add_square(wall, {0, -0.01, -0.01}, {0, 0.01, -0.01}, {0, 0.01, 0}, {0, -0.01, 0});
@@ -161,13 +162,14 @@ TEST(RigidContact, SaysThatItStartsInContactOrTouchesTheFarEnd) {
   EXPECT_TRUE(contact.start({0, 0, 1.1 * kRadius}, kDown));
   contact.follow({0, 0, 0.5 * kRadius}, kDown);
   EXPECT_FALSE(contact.touched_far_end());
-  // Upside down: the far end is below.
+  // Upside down: the end opposite to the tip is at the bottom.
   ASSERT_TRUE(contact.start({0, 0, 0.004}, -kDown));
   contact.follow({0, 0, 0.002}, -kDown);
   EXPECT_TRUE(contact.touched_far_end());
 }
 
-/// Free positions satisfy all constraints, and no free position nearby is closer: optimality, tried at random.
+/// Free positions satisfy all constraints, and no free position nearby is closer to the prescribed position. Nearby
+/// positions are sampled at random.
 TEST(RigidContact, IsALocalMinimumAmongFreePositions) {
   Random random(3);
   TriangleSoup rough;

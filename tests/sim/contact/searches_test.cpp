@@ -142,8 +142,7 @@ std::size_t marked_near(const PointShell& shell, const ToolShape& tool, const To
   });
 }
 
-/// Returns the largest number of points of a random shell that the tool has near it over some poses, divided by the
-/// bound.
+/// Returns the largest ratio of the number of points near the tool, over some poses, to the bound of this number.
 double worst_part_of_bound(const ToolShape& tool, double size, Random& random) {
   const double margin = random.uniform(0.0, 0.3) * tool.half_width();
   const PointShell shell(test::random_shell(random, size), 0.0);
@@ -168,7 +167,7 @@ TEST(MostPoints, BoundWhatAnyToolHasNearItAnywhere) {
     const Cylinder drill{size * random.uniform(0.01, 0.2), size * random.uniform(0.02, 3.0), tip};
     tightest = std::max(tightest, worst_part_of_bound(drill, size, random));
   }
-  // The walks touch points; the thirtieth of the walks in a sanitized build need not.
+  // The walks touch points. A sanitized build does a thirtieth of the walks, which need not touch.
   EXPECT_TRUE(tightest > 0.1 || HAPBENCH_TEST_SANITIZED != 0) << tightest;
 }
 

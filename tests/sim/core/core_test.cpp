@@ -147,14 +147,14 @@ const Case kCases[] = {
     {"atanh", math::atanh, std::atanh, 2.5, -100.0, -1.0, true},
 };
 
-/// |ours - reference| in units in the last place of the reference.
+/// Returns the error |ours - reference| of a result of hapbench in units in the last place of the reference.
 double error_in_ulp(double ours, long double reference) {
   const double size = std::abs(static_cast<double>(reference));
   return static_cast<double>(std::abs(ours - reference) / (std::nextafter(size, kInf) - size));
 }
 
 /// Returns true if long double is x87's: the reference then has 11 bits more, and its own error of one ulp is 0.0005
-/// ulp of ours.
+/// ulp of a double.
 bool has_reference() {
   return std::numeric_limits<long double>::digits >= 64;
 }

@@ -52,7 +52,7 @@ void expect_distances_to_points(Shape shape, double reach, bool planar) {
     }
     EXPECT_LE(std::abs(phi.value), nearest + 1e-12);
     EXPECT_GE(std::abs(phi.value), nearest - 0.75 * shape.spacing) << q.transpose();
-    // Beside an edge, the sign also follows from the mean normal of the edge.
+    // Beside an edge, the mean normal of the edge also gives the sign.
     if (nearest > 2.0 * shape.spacing) {
       EXPECT_EQ(phi.value > 0.0, point->normal.dot(q - point->position) > 0.0) << q.transpose();
     }

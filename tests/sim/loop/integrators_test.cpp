@@ -276,7 +276,7 @@ TEST(IntegratorInTheLoop, SeesTheAxisAndTheTurnOfItsTime) {
     for (std::size_t i = 0; i < seen.size(); ++i) {
       const double t = (static_cast<double>(i / forces) + parts[i % forces]) * SimulationConfig{}.dt;
       EXPECT_LE((seen[i].pose.axis - tool_axis(kTurn, 0.1 + 3.0 * t, 0.0)).norm(), 4 * kEps);
-      // Rotations of 1e-3 rad are known to eps / 1e-3.
+      // The angular velocity of a rotation by 1e-3 rad has a relative error of eps / 1e-3.
       const double rate = i == 0 ? 0.0 : 3.0;
       EXPECT_NEAR(seen[i].angular_velocity.norm(), rate, 1e-11) << i;
     }

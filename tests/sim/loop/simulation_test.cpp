@@ -295,7 +295,7 @@ TEST(Roll, IsRecordedOfEveryToolAndInThePoseOfThoseThatAreNotRound) {
   }
 }
 
-/// Rotations of 1e-3 rad are known to 1e-16 / 1e-3.
+/// The angular velocity of a rotation by 1e-3 rad has a relative error of 1e-16 / 1e-3.
 TEST(Roll, IsInTheAngularVelocityWhereItIsScriptedOrTheToolIsNotRound) {
   const auto expect_whole = [](const std::vector<StepRecord>& rows, const Orientation& script) {
     for (std::size_t k = 1; k < rows.size(); ++k) {

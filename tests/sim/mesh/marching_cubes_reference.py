@@ -1,6 +1,7 @@
-"""Compares marching cubes of the block with a hole with scikit-image's, which shares no line with it.
+"""Compares the marching cubes of the block with a hole with the implementation of scikit-image, which shares no code
+with hapbench.
 
-marching_cubes_reference.py BLOCK_MESH: the program that prints our mesh. Exit status 0 when they agree.
+marching_cubes_reference.py BLOCK_MESH: the program that prints hapbench's mesh. The exit status is 0 if they agree.
 """
 import subprocess
 import sys
@@ -11,7 +12,8 @@ from skimage import measure
 
 
 def distance(block, p):
-    """Signed distance to box minus cylinder: exact in the material, and outside at all nodes next to it."""
+    """Returns the signed distance to box minus cylinder: exact in the material, and outside at all nodes next to the
+    surface."""
     sx, sy, sz, diameter, depth = block
     q = np.abs(p + [0, 0, sz / 2]) - np.array([sx, sy, sz]) / 2
     box = np.linalg.norm(np.maximum(q, 0), axis=-1) + np.minimum(q.max(axis=-1), 0)
@@ -32,7 +34,8 @@ def our_mesh(program, block, spacing, density):
 
 
 def their_mesh(block, spacing, density):
-    """In units of the spacing, like ours. Nodes lie at half-integer multiples of it."""
+    """Returns the mesh of scikit-image in units of the spacing, as hapbench prints its mesh. Grid nodes lie at
+    half-integer multiples of the spacing."""
     low = np.floor(np.array([-block[0] / 2, -block[1] / 2, -block[2]]) / spacing) - 1.5
     high = np.ceil(np.array([block[0] / 2, block[1] / 2, 0]) / spacing) + 1.5
     axes = [np.arange(a, b + 1) for a, b in zip(low, high)]
@@ -40,7 +43,7 @@ def their_mesh(block, spacing, density):
     field = -distance(block, nodes * spacing) / spacing
     if density == "binary":
         field = np.where(field > 0, 0.5, -0.5)
-    # The classic method: the newer one adds vertices inside ambiguous cells.
+    # Use the classic method: the newer method adds vertices inside ambiguous cells.
     vertices, faces, _, _ = measure.marching_cubes(field, 0.0, method="lorensen")
     return vertices + low, faces, max(field.shape)
 
@@ -48,8 +51,8 @@ def their_mesh(block, spacing, density):
 def compare(program, block, spacing, density):
     ours, our_faces = our_mesh(program, block, spacing, density)
     theirs, their_faces, nodes = their_mesh(block, spacing, density)
-    # They compute in single precision: half a unit in the last place of an index up to `nodes`, and a few of the field,
-    # which is of the order of one next to the surface.
+    # The library scikit-image computes in single precision. Errors: half a unit in the last place of an index up to
+    # `nodes`, and a few units of the field, which is of the order of one next to the surface.
     tolerance = (nodes + 8) * 2.0**-24
     gap, partner = cKDTree(theirs).query(ours)
     print(

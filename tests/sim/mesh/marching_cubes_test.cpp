@@ -107,7 +107,7 @@ TEST(MarchingCubes, NarrowBandFindsWhatAFullSweepFinds) {
   DensityField field = density_field(block, 0.0002, Density::signed_distance);
   const IsoSurface band = surface_of(field);
   field.signed_distance = [block](const Vec3& p) { return 0x1p-20 * signed_distance(block, p); };
-  EXPECT_TRUE(same(band, surface_of(field)));  // a power of two changes no bit
+  EXPECT_TRUE(same(band, surface_of(field)));  // scaling by a power of two changes no bit
 }
 
 TEST(MarchingCubes, DoesNotDependOnTheNumberOfThreads) {

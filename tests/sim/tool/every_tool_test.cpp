@@ -110,7 +110,7 @@ TEST_P(EveryTool, HasExitsWhereRaysFirstGoOut) {
     std::vector<double> exits(in.size());
     tool.shape->exit_distances(pose, in, exits.data());
     for (std::size_t i = 0; i < in.size(); ++i) {
-      // The exit of a point on a cylinder's surface is the thesis's choice; other tests check it.
+      // The thesis defines the exit of a point on a cylinder's surface; other tests check it.
       if (slack_at(tool, pose, in.point(i)) < kRounding) continue;
       ++rays;
       const auto slack_after = [&](long double d) {

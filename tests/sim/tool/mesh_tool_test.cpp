@@ -349,7 +349,8 @@ TEST_P(MeshToolOf, HasTheGradientOfItsField) {
     }
     const Vec3 u = gradient(tool_, pose, x);
     ASSERT_NEAR(u.norm(), 1.0, 1e-14);
-    // The error of the difference, 1e-16 / step plus the step itself, divided by the gradient's length.
+    // Error of the difference quotient: rounding 1e-16 / step plus truncation of the order of the step, divided by the
+    // gradient's length.
     ASSERT_TRUE(slope.norm() < 0.1 || (slope.normalized() - u).norm() < 1e-6);
     // Continuity: a displacement by a thousandth of a spacing rotates the gradient by at most a few thousandths,
     // divided by its length.

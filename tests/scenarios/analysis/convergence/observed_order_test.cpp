@@ -120,7 +120,7 @@ TEST(ObservedOrder, CountsLevelsThatEndAsTheFinest) {
 
 constexpr MetricTraits kExtreme{.smooth = false, .either_sign = false};
 
-/// A speed before a landing: for some levels it looks of first order, until the landing moves to another step.
+/// The speed before a landing. For some levels its error looks of first order, until the landing moves to another step.
 TEST(ObservedOrder, OfExtremesNeedsFiveLevelsAndCountsTheirScatter) {
   const std::vector<double> halving = {1.0 + 1.0 / 4, 1.0 + 1.0 / 8, 1.0 + 1.0 / 16, 1.0 + 1.0 / 32, 1.0 + 1.0 / 64};
   for (const std::size_t count : {std::size_t{3}, std::size_t{4}}) {

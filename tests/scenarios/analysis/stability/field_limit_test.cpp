@@ -37,7 +37,8 @@ FieldLimit ask(const Asked& asked, const char* algorithm = "summation") {
   return field_limit(question);
 }
 
-/// A flat tip without damping and friction under 1 N bounces forever. A run that seems to decay does so by chance.
+/// A flat tip without damping and friction bounces forever under 1 N. If a single run is classified as decaying, this
+/// is by chance.
 TEST(FieldLimit, OfWhatNeverRestsIsNone) {
   const FieldLimit limit = ask({"poke_plane",
                                 "rendering.stiffness_N_per_m",
@@ -94,7 +95,8 @@ TEST(FieldLimit, DoesNotBlameDryFrictionForVibration) {
   EXPECT_FALSE(limit.unstable_alone);
 }
 
-/// The test of hand and device without contact has no points, but still has a stage that merges the points of a cell.
+/// The scene with hand and device but without contact has no points, but still has a stage that merges the points of a
+/// cell.
 TEST(FieldLimit, OfASceneWithLocalAverageIsOne) {
   const Asked asked{"tap_corner", "rendering.stiffness_N_per_m", {"time.steps=200"}, Range{1e6, 1e8, true}};
   Asked averaged = asked;

@@ -12,7 +12,7 @@ namespace {
 
 using Stable = std::function<bool(double value)>;
 
-/// Returns the last stable value that find_verified_interval finds from 1e4 to 1e6. Returns 0 without a stability
+/// Returns the last stable value between 1e4 and 1e6 according to find_verified_interval. Returns 0 without a stability
 /// limit, and -1 if stable and unstable values alternate.
 double tried_edge(const Stable& stable) {
   const IntervalSearchOptions way{.range = {1e4, 1e6, true}};

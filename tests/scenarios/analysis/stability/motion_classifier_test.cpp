@@ -118,7 +118,7 @@ TEST(MotionClassifier, IsAtRestOnlyAfterManyQuietRows) {
   see(1.0, 1);
   see(1e-13, 199);
   EXPECT_FALSE(classifier.at_rest());
-  see(1e-11, 1);  // not slow enough: counting starts again
+  see(1e-11, 1);  // not slow enough: the count of resting steps starts again
   see(1e-13, 199);
   EXPECT_FALSE(classifier.at_rest());
   see(1e-13, 1);

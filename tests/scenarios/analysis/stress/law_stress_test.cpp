@@ -14,7 +14,7 @@ namespace hapbench::law_stress_test {
 namespace {
 
 TEST(LawStress, NoForceIsInfiniteOrOutOfBound) {
-  // scripts/reproduce tests 200 000 sets, scripts/test --all a million sets.
+  // scripts/reproduce tests 200 000 sets, and scripts/test --all tests a million sets.
   const std::uint64_t count = test::cases(50'000);
   const auto all = stress_laws(count, 1, {2, ""});
   ASSERT_EQ(all.size(), algorithms().size());

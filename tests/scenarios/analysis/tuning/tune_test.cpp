@@ -34,7 +34,7 @@ TuneQuestion question(const char* scene, const Words& overrides) {
 constexpr double kWithin = 0.03;
 
 /// A hand holds a handle whose loop is stable up to twice K with the worst of the typical hands. A known answer for a
-/// handle without a hand tests that this K is the largest over damping ratios.
+/// handle without a hand tests that tune finds the largest K over damping ratios.
 TEST(Tune, OfAHeldHandleIsTheEdgeOfTheWorstHand) {
   constexpr double kMass = 0.1;  // mass of the scene, by which zeta is defined
   const Words device = {

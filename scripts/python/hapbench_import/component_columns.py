@@ -1,0 +1,251 @@
+"""The columns of a recording that the options name, for each quantity and its components."""
+from .columns import Names, scale_of
+from .options import ORIENTATIONS
+
+# Names of the components of a group of columns.
+LETTERS = {
+    ("px", "py", "pz"): ("x", "y", "z"),
+    ("mfx", "mfy", "mfz"): ("x", "y", "z"),
+    ("axis_x", "axis_y", "axis_z"): ("x", "y", "z"),
+    ("axis_x", "axis_y", "axis_z", "angle"): ("x", "y", "z", "angle"),
+    ("qw", "qx", "qy", "qz"): ("w", "x", "y", "z"),
+    ("qx", "qy", "qz", "qw"): ("x", "y", "z", "w"),
+}
+# Names of all components of orientations.
+PARTS = list(dict.fromkeys(sum(ORIENTATIONS.values(), ())))
+
+
+def one_axis(group):
+    """Returns the message about a recording of one axis."""
+    if group not in ("position", "force"):
+        return ""
+    return (
+        " for x, y and z: a stroke has three components. Add columns of zeros to a recording of one axis "
+        "(hapbench audit reads it as it is)"
+    )
+
+
+class Columns:
+    """The columns that the options name: lists of indices in the order of the components, empty if a quantity has no
+    columns."""
+
+    def __init__(self, recording, options):
+        self._options, self.notes, self.scales = options, [], {}
+        self.names = names = Names(recording)
+        self.time = [] if options.sample_rate_Hz else self._group("time", ("time",))
+        self.position = self._group("position", ("px", "py", "pz"))
+        if not self.position:
+            names.fail("position", "is missing")
+        if not options.sample_rate_Hz and not self.time:
+            names.fail("time", "is missing (or give --set sample_rate_Hz=...)")
+        self.kind = self._kind_of_orientation()
+        self.orientation = self._group("orientation", ORIENTATIONS[self.kind])
+        if not self.orientation and self.kind != "none" and "orientation" not in options.optional:
+            names.fail("orientation", "is missing")
+        self.force = self._group("force", ("mfx", "mfy", "mfz"))
+        self._refuse_unused()
+        self._refuse_shared()
+        self._note_lone_order()
+
+    def used(self):
+        """Returns for each quantity its components, and number, name and unit of the column of each component."""
+        return {
+            quantity: [
+                {
+                    "component": component,
+                    "column": column + 1,
+                    "name": self.names.names[column],
+                }
+                for component, column in zip(components, columns)
+            ]
+            for quantity, components, columns in (
+                ("time", ("time",), self.time),
+                ("position", ("x", "y", "z"), self.position),
+                ("orientation", ORIENTATIONS[self.kind], self.orientation),
+                ("force", ("x", "y", "z"), self.force),
+            )
+        }
+
+    def scale(self, quantity, columns):
+        """Returns the factor to SI units and stores it in `scales`."""
+        if quantity not in self.scales:
+            given = self._options.scale.get(quantity)
+            self.scales[quantity] = scale_of(self.names, quantity, columns, given, self.notes)
+        return self.scales[quantity]
+
+    def _group(self, group, parts):
+        """Returns the columns of a group: from the name of its first component, from a number, or one name for each
+        component."""
+        wanted, named = self._options.columns, self._options.named
+        alone = [part for part in parts if part != group and part in wanted]
+        # The command line takes precedence over the preset.
+        if alone and not (group in named and not named & set(alone)):
+            if group in named:
+                self.names.fail(
+                    group, f"is named as a whole and by {alone[0]}; allowed: one of them"
+                )
+            for part in parts:
+                if part not in wanted:
+                    self.names.fail(part, f"is missing beside others of {group}")
+            return [self._column(part) for part in parts]
+        if not parts or group not in wanted:
+            return []
+        if len(parts) == 1:
+            column = self._column(group)
+            return [] if column is None else [column]
+        letters = LETTERS.get(parts, parts)
+        first, by_number = self._first(group, letters)
+        if first is None:
+            if group not in self._options.optional:
+                self.names.unknown(group, wanted[group])
+            self.notes.append(f"no columns of {group} as the preset names them: left out")
+            return []
+        found = self.names.components(first, letters)
+        if by_number:
+            return self._consecutive(group, first, found, len(parts))
+        if found is None:
+            self._ask(group, first, parts)
+        if letters[0] not in ("w", "x") or len(letters) != 4 or letters[3] == "angle":
+            if found[0] != first:
+                self.names.fail(
+                    group,
+                    f"column {self.names.title(first)} is not its first by name; allowed: "
+                    f"{group}={self.names.names[found[0]]}",
+                )
+        elif found[0] != first:
+            self.notes.append(self._other_order(first, found))
+        return found
+
+    def _first(self, group, letters):
+        """Returns the column of the group's first component, and True if a number names it. A name may omit the
+        component."""
+        endings = [f"{mark}{letters[0]}" for mark in ("_", ".", "")] + ["[0]", "_0", ".0", "0"]
+        if letters[0] != "x":
+            endings = ["_x", *endings]
+        return self.names.find(group, self._options.columns[group], endings)
+
+    def _consecutive(self, group, first, by_name, count):
+        if first + count > len(self.names.names):
+            self.names.fail(
+                group, f"takes columns {first + 1} ... {first + count}{one_axis(group)}"
+            )
+        found = list(range(first, first + count))
+        if by_name is not None and by_name != found:
+            titles = ", ".join(map(self.names.title, found))
+            self.notes.append(
+                f"columns {titles} are read as {group} in this order, as their number says; by their names it "
+                f"would be {', '.join(map(self.names.title, by_name))} "
+                f"(--columns {group}={self.names.names[by_name[0]]})"
+            )
+        return found
+
+    def _ask(self, group, first, parts):
+        """Refuses a name from which the columns of the other components do not follow."""
+        names, count = self.names, len(parts)
+        alone = ",".join(f"{part}=..." for part in parts)
+        consecutive = (
+            f", or {group}={first + 1} for the columns "
+            f"{', '.join(map(names.title, range(first, first + count)))}"
+            if first + count <= len(names.names)
+            else ""
+        )
+        names.fail(
+            group,
+            f'the names do not say which columns go with "{names.names[first]}"; allowed: {alone}{consecutive}'
+            + ("" if consecutive else one_axis(group)),
+        )
+
+    def _other_order(self, first, found):
+        shown = ", ".join(self.names.names[column] for column in sorted(found))
+        return (
+            f"--orientation {self.kind} says that the first component is "
+            f"{self.names.names[found[0]]}, and --columns that "
+            f"it is {self.names.names[first]}: the quaternion was read by the names of its columns ({shown})"
+        )
+
+    def _kind_of_orientation(self):
+        """Returns the representation of the orientation: set by --orientation or the preset, else determined from the
+        names of the columns."""
+        kind, wanted = self._options.orientation, self._options.columns
+        parts = {part for part in PARTS if part in wanted}
+        if kind is not None or ("orientation" not in wanted and not parts):
+            return kind or "none"
+        if "orientation" not in wanted:
+            return next((kind for kind, of in ORIENTATIONS.items() if parts <= set(of)), "none")
+        first, by_number = self.names.find(
+            "orientation", wanted["orientation"], ("_x", ".x", "x", "_w", ".w", "w")
+        )
+        if first is None:
+            self.names.unknown("orientation", wanted["orientation"])
+
+        def shown(kind):
+            letters = LETTERS.get(ORIENTATIONS[kind], ORIENTATIONS[kind])
+            return None if by_number else self.names.components(first, letters, numbers=False)
+
+        if quaternion := shown("quat_wxyz"):
+            return "quat_wxyz" if quaternion[0] == first else "quat_xyzw"
+        for kind in ("axis_angle", "matrix"):
+            if shown(kind):
+                return kind
+        kinds = ", ".join(kind for kind in ORIENTATIONS if kind != "none")
+        self.names.fail(
+            "orientation",
+            f"what begins at column {self.names.title(first)} is not known by its name; --orientation is missing; "
+            f"allowed: {kinds} (of Euler angles, make one of these)",
+        )
+
+    def _refuse_unused(self):
+        """Refuses a column that the command line names and that is not used."""
+        used = {"time": self.time, "position": self.position, "force": self.force}
+        used["orientation"] = self.orientation
+        parts = {"position": ("px", "py", "pz"), "force": ("mfx", "mfy", "mfz")}
+        for quantity in self._options.named:
+            group = next((g for g, members in parts.items() if quantity in members), None)
+            if quantity in PARTS and quantity not in ORIENTATIONS[self.kind]:
+                of_kind = ", ".join(ORIENTATIONS[self.kind]) or "no columns"
+                self.names.fail(quantity, f"is not used: --orientation {self.kind} takes {of_kind}")
+            if not used.get(group or quantity, True):
+                self.names.fail(
+                    quantity, f"is not used: --orientation {self.kind} takes no columns"
+                )
+
+    def _refuse_shared(self):
+        """Refuses two quantities that use the same column."""
+        owners = {}
+        for quantity, parts in self.used().items():
+            for part in parts:
+                other = owners.setdefault(part["column"], quantity)
+                if other != quantity:
+                    self.names.fail(
+                        quantity,
+                        f"column {self.names.title(part['column'] - 1)} is also named for {other}",
+                    )
+
+    def _note_lone_order(self):
+        """Adds a note if components that are named one by one contradict the names of their columns."""
+        wanted = self._options.columns
+        for group, parts, columns in (
+            ("position", ("px", "py", "pz"), self.position),
+            ("force", ("mfx", "mfy", "mfz"), self.force),
+            ("orientation", ("qw", "qx", "qy", "qz"), self._quaternion()),
+        ):
+            if len(columns) != len(parts) or not set(parts) <= set(wanted):
+                continue
+            by_name = self.names.components(columns[0], LETTERS[parts])
+            if by_name and sorted(by_name) == sorted(columns) and by_name != columns:
+                self.notes.append(
+                    f"the columns of {group} are read as {', '.join(parts)} from "
+                    f"{', '.join(map(self.names.title, columns))}, as --columns says; their names say otherwise"
+                )
+
+    def _quaternion(self):
+        """Returns the columns of a quaternion, w first; empty for other representations."""
+        if self.kind == "quat_xyzw":
+            return self.orientation[3:] + self.orientation[:3]
+        return self.orientation if self.kind == "quat_wxyz" else []
+
+    def _column(self, quantity):
+        column, _ = self.names.find(quantity, self._options.columns[quantity])
+        if column is None and quantity not in self._options.optional:
+            self.names.unknown(quantity, self._options.columns[quantity])
+        return column
