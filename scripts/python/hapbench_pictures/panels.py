@@ -22,6 +22,7 @@ SPANS = 600  # of a curve: a page hardly shows more
 LARGEST_RATIO = 30
 # Runs with peaks beyond a gap of this ratio, and failed runs beyond this ratio, leave the axis to the others.
 THROWN_RATIO, FAILED_RATIO = 100, 5
+ROUNDING = 1e-9  # of a number: an axis that spans less shows rounding errors only
 MOST_THROWN = 3  # runs whose largest value is written in a panel
 PANEL = 1.1  # usual height of a panel without its numbers [inch]
 GRID = 400  # cells of a section, to a side
@@ -108,6 +109,15 @@ def draw_over_time(ax, quantity, samples, looks):
         mark_first_touch(ax, s, one)
     ax.set_ylabel(quantity.axis)
     ax.margins(x=0.01)
+    leave_out_rounding(ax)
+
+
+def leave_out_rounding(ax):
+    """Widens an axis on which only rounding errors of its numbers would be visible, such as a stiffness ratio of 1."""
+    low, high = ax.get_ylim()
+    middle = (low + high) / 2
+    if high - low < ROUNDING * abs(middle):
+        ax.set_ylim(0.9 * middle, 1.1 * middle)
 
 
 def without_thrown(drawn):
