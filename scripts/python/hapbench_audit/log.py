@@ -261,7 +261,10 @@ def with_usual_columns(recording, options):
             continue
         name = usual.find(USUAL[quantity]) or usual.find(ALONE.get(quantity, ""))
         if name is None:
-            names.fail(quantity, f"no usual name; --columns {quantity}=NAME or number names it")
+            names.fail(
+                quantity,
+                f"no usual name; --columns {quantity}=NAME or number names it{of_one_axis(usual)}",
+            )
         options.columns[quantity] = [name]
     if "orientation" not in given and not options.orientation:
         name = usual.find(USUAL["orientation"])
@@ -282,6 +285,15 @@ def with_usual_columns(recording, options):
     return with_zeros(recording, 4), 1
 
 
+def of_one_axis(usual):
+    """A hint for a log whose columns have the usual names of the y or z axis alone; else empty."""
+    for axis in "yz":
+        found = usual.find(f"p{axis} pos{axis} position{axis}"), usual.find(f"f{axis} force{axis}")
+        if all(found):
+            return "; for a log of one axis: --columns position={},force={}".format(*found)
+    return ""
+
+
 def alone_columns(names, options, parts):
     """By quantity: its only column, or None where it has three."""
     found = {
@@ -291,6 +303,9 @@ def alone_columns(names, options, parts):
         for quantity in parts
         if quantity in options.columns
     }
+    for quantity, (column, _) in found.items():
+        if column is None:
+            names.unknown(quantity, options.columns[quantity])
     numbers = [column for column, by_number in found.values() if by_number]
     # Three columns from each number would overlap or end beyond the file.
     are_alone = len(numbers) > 0 and (
