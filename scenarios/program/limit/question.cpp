@@ -153,7 +153,14 @@ LimitRow make_limit_row(const LimitOptions& options, const LimitTable& table, st
     row.scenario = loaded.scenario;
     row.question = question_of(options, scene, row.scenario, overrides);
     append_new(warnings, row.question.warnings);
-    append_new(warnings, with_files(loaded, checked(loaded).file_warnings()));
+    const CheckedScenario run = checked(loaded);
+    for (const Warning& warning : run.file_warnings()) {
+      // A device of --device replaces the device of the scene's file.
+      const bool is_of_option = row.device != nullptr && warning.pointer.starts_with("/device");
+      append_new(warnings, is_of_option
+                               ? std::vector{fmt::format("--device {}: {}", row.device->name, warning.located_text())}
+                               : with_files(loaded, {warning}));
+    }
   } catch (const InputError& error) {
     throw row.device != nullptr ? on_device(*row.device, error) : error;
   }
