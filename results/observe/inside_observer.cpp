@@ -464,8 +464,9 @@ double InsideObserver::find_deepest(InsideDepths& depths) {
   const auto is_enough = [&](double largest_bound) {
     if (is_extended && largest_bound <= kUsefulBound * depths.max_bound()) return true;
     if (bound.looks() + search_.looks() < max_evaluations) return false;
-    const bool extends = !is_extended && depths.max_bound() > 0.0 && largest_bound > kUselessBound * depths.max_bound();
-    if (extends) max_evaluations = std::max(max_evaluations, kMaxExtendedEvaluations);
+    const bool extends = !is_extended && max_evaluations < kMaxExtendedEvaluations && depths.max_bound() > 0.0 &&
+                         largest_bound > kUselessBound * depths.max_bound();
+    if (extends) max_evaluations = kMaxExtendedEvaluations;
     is_extended = is_extended || extends;
     return !extends;
   };
