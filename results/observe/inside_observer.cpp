@@ -21,6 +21,10 @@ constexpr std::size_t kMaxBlocks = 16384, kSettledSamples = 12;
 /// Largest number of distance evaluations in the search for the deepest step. A solid in closed form is ten times
 /// as fast, so it gets more.
 constexpr std::size_t kMaxEvaluations = 8000, kMaxClosedFormEvaluations = 100000;
+/// A depth whose error exceeds the depth itself states nothing. The search for such a depth therefore continues, up to
+/// kMaxExtendedEvaluations, until the largest bound is this factor times the deepest known depth.
+constexpr std::size_t kMaxExtendedEvaluations = 32000;
+constexpr double kUselessBound = 2.0, kUsefulBound = 1.1;
 /// kSharedBound: poses whose tip centres (in half widths) and axes differ by less than this share one bound.
 /// kSamePose: if no point of the tool differs by more than this [half widths], one search is enough for all poses.
 constexpr double kSharedBound = 0.1, kSamePose = 0.01;
@@ -454,12 +458,23 @@ double InsideObserver::find_deepest(InsideDepths& depths) {
             : bound.coarse_bound_at(pose, displacement, axis_change);
     return s;
   };
-  const std::size_t max_evaluations = solid_->bytes() > 0 ? kMaxEvaluations : kMaxClosedFormEvaluations;
+  std::size_t max_evaluations = solid_->bytes() > 0 ? kMaxEvaluations : kMaxClosedFormEvaluations;
+  bool is_extended = false;
+  // Returns true if the search shall end, although the largest bound exceeds the deepest known depth.
+  const auto is_enough = [&](double largest_bound) {
+    if (is_extended && largest_bound <= kUsefulBound * depths.max_bound()) return true;
+    if (bound.looks() + search_.looks() < max_evaluations) return false;
+    const bool extends = !is_extended && max_evaluations < kMaxExtendedEvaluations && depths.max_bound() > 0.0 &&
+                         largest_bound > kUselessBound * depths.max_bound();
+    if (extends) max_evaluations = kMaxExtendedEvaluations;
+    is_extended = is_extended || extends;
+    return !extends;
+  };
   // Refine the range with the largest bound until no range can be deeper.
   std::priority_queue<Segment> open;
   open.push(bounded(0, parts.size()));
   double rest = 0.0;  // largest bound of ranges that can neither be halved nor searched
-  while (!open.empty() && open.top().bound > depth_threshold() && bound.looks() + search_.looks() < max_evaluations) {
+  while (!open.empty() && open.top().bound > depth_threshold() && !is_enough(open.top().bound)) {
     const Segment s = open.top();
     open.pop();
     const std::size_t middle = (s.first + s.end) / 2;

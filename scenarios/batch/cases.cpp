@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <numeric>
-#include <set>
 #include <utility>
 
 #include "scenarios/input/input_error.hpp"
@@ -18,13 +17,28 @@ void append_new(std::vector<std::string>& texts, const std::vector<std::string>&
     if (std::find(texts.begin(), texts.end(), text) == texts.end()) texts.push_back(text);
 }
 
+/// Throws InputError if two axes have the same path, or if one axis would override all values of another axis: the path
+/// of a field within its field, unless the values are objects that the later axis changes.
+static void check_paths(const std::vector<Axis>& axes) {
+  const auto is_object = [](const std::string& value) { return value.starts_with("{"); };
+  for (auto outer = axes.begin(); outer != axes.end(); ++outer) {
+    if (std::ranges::count(axes, outer->path, &Axis::path) > 1)
+      fail_in_option(outer->option, fmt::format("got \"{}\" twice; allowed: each field once", outer->path));
+    for (auto inner = axes.begin(); inner != axes.end(); ++inner) {
+      if (!inner->path.starts_with(outer->path + ".")) continue;
+      if (outer < inner && !outer->values.empty() && std::ranges::all_of(outer->values, is_object)) continue;
+      fail_in_option(outer->option,
+                     fmt::format("got \"{0}\" and \"{1}\", which is a part of it; allowed: one of the two, or objects "
+                                 "for {0} before {1}",
+                                 outer->path, inner->path));
+    }
+  }
+}
+
 Cases::Cases(std::vector<ScenarioText> scenes, std::vector<std::string> sets, std::vector<Axis> axes,
              std::optional<Sampling> sampling)
     : scenes_(std::move(scenes)), sets_(std::move(sets)), axes_(std::move(axes)), sampling_(std::move(sampling)) {
-  std::set<std::string> paths;
-  for (const Axis& axis : axes_)
-    if (!paths.insert(axis.path).second)
-      fail_in_option(axis.option, fmt::format("got \"{}\" twice; allowed: each field once", axis.path));
+  check_paths(axes_);
   // Draw the sample, or count the combinations of the grid.
   strides_.resize(axes_.size());
   if (sampling_) {

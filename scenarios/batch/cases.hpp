@@ -23,7 +23,8 @@ class Cases {
  public:
   /// `scenes` contains one scene, or one for each value of the axis kSceneAxis. `sets` are overrides for all
   /// cases, as in --set. Precondition: without a sampling, every axis has values. Throws InputError if two axes
-  /// have the same path, or for more than kMaxRuns combinations.
+  /// have the same path, if one axis would override the values of another axis, or for more than kMaxRuns
+  /// combinations.
   Cases(std::vector<ScenarioText> scenes, std::vector<std::string> sets, std::vector<Axis> axes,
         std::optional<Sampling> sampling = {});
 

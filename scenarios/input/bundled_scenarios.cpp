@@ -30,6 +30,16 @@ std::vector<BundledScenario> bundled_scenarios() {
   return found;
 }
 
+/// Returns the names of the bundled studies.
+static std::vector<std::string> study_names() {
+  std::vector<std::string> names;
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(installed_folder("scenarios/library") / "studies", error))
+    names.push_back(entry.path().stem().string());
+  std::ranges::sort(names);  // a folder has no order
+  return names;
+}
+
 fs::path find_scenario(const std::string& argument, const fs::path& directory) {
   // An existing file.
   std::error_code error;
@@ -49,10 +59,16 @@ fs::path find_scenario(const std::string& argument, const fs::path& directory) {
   // The argument names neither a file nor a scenario: report the most likely mistake.
   const std::string missing = argument + ": no such file and no bundled scenario";
   if (fs::exists(file.string() + ".json", error)) throw InputError(missing + "; there is " + argument + ".json");
+  if (const fs::path near = fs::path(argument).replace_extension(".json"); fs::exists(directory / near, error))
+    throw InputError(missing + "; there is " + near.string());
   if (argument.find('=') != std::string::npos)
     throw InputError(missing + "; a field is overridden by --set " + shell_word(argument));
-  throw InputError(missing + nearest_name_hint(fs::path(argument).stem().string(), names) +
-                   "; \"hapbench describe scenarios\" shows them");
+  const std::string stem = fs::path(argument).stem().string();
+  if (nearest_name(stem, names).empty()) {
+    if (const std::string study = nearest_name_hint(stem, study_names()); !study.empty())
+      throw InputError(missing + study + ", a study; \"hapbench describe studies\" shows them");
+  }
+  throw InputError(missing + nearest_name_hint(stem, names) + "; \"hapbench describe scenarios\" shows them");
 }
 
 std::vector<fs::path> find_scenarios(const std::vector<std::string>& arguments) {

@@ -45,7 +45,17 @@ std::vector<std::string> chosen_names(const std::string& option, const std::vect
 }
 
 std::vector<std::string> chosen_algorithms(const std::vector<std::string>& given) {
-  return chosen_names("--algorithms", given, algorithm_names(), "hapbench describe algorithms");
+  const std::vector<std::string> known = algorithm_names();
+  try {
+    return chosen_names("--algorithms", given, known, "hapbench describe algorithms");
+  } catch (const InputError& error) {
+    const auto is_unlike = [&known](const std::string& name) {
+      return name != "all" && std::ranges::count(known, name) == 0 && nearest_name(name, known).empty();
+    };
+    if (std::ranges::none_of(given, is_unlike)) throw;
+    throw InputError(error.kind(), error.location(),
+                     error.problem() + "; a law of your own is loaded by --module FILE.so");
+  }
 }
 
 std::vector<std::string> first_few(std::vector<std::string> texts, std::size_t max_count) {

@@ -79,17 +79,22 @@ std::pair<std::vector<HapbenchOutput>, std::string> rendered(const CheckedScenar
 std::string other_scenario_note(const CheckedScenario& scenario, const LoopLog& log) {
   const std::string hash = scenario_hash(effective_scenario(scenario.scenario(), fs::current_path()), scenario.files());
   if (hash == log.scenario.hash) return "";
-  return fmt::format("the log was recorded with another scenario ({}, hash {}; here {}, hash {}): forces may differ",
-                     log.scenario.name, log.scenario.hash, scenario.scenario().name, hash);
+  std::string text =
+      fmt::format("the log was recorded with another scenario ({}, hash {}; here {}, hash {}): forces may differ",
+                  log.scenario.name, log.scenario.hash, scenario.scenario().name, hash);
+  if (scenario.scenario().time.step != log.scenario.period)
+    text += fmt::format(". The recorded time step is {0} s, here it is {1} s: --set time.step_s={0}",
+                        log.scenario.period, scenario.scenario().time.step);
+  return text;
 }
 
-std::string summary_text(const ReplayRow& row, const LoopLog& log, const std::string& file) {
+/// `period`: time step of the scenario that renders the log [s].
+std::string summary_text(const ReplayRow& row, const LoopLog& log, const std::string& file, double period) {
   const double seconds = 1e-9 * static_cast<double>(log.inputs.back().time_ns - log.inputs.front().time_ns);
-  std::string text =
-      fmt::format("{}: {} calls in {:.6g} s, {} mode, mean period {:.6g} ms (scenario: {:.6g} ms)\n", file,
-                  log.inputs.size(), seconds, mode_name(log.setup.mode),
-                  log.inputs.size() > 1 ? 1e3 * seconds / static_cast<double>(log.inputs.size() - 1) : 0.0,
-                  1e3 * log.scenario.period);
+  std::string text = fmt::format(
+      "{}: {} calls in {:.6g} s, {} mode, mean period {:.6g} ms (scenario: {:.6g} ms)\n", file, log.inputs.size(),
+      seconds, mode_name(log.setup.mode),
+      log.inputs.size() > 1 ? 1e3 * seconds / static_cast<double>(log.inputs.size() - 1) : 0.0, 1e3 * period);
   text += row.compared.equal == row.compared.calls
               ? "all outputs are equal to the recorded ones to the last bit\n"
               : fmt::format("{} of {} calls have other outputs than recorded, the first is call {}\n",
@@ -116,7 +121,7 @@ int replay_loop(const std::string& given, const std::string& log_file, const Com
   const ReplayRow row = replay_row(scenario.scenario().rendering.algorithm, outputs, log);
   const std::string other = other_scenario_note(scenario, log);
   const Layout layout = context.layout();
-  report.say(summary_text(row, log, log_file) + "\n");
+  report.say(summary_text(row, log, log_file, scenario.scenario().time.step) + "\n");
   report.show(replay_columns().table(std::vector{row}, "forces along the log " + log_file, layout.in_full()));
   if (!other.empty()) report.say("\n" + layout.wrapped(other, 0));
   report.say(fmt::format("\nresults in {}\n", report.folder().string()));

@@ -62,6 +62,17 @@ std::string problem_of(const std::string& argument, const CLI::App& program, con
   return fmt::format("unknown command \"{}\"{}", argument, nearest_name_hint(argument, names));
 }
 
+/// Returns the text of an error of CLI11. For a value that is not a number, CLI11 writes "Could not convert: OPTION =
+/// VALUE" and does not name what is allowed.
+std::string text_of(const CLI::ParseError& error) {
+  constexpr std::string_view kHead = "Could not convert: ", kEquals = " = ";
+  const std::string text = error.what();
+  const std::size_t equals = text.find(kEquals);
+  if (!text.starts_with(kHead) || equals == std::string::npos) return one_line(text);
+  return one_line(fmt::format("{}: got \"{}\"; allowed: a number without a unit",
+                              text.substr(kHead.size(), equals - kHead.size()), text.substr(equals + kEquals.size())));
+}
+
 }  // namespace
 
 InputError usage_error(const CLI::ParseError& error, const CLI::App& program) {
@@ -83,7 +94,7 @@ InputError usage_error(const CLI::ParseError& error, const CLI::App& program) {
     return error_about({argument.substr(0, argument.find('='))}, name + problem_of(argument, program, command) + help);
   }
   if (command == nullptr && error.get_name() == "RequiredError") return InputError("a command is missing" + help);
-  return error_about(options_named(error.what(), command ? *command : program), one_line(name + error.what()) + help);
+  return error_about(options_named(error.what(), command ? *command : program), name + text_of(error) + help);
 }
 
 }  // namespace hapbench

@@ -78,6 +78,9 @@ const HapbenchModule& opened(const fs::path& file) {
     std::string problem = dlerror();
     const std::string again = file.string() + ": ";
     if (problem.starts_with(again)) problem.erase(0, again.size());
+    constexpr std::string_view kSources[] = {".c", ".cc", ".cpp", ".cxx"};
+    if (std::ranges::count(kSources, file.extension().string()) > 0)
+      problem = "it is source code; allowed: the library that a compiler makes of it (algorithms/WRITE_A_LAW.md)";
     fail_in_file(file, "is not a module: " + problem);
   }
   // Get the table of the module.

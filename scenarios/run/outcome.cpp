@@ -320,9 +320,16 @@ class OutcomeObserverImpl final : public OutcomeObserver {
   bool is_stuck() { return stuck() || (progress_ && progress_->left_behind()); }
   std::string stuck_text() {
     if (stuck()) return standstill_text();
-    return fmt::format(
+    std::string text = fmt::format(
         "the dragged tool ended {} behind the position to which its hand should have led it, {} along the path, at {}",
         length_text(*progress_->left_behind()), length_text(progress_->target_progress()), millimetres(position_));
+    // A tool that still moves may only need more time.
+    const double speed = handle_velocity_.norm();
+    if (speed > kMinMovingFraction * std::get<DragHandFields>(scenario_.hand).drag.speed)
+      text += fmt::format(
+          "; it still moved, at {:.2g} mm/s: with more time after the end of the path (time.steps) it may arrive",
+          1e3 * speed);
+    return text;
   }
 
   std::string environment_text() const {

@@ -302,6 +302,31 @@ class Formats(unittest.TestCase):
             )
         with self.assertRaisesRegex(InputError, "columns: force: no usual name"):
             audit({"t": T * np.arange(len(z)), "x": z, "load": z})
+        with self.assertRaisesRegex(InputError, "--columns position=pz,force=fz"):
+            audit({"t": T * np.arange(len(z)), "pz": z, "fz": z})
+        with self.assertRaisesRegex(InputError, 'columns: force: got "f"'):
+            audit(
+                {"t": T * np.arange(len(z)), "pz": z, "fz": z},
+                columns={"position": "pz", "force": "f"},
+            )
+
+    def test_a_clock_in_other_units_is_asked_about(self):
+        z = pressed(20)
+        for factor, is_asked in ((1.0, False), (1e-3, True)):
+            log = {"t": factor * T * np.arange(len(z)), "x": z, "f": wall(z, 1000.0)}
+            said = " ".join(audit(log)["warnings"])
+            self.assertEqual("in other units" in said, is_asked, (factor, said))
+
+    def test_the_reason_is_of_the_contact_that_moves_furthest(self):
+        # A touch of a few counts comes first; a force with the wrong sign follows in both contacts.
+        short, far = -4e-5 * np.hanning(40), -2e-3 * np.hanning(400)
+        z = np.concatenate([np.full(60, 1e-4), short, np.full(60, 1e-4), far, np.full(60, 1e-4)])
+        z = 2e-5 * np.round(z / 2e-5)
+        log = {"t": T * np.arange(len(z)), "x": z, "f": -wall(z, 1000.0)}
+        found = audit(log)
+        self.assertIsNone(found["stiffness"])
+        said = " ".join(found["missing"])
+        self.assertIn("grows along its own direction", said)
 
     def test_command_and_function_agree(self):
         z = pressed(20)

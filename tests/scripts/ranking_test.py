@@ -17,7 +17,7 @@ from hapbench.columns import read_records
 from hapbench_pictures.bands import band
 from hapbench_pictures.given import given_runs, labels
 from hapbench_pictures.many_runs import between
-from hapbench_pictures.ranking_plot import draw_ranking
+from hapbench_pictures.ranking_plot import draw_panel, draw_ranking
 from hapbench_pictures.standings import FAILURES, Law, Scene, scenes_of
 from hapbench_report.markup import known_number
 from hapbench_style import SHEETS, plt
@@ -121,6 +121,37 @@ class Standings(WithRuns):
             (None, 1.0, "–"),
         ):
             self.assertEqual(known_number(value, tolerance), shown)
+
+    def test_an_axis_of_bounds_alone_reaches_the_largest(self):
+        """Also beside a law whose runs all failed, which has no number."""
+
+        class Run:
+            scenario, path = {}, ""
+
+            def __init__(self, value, outcome, seed):
+                self.summary, self.outcome = {"metrics": {"inside_max_m": value}}, outcome
+                self.state_hash = f"{value} {seed}"
+
+            def tolerance(self, section, name):
+                return 9e-4
+
+        laws = [
+            Law(name, name, {seed: Run(value, outcome, seed) for seed in range(2)})
+            for name, value, outcome in (
+                ("a", 1e-4, "completes"),
+                ("b", 2e-4, "completes"),
+                ("c", None, "stuck"),
+            )
+        ]
+        scene = Scene("s", laws, {"inside_max_m": "less"})
+        figure, ax = plt.subplots()
+        draw_panel(ax, scene, "inside_max_m")
+        low, high = ax.get_xlim()
+        self.assertEqual(low, 0.0)
+        self.assertAlmostEqual(high, 1.1 * 1.1, delta=1e-9)  # bounds of 1.0 and 1.1 mm
+        marks = sorted(high * float(at[0]) for dot in curves_of(ax, "<") for at in dot)
+        np.testing.assert_allclose(marks, [1.0, 1.1])
+        plt.close(figure)
 
     def test_seeds_have_the_numbers_of_their_folders(self):
         folder = self.many / "tap_wall"

@@ -156,6 +156,13 @@ void add_linear_limit(const LimitQuestion& question, const std::map<double, RunS
     limit.no_linear = "the delay or a field of the device is not part of the linear theory";
     return;
   }
+  // Springs that cannot lose contact have the same loop in every run. Their equilibrium needs no search: at zero
+  // deflection no spring is in contact.
+  if (has_permanent_springs(scenario)) {
+    const TheoreticalLimit loop = frictionless_limit(question);
+    limit.linear = loop.has_none ? 0.0 : loop.value;
+    if (limit.linear) return;
+  }
   // Find the largest stable value up to the limit whose run has a contact that lasts.
   for (auto run = std::make_reverse_iterator(runs.upper_bound(*limit.end.value)); run != runs.rend(); ++run) {
     const auto& [value, judged] = *run;

@@ -102,6 +102,17 @@ TheoreticalLimit eigenvalue_limit(const LimitQuestion& question) {
   return limit_by(question, has_eigenvalues, step_is_stable, kTheoryIntervals);
 }
 
+TheoreticalLimit frictionless_limit(const LimitQuestion& question) {
+  const auto on_smooth_device = [](bool (*condition)(const Scenario&)) {
+    return [condition](Scenario scenario) {
+      if (auto* device = std::get_if<ImpedanceDeviceConfig>(&scenario.device))
+        device->coulomb = device->encoder_step = device->force_step = 0.0;
+      return condition(scenario);
+    };
+  };
+  return limit_by(question, on_smooth_device(has_eigenvalues), on_smooth_device(step_is_stable), kTheoryIntervals);
+}
+
 TheoreticalLimit inequality_limit(const LimitQuestion& question) {
   return limit_by(question, has_inequality, keeps_inequality, kScanIntervals);
 }

@@ -26,6 +26,10 @@ struct TheoreticalLimit {
 /// contact, with a tool without hand and device, or with a device whose feedback loop is linear.
 TheoreticalLimit eigenvalue_limit(const LimitQuestion& question);
 
+/// Returns the limit by the eigenvalues of one time step as eigenvalue_limit(), for an impedance device without its dry
+/// friction and the steps of its encoder and force.
+TheoreticalLimit frictionless_limit(const LimitQuestion& question);
+
 /// Returns the limit by the integrator's stability inequality. Applies to springs in permanent contact with a tool
 /// without hand and device.
 TheoreticalLimit inequality_limit(const LimitQuestion& question);

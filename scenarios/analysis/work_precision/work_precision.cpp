@@ -54,7 +54,13 @@ class Study {
       : question_(question), loaded_(load_scenario(question.scenario, question.overrides)) {
     for (const Axis& axis : question.over) {
       if (axis.path == kStepPath)
-        fail_in_option("--over", fmt::format("got {}; allowed: other fields, because --vary refines it", axis.path));
+        fail_in_option("--over", fmt::format("got {}; allowed: other fields, because --vary refines it. The number of "
+                                             "time steps is --levels",
+                                             axis.path));
+      for (const std::string_view varied : {std::string_view(kIntegratorPath), std::string_view(kStepPath)})
+        if (varied.starts_with(axis.path + "."))
+          fail_in_option("--over", fmt::format("got {}, which contains {}; allowed: {}", axis.path, varied,
+                                               varied == kIntegratorPath ? varied : "other fields"));
       if (axis.path == kIntegratorPath) {
         curves_ = axis.values;
       } else {

@@ -62,6 +62,7 @@ bool is_ranked(const Ranking& league) {
 /// Returns why no algorithm has a rank.
 const char* no_ranks_reason(const Ranking& league) {
   if (std::ranges::count(league.failed, false) == 0) return "every run failed";
+  if (league.algorithms.size() == 1) return "there is only one law";
   const auto has_direction = [](Better better) { return better != Better::none; };
   if (std::ranges::none_of(league.better, has_direction)) return "none of these metrics has a better direction";
   const auto has_mean = [](const RankingEntry& standing) { return standing.mean.has_value(); };
@@ -103,8 +104,8 @@ bool seeds_agree(const Ranking& league, std::size_t scenario) {
 /// Summarizes which algorithms are first, and whether the seeds give a spread.
 std::string verdict(const Ranking& league, const std::string& folder, const Layout& layout) {
   std::string text = layout.wrapped(first_ranks_text(league), 0);
-  if (!is_ranked(league)) return text;
-  if (league.seeds < 2) return text + "one seed: the spread is unknown; --seeds K estimates it\n";
+  if (league.seeds < 2)
+    return is_ranked(league) ? text + "one seed: the spread is unknown; --seeds K estimates it\n" : text;
   std::vector<std::string> alike, agreeing;
   for (std::size_t s = 0; s < league.scenarios.size(); ++s) {
     if (!league.depends_on_seed[s])
@@ -118,6 +119,7 @@ std::string verdict(const Ranking& league, const std::string& folder, const Layo
                     "about the error of the numbers, and --errors estimates it",
                     fmt::join(agreeing, ", ")),
         0);
+  if (alike.empty() && !is_ranked(league)) return text;
   if (alike.empty())
     return text + layout.wrapped(fmt::format("\"hapbench report {}\" compares the algorithms in pairs, seed by seed",
                                              shell_file(folder)),

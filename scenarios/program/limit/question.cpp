@@ -116,6 +116,16 @@ LimitQuestion question_of(const LimitOptions& options, const ScenarioText& scene
   return question;
 }
 
+/// Returns the warnings. Those about the fields of a device name --device, which replaces the device of the scene's
+/// file, and not this file.
+std::vector<std::string> of_option(const ComparedDevice* device, std::vector<std::string> warnings) {
+  if (device == nullptr) return warnings;
+  for (std::string& warning : warnings)
+    if (const std::size_t end = warning.find(": /device/"); end != std::string::npos)
+      warning.replace(0, end, "--device " + device->name);
+  return warnings;
+}
+
 }  // namespace
 
 LimitTable make_limit_table(const LimitOptions& options) {
@@ -152,8 +162,8 @@ LimitRow make_limit_row(const LimitOptions& options, const LimitTable& table, st
     const LoadedScenario loaded = load_scenario(scene, overrides);
     row.scenario = loaded.scenario;
     row.question = question_of(options, scene, row.scenario, overrides);
-    append_new(warnings, row.question.warnings);
-    append_new(warnings, with_files(loaded, checked(loaded).file_warnings()));
+    append_new(warnings, of_option(row.device, row.question.warnings));
+    append_new(warnings, of_option(row.device, with_files(loaded, checked(loaded).file_warnings())));
   } catch (const InputError& error) {
     throw row.device != nullptr ? on_device(*row.device, error) : error;
   }

@@ -8,12 +8,15 @@
 #include <map>
 #include <optional>
 #include <span>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "device_model/theory/linear_loops.hpp"
 #include "scenarios/analysis/stability/compared_devices.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/program/digits.hpp"
+#include "scenarios/program/names.hpp"
 #include "scenarios/run/scripted_motion.hpp"
 
 namespace hapbench {
@@ -94,6 +97,27 @@ std::string remarks_text(const LimitRow& row, const Layout& layout) {
   return text;
 }
 
+/// Returns a line for each reason why rows of a grid have no limit to quote, with the number of such rows.
+std::string missing_quotes_text(const LimitTable& table, const Layout& layout) {
+  constexpr std::size_t kMaxReasons = 4;
+  std::vector<std::pair<std::string, std::size_t>> reasons;  // in the order of the rows
+  for (const LimitRow& row : table.rows) {
+    if (row.limit.quoted.value) continue;
+    const auto known =
+        std::ranges::find(reasons, row.limit.quoted.reason, [](const auto& entry) { return entry.first; });
+    if (known == reasons.end())
+      reasons.emplace_back(row.limit.quoted.reason, 1);
+    else
+      ++known->second;
+  }
+  std::vector<std::string> lines;
+  for (const auto& [reason, rows] : reasons)
+    lines.push_back(fmt::format("no quote in {} row{}: {}", rows, rows == 1 ? "" : "s", reason));
+  std::string text;
+  for (const std::string& line : first_few(lines, kMaxReasons)) text += layout.wrapped(line, 0);
+  return text;
+}
+
 /// Returns notes that explain the table's columns and marks.
 std::string notes_text(const LimitTable& table, const Layout& layout) {
   std::optional<double> friction;  // largest Coulomb friction over the handles [N]; empty without impedance devices
@@ -137,6 +161,8 @@ std::string notes_text(const LimitTable& table, const Layout& layout) {
   std::string text;
   for (const auto& [holds, note] : notes)
     if (holds) text += layout.wrapped(note, 0);
+  // Give the reasons of rows without a limit to quote.
+  if (table.is_grid()) text += missing_quotes_text(table, layout);
   // Add a note on each distinct delay of a device.
   std::vector<std::string> delays = {""};
   if (table.over() == 0)

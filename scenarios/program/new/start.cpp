@@ -34,8 +34,11 @@
 namespace hapbench {
 namespace {
 
-constexpr double kClearance = 0.001;    ///< distance between tool and surface at the start [m]
-constexpr double kDragSpeed = 5.0;      ///< speed of a drag [tool diameters per second]
+constexpr double kClearance = 0.001;  ///< distance between tool and surface at the start [m]
+constexpr double kDragSpeed = 5.0;    ///< speed of a drag [tool diameters per second]
+/// Time at the end of a requested path in which the tool reaches the hand's target [s]. The tool lags behind the target
+/// while it lands and climbs, by millimetres: the hand's spring has 300 N/m.
+constexpr double kArrival = 0.5;
 constexpr double kPressDepth = 0.0035;  ///< depth of a pressing hand's target below the surface [m]; gives 1 N
 
 /// Rounds to two significant digits, for lengths that people read.
@@ -338,16 +341,16 @@ class Start {
     for (std::size_t i = 1; i < requested_points_.size(); ++i)
       length += (requested_points_[i] - requested_points_[i - 1]).norm();
     start_at(start_above(first));
-    set_drag_duration(length);
+    set_drag_duration(length, kArrival);
     hand["smoothing_m"] = 0.5 * diameter_;
     notes_.push_back(fmt::format("dragged along a path of {}", length_text(length)));
   }
 
-  /// Sets the speed of a drag, and enough steps for a path of this length [m].
-  void set_drag_duration(double length) {
+  /// Sets the speed of a drag, and enough steps for a path of this length [m] and the time after its end [s].
+  void set_drag_duration(double length, double rest = 0.0) {
     const double speed = kDragSpeed * diameter_;
     scene_["hand"]["speed_m_per_s"] = rounded(speed);
-    scene_["time"]["steps"] = static_cast<std::int64_t>(std::ceil(rounded(length / speed) / kStartStep));
+    scene_["time"]["steps"] = static_cast<std::int64_t>(std::ceil((rounded(length / speed) + rest) / kStartStep));
   }
 
   /// Places a mesh tool above the middle of the plane. The tip centre is the origin of the file, which is the

@@ -217,12 +217,14 @@ def missing(log, audit, device):
 def missing_of_spring(audit):
     """Returns which of stiffness, damping and delay the log does not determine, and what would determine it."""
     if audit["stiffness"] is None and audit["contacts"]:
-        whys = [
-            one["spring"]["why"]
-            for one in audit["contacts"]
-            if one["spring"] and "why" in one["spring"]
-        ]
-        why = whys[0] if whys else f"no contact has {FEWEST} rows"
+        # The contact in which the tool moves furthest comes closest to a stiffness.
+        springs = [one["spring"] for one in audit["contacts"] if one["spring"]]
+        furthest = max(
+            (one for one in springs if "why" in one),
+            key=lambda one: one.get("travel_m", 0.0),
+            default={"why": f"no contact has {FEWEST} rows"},
+        )
+        why = furthest["why"]
         return [f"stiffness: {why}; tap, and press to several depths at several speeds"]
     if audit["stiffness"] and audit["stiffness"].get("why_no_damping"):
         return [

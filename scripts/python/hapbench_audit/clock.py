@@ -3,6 +3,8 @@ import numpy as np
 
 from .log import LONG_INTERVALS
 
+# Largest rate of a loop of force or contact [Hz]; above it, the clock probably has other units.
+FASTEST_HZ = 1e5
 # Standard deviation, relative to the interval, above which the clock causes a warning.
 JITTER = 0.05
 
@@ -32,6 +34,11 @@ def clock_of(log):
 
 def clock_warnings(clock):
     found = []
+    if clock["rate_Hz"] > FASTEST_HZ:
+        found.append(
+            f"the rate of {clock['rate_Hz']:.4g} Hz is unusually high for a haptic or contact loop: is the time in other "
+            "units? (--scale time=SECONDS_PER_UNIT)"
+        )
     if clock["jitter_s"] > JITTER * clock["interval_s"]:
         found.append(
             f"the intervals of the clock scatter by {1e3 * clock['jitter_s']:.3g} ms around "

@@ -267,7 +267,10 @@ def with_usual_columns(recording, options):
             continue
         name = usual.find(USUAL[quantity]) or usual.find(ALONE.get(quantity, ""))
         if name is None:
-            names.fail(quantity, f"no usual name; --columns {quantity}=NAME or number names it")
+            names.fail(
+                quantity,
+                f"no usual name; --columns {quantity}=NAME or number names it{of_one_axis(usual)}",
+            )
         options.columns[quantity] = [name]
     if "orientation" not in given and not options.orientation:
         name = usual.find(USUAL["orientation"])
@@ -288,6 +291,15 @@ def with_usual_columns(recording, options):
     return with_zeros(recording, 4), 1
 
 
+def of_one_axis(usual):
+    """A hint for a log whose columns have the usual names of the y or z axis alone; else empty."""
+    for axis in "yz":
+        found = usual.find(f"p{axis} pos{axis} position{axis}"), usual.find(f"f{axis} force{axis}")
+        if all(found):
+            return "; for a log of one axis: --columns position={},force={}".format(*found)
+    return ""
+
+
 def alone_columns(names, options, parts):
     """Returns for each quantity its only column; None for a quantity with three columns."""
     found = {
@@ -297,6 +309,9 @@ def alone_columns(names, options, parts):
         for quantity in parts
         if quantity in options.columns
     }
+    for quantity, (column, _) in found.items():
+        if column is None:
+            names.unknown(quantity, options.columns[quantity])
     numbers = [column for column, by_number in found.values() if by_number]
     # If every number stood for three columns, the columns would overlap or lie beyond the last column.
     are_alone = len(numbers) > 0 and (

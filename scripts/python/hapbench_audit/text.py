@@ -1,5 +1,6 @@
 """An audit as rows of a table (subject, quantity, numbers in words), and the lines below the table."""
 from hapbench_import.text_table import counted
+from hapbench_report.markup import rounded_up
 
 
 HAMMERS = 1.0  # threshold of contacts lost per second
@@ -12,6 +13,8 @@ def number(value, digits=3, none="-"):
 def millijoules(value, error=None):
     if value is None:
         return "unknown"
+    if error is not None and 0.0 <= value < error:
+        return f"<= {rounded_up(1e3 * (value + error)):.1g} mJ"  # a bound, as in the tables of hapbench
     text = f"{1e3 * value:.3g}"
     return f"{text} mJ" if error is None else f"{text} +- {1e3 * error:.1g} mJ"
 
@@ -90,6 +93,8 @@ def energy_rows(energy):
         )
     worst = energy["worst_contact"]
     if worst is None:
+        return rows
+    if worst["created_J"] < worst["error_J"]:  # then the mean of the contacts is not known either
         return rows
     return [
         *rows,

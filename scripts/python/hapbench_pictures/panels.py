@@ -21,6 +21,7 @@ SPANS = 600  # number of time spans of a curve; a page hardly shows more
 LARGEST_RATIO = 30
 # Runs with peaks beyond a gap of the first ratio, and failed runs beyond the second ratio, do not influence the axis.
 THROWN_RATIO, FAILED_RATIO = 100, 5
+ROUNDING = 1e-9  # fraction of a value that an axis must span; a smaller span shows rounding errors only
 MOST_THROWN = 3  # largest number of runs whose largest value is printed in a panel
 PANEL = 1.1  # usual height of a panel without its tick labels [inch]
 GRID = 400  # number of cells along each side of a section
@@ -111,6 +112,15 @@ def draw_over_time(ax, quantity, samples, looks):
         mark_first_touch(ax, s, one)
     ax.set_ylabel(quantity.axis)
     ax.margins(x=0.01)
+    leave_out_rounding(ax)
+
+
+def leave_out_rounding(ax):
+    """Widens an axis on which only rounding errors of its numbers would be visible, such as a stiffness ratio of 1."""
+    low, high = ax.get_ylim()
+    middle = (low + high) / 2
+    if high - low < ROUNDING * abs(middle):
+        ax.set_ylim(0.9 * middle, 1.1 * middle)
 
 
 def without_thrown(drawn):

@@ -13,7 +13,7 @@ from .quantities import chosen
 from .ranking_plot import draw_ranking, is_ranking
 from .replay_plot import draw_logs, given_logs
 from .run_plot import draw_runs
-from .study_plot import PICTURES, draw_study
+from .study_plot import PICTURES, draw_study, kind_of
 from .sweep_plot import Sweep, draw_sweep, sensitivity_table
 
 KINDS = (".svg", ".png", ".pdf")
@@ -51,13 +51,13 @@ def figure_of(options):
             "is not for logs of a loop; allowed for them: --width, --dpi, --out",
         )
         return draw_logs(logs, SHEETS[options.width or "double"])
-    sweep, study = given_sweep(options.runs), given_alone(options.runs, PICTURES, "holds limits")
+    sweep, study = given_sweep(options.runs), given_alone(options.runs, PICTURES, "holds a study")
     sheet = SHEETS[options.width or "double"]
     if study:
         refuse(
             options,
             ("--y", "--metric", "--where", "--from", "--to"),
-            f"{study} holds limits; allowed for it: --width, --dpi, --out",
+            f"is not for {study}, {kind_of(study)}; allowed for it: --width, --dpi, --out",
         )
         return draw_study(study, sheet)
     if sweep:

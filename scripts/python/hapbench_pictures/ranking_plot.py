@@ -110,7 +110,8 @@ def draw_panel(ax, scene, metric, is_compact=False):
     """Draws one metric of one scene: a row for each law, the best law on top. `is_compact`: each row has one line of
     text."""
     standings, laws = scene.standings(metric), scene.sorted_laws(metric)
-    known = [of for of in standings.values() if not of.is_unknown]
+    # A law whose runs all failed has no mean, and is not a number that could determine the axis.
+    known = [of for of in standings.values() if of.mean is not None and not of.is_unknown]
     values = [v for of in known or standings.values() for v in of.values.values()]
     title, unit, factor = column(metric, values)
     is_dark = ax.xaxis.label.get_color() == "#e7e9ea"
@@ -122,7 +123,7 @@ def draw_panel(ax, scene, metric, is_compact=False):
             ax.plot(1, row, **FAILED, transform=ax.get_yaxis_transform(), clip_on=False, zorder=5)
     ax.use_sticky_edges = False  # otherwise the grey bars would remove the margins
     ax.margins(x=0.07)
-    if values and spread_logarithmically(factor * np.array(values)):
+    if known and spread_logarithmically(factor * np.array(values)):
         ax.set_xscale("log")
         number_ticks(ax.xaxis)
     bounds = {

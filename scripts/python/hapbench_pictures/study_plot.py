@@ -16,6 +16,19 @@ PICTURES = {
     LIMIT_RUNS: draw_limits,
 }
 
+KINDS = {
+    TRIALS: "the trials of tune",
+    ERRORS: "errors and run times of converge",
+    MODEL_ERRORS: "errors and run times of converge",
+    LEVELS: "the levels of converge",
+    LIMIT_RUNS: "the limits of limit",
+}
+
+
+def kind_of(path):
+    """What a folder holds, for messages."""
+    return next(kind for name, kind in KINDS.items() if (path / name).is_file())
+
 
 def draw_study(path, sheet=SHEET):
     draw = next(draw for name, draw in PICTURES.items() if (path / name).is_file())

@@ -27,6 +27,15 @@ TEST(Cases, OfAGridHaveAllCombinationsTheLastAxisFastest) {
   EXPECT_EQ(grid.changes(4), (Values{"a=2", "b=x", "c=q"}));
 }
 
+TEST(Cases, RefuseAFieldWhosePartIsVariedToo) {
+  for (const Values& vary :
+       {Values{"integrator=leapfrog,rk4", "integrator.type=rk4"}, Values{"a=1,2", "b=1", "a.b.c=3"},
+        Values{"a.b=1,2", R"(a={"b":3},{"b":4})"}, Values{R"(a={"b":3},4)", "a.b=1"}})
+    EXPECT_TRUE(test::input_error_of([&] { cases_of(vary); })) << vary.front();
+  EXPECT_EQ(cases_of({R"(a={"b":3},{"b":4})", "a.c=1,2"}).size(), 4u) << "the second axis adds to the objects";
+  EXPECT_EQ(cases_of({"a.b=1", "a.bc=1", "a.c=1,2"}).size(), 2u) << "fields beside each other";
+}
+
 TEST(Cases, AreThePointsOfAFile) {
   const test::TemporaryDirectory directory;
   const auto read = [&](const std::string& text) {

@@ -426,6 +426,20 @@ TEST(SettledDepth, OfEveryRowIsKnownToTheTolerance) {
   EXPECT_EQ(few.settled_within, InsideSearch::kTolerance * half_width);
 }
 
+/// A drill that is dragged over a molar is equally deep nearly everywhere, so the search over the run has no early end.
+TEST(LargestDepth, OfALongPathHasAnErrorBelowItself) {
+  for (const char* law : {"summation", "proxy"}) {
+    SCOPED_TRACE(law);
+    const std::vector<std::string> changes = {std::string("rendering.algorithm=") + law};
+    const LoadedScenario loaded = load_scenario(find_scenario("drag_molar"), changes);
+    const InsideDepths few = depths_of(loaded, 0), all = depths_of(loaded, 1);
+    ASSERT_TRUE(few.max && all.max);
+    EXPECT_LT(few.max_within, *few.max);
+    EXPECT_LE(*few.max, all.max_bound() + all.max_within);
+    EXPECT_GE(few.max_bound() + few.max_within, *all.max);
+  }
+}
+
 TEST_F(ScenesMadeToFool, AreNotStable) {
   const std::vector<Case> all = cases();
   for (std::size_t i = 0; i < all.size(); i += test::sanitized(8)) {

@@ -95,6 +95,28 @@ TEST(FieldLimit, DoesNotBlameDryFrictionForVibration) {
   EXPECT_FALSE(limit.unstable_alone);
 }
 
+/// A wall that holds the handle from both sides has the same linear loop with dry friction and an encoder: both are not
+/// part of it. The handle may rest where no spring is deflected.
+TEST(FieldLimit, OfAHandleWithFrictionHasTheLinearLimitWithoutFriction) {
+  const std::string smooth = R"("type":"impedance","handle_mass_kg":0.35,"viscous_N_s_per_m":0.5,"delay_samples":1)";
+  const auto limit_of = [](const std::string& device) {
+    return ask({.scenario = "wall_on_handle",
+                .field = "rendering.stiffness_N_per_m",
+                .overrides = {"device={" + device + "}", "time.steps=2000"},
+                .range = Range{100.0, 1e6, true},
+                .rule = {.bounded = true}});
+  };
+  const FieldLimit without = limit_of(smooth);
+  ASSERT_TRUE(without.theory);
+  for (const char* rough :
+       {R"(,"coulomb_N":0.3)", R"(,"encoder_step_m":4e-5)", R"(,"coulomb_N":0.3,"force_step_N":0.01)"}) {
+    const FieldLimit with = limit_of(smooth + rough);
+    EXPECT_FALSE(with.theory) << rough;
+    ASSERT_TRUE(with.linear) << rough << ": " << with.no_linear;
+    EXPECT_EQ(*with.linear, *without.theory) << rough;
+  }
+}
+
 /// The scene with hand and device but without contact has no points, but still has a stage that merges the points of a
 /// cell.
 TEST(FieldLimit, OfASceneWithLocalAverageIsOne) {

@@ -99,6 +99,16 @@ TEST(WorkPrecision, StatesNoErrorOfATrajectoryThatCannotBePredicted) {
 
 TEST(WorkPrecision, RefusesAnAxisOfTheTimeStep) {
   EXPECT_TRUE(test::input_error_of([] { study({"time.step_s=1e-3,1e-4"}); }));
+  EXPECT_TRUE(test::input_error_of([] { study({R"(time={"step_s":1e-3,"steps":64})"}); }));
+}
+
+/// The curve of each integrator would replace the values of this axis, and its problems would be equal.
+TEST(WorkPrecision, RefusesAnAxisThatContainsTheIntegrator) {
+  for (const char* axis : {"integrator=leapfrog,rk4", R"(integrator={"type":"rk4"})"}) {
+    const auto error = test::input_error_of([axis] { study({axis}); });
+    ASSERT_TRUE(error) << axis;
+    EXPECT_NE(std::string(error->what()).find("integrator.type"), std::string::npos) << error->what();
+  }
 }
 
 }  // namespace
