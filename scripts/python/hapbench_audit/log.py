@@ -1,6 +1,7 @@
 """A log of any engine: times, positions and forces in SI units, and whatever else its columns hold."""
 import re
 from dataclasses import dataclass, field
+from functools import cached_property
 from types import SimpleNamespace
 
 import numpy as np
@@ -57,7 +58,7 @@ class Log:
     held_force: object = None  # Hold of the forces, or None
     touch: float | None = None  # force from which a row is in contact [N]; None: as the log shows
 
-    @property
+    @cached_property
     def interval(self):
         """Seconds from row to row: the mean, without steps over missing rows."""
         steps = np.diff(self.time)
@@ -67,6 +68,13 @@ class Log:
             return float(mean)
         usual = steps[steps < 1.5 * np.median(steps)]
         return float(usual.mean())
+
+    @cached_property
+    def interval_error(self):
+        """Relative error of the interval, from the jitter of the first and the last row."""
+        steps = np.diff(self.time)
+        jitter = float(np.std(steps[steps < 1.5 * self.interval]))
+        return 3.0 * jitter / float(self.time[-1] - self.time[0])
 
 
 def read_log(options):

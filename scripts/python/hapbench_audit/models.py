@@ -1,8 +1,10 @@
 """Models of a contact's force: a spring and a damper on the position of some rows before, with the velocity as the
 engine may compute it; and their least-squares fits."""
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
+from scipy.fft import irfft, next_fast_len, rfft
 from scipy.signal import lfilter
 from scipy.stats import t as student
 
@@ -15,6 +17,7 @@ LOW_PASS = "low-pass "  # begins their kinds
 EVEN = "even "  # begins the kinds of a clock without jitter
 BEFORE = MOST_DELAY + 10 * max(LOW_PASSES)  # rows that a filter needs to forget how it started
 BLOCKS = 10  # of the jackknife
+AT_ONCE = 20_000  # numbers of a column that are computed together: they stay in the cache of a processor
 COLLINEAR = 1e-9  # smallest share of a column that the other columns do not explain
 
 
@@ -54,6 +57,7 @@ class Motion:
         self.speeds = speeds(log, part, self.place, direction)
         self.force = log.force[rows] @ direction
         self.rows = rows - self.first
+        self.fits = {}  # by model and whether it has the sign of the velocity
         self.most = min(MOST_DELAY, max(int(self.rows[-1]) - FEWEST, 0))
         self.interval = log.interval * (1.0 if log.held is None else log.held.rows)
         self.resolution = float(np.abs(direction) @ log.quantum_m)
@@ -83,10 +87,10 @@ class Motion:
             found += np.mean(error**2)
         return float(found)
 
-    def rounding(self, model, stiffness, damping):
-        """Mean square of the force that the resolution of the position causes in a model [N^2]."""
+    def rounding(self, kind, stiffness, damping):
+        """Mean square of the force that the resolution of the position causes in a model with this velocity [N^2]."""
         of_speed = damping / self.interval
-        kind = model.kind.removeprefix(EVEN)
+        kind = kind.removeprefix(EVEN)
         if kind == "logged":
             gain = stiffness**2
         elif kind == "central":
@@ -100,13 +104,15 @@ class Motion:
             gain = (stiffness + share * of_speed) ** 2 + of_speed**2 * share**3 / (2.0 - share)
         return gain * self.resolution**2 / 12.0
 
+    def delays_of(self, kind):
+        """Delays of a velocity. A forward difference stands for an implicit step: with a delay it would equal a backward
+        difference with one row less."""
+        return np.arange(1 if kind.endswith("forward") else self.most + 1)
+
     def models(self):
-        """All models, of which a forward difference stands for an implicit step: with a delay it would equal a
-        backward difference with one row less."""
+        """All models."""
         return [
-            Model(delay, kind)
-            for kind in self.speeds
-            for delay in range(1 if kind.endswith("forward") else self.most + 1)
+            Model(delay, kind) for kind in self.speeds for delay in self.delays_of(kind).tolist()
         ]
 
     def usable(self):
@@ -195,41 +201,69 @@ class Residual:
     rounding: float  # mean square that the resolution of the position may cause
     sampling: float  # mean square that the sampling of the velocity may cause
     total: float  # mean square of the force less its mean
+    damping: float  # [N s/m]
 
 
-def residual_of(motion, model):
-    """The Residual of a model, or None where its columns are collinear."""
+def residuals_of(motion):
+    """Residual by Model, without models whose columns are collinear. Computes several delays at once."""
     keep = motion.usable()
-    before, force = motion.rows[keep] - model.delay, motion.force[keep]
-    if len(before) < FEWEST:
-        return None
-    rest = force - force.mean()
-    total = rest @ rest
-    basis_so_far, slopes, sizes, shared = [], [], [], 0.0
-    for values in (motion.place, motion.speeds[model.kind]):
-        column = values[before]
-        column -= column.mean()
-        size = np.sqrt(column @ column)
-        for direction in basis_so_far:
-            shared = column @ direction
-            column -= shared * direction
-        independent = np.sqrt(column @ column)
-        if not independent > COLLINEAR * size:
-            return None
-        basis_so_far.append(column / independent)
-        slopes.append(rest @ basis_so_far[-1])
-        sizes.append(independent)
-        rest -= slopes[-1] * basis_so_far[-1]
-    damping = -slopes[1] / sizes[1]
-    stiffness = (-slopes[0] - damping * shared) / sizes[0]
-    rows = len(before)
-    sampling = damping**2 * motion.sampling[model.kind]
-    return Residual(
-        float(rest @ rest) / rows,
-        float(motion.rounding(model, stiffness, damping)),
-        float(sampling),
-        float(total) / rows,
+    rows, force = motion.rows[keep], motion.force[keep]
+    if len(rows) < FEWEST:
+        return {}
+    found = {}
+    at_once = max(AT_ONCE // len(rows), 1)
+    for first in range(0, motion.most + 1, at_once):
+        delays = np.arange(first, min(first + at_once, motion.most + 1))
+        before = rows - delays[:, None]
+        place = centred(motion.place[before])
+        for kind, speed in motion.speeds.items():
+            some = slice(np.isin(delays, motion.delays_of(kind)).sum())
+            if delays[some].size:
+                found |= residuals_of_kind(
+                    motion, kind, delays[some], place[some], centred(speed[before[some]]), force
+                )
+    return found
+
+
+def centred(values):
+    return values - values.mean(axis=-1, keepdims=True)
+
+
+def residuals_of_kind(motion, kind, delays, place, speed, force):
+    """Residual by Model of some delays, by Gram and Schmidt. `place`, `speed`: centred columns, a row per delay."""
+
+    def dot(a, b):
+        return np.einsum("ij,ij->i", a, b)
+
+    force = centred(force)
+    count, total = len(force), float(force @ force)
+    tiny = 1e-300
+    size, length = np.sqrt(dot(place, place)), np.sqrt(dot(speed, speed))
+    along = place / np.maximum(size, tiny)[:, None]
+    shared = dot(speed, along)
+    across = speed - shared[:, None] * along
+    independent = np.sqrt(dot(across, across))
+    across /= np.maximum(independent, tiny)[:, None]
+    slope = along @ force
+    rest = force - slope[:, None] * along
+    other = dot(rest, across)
+    rest -= other[:, None] * across
+    is_usable = (size > 0.0) & (independent > COLLINEAR * length)
+    damping = -other / np.maximum(independent, tiny)
+    stiffness = (-slope - damping * shared) / np.maximum(size, tiny)
+    columns = (
+        delays,
+        dot(rest, rest) / count,
+        motion.rounding(kind, stiffness, damping),
+        damping**2 * motion.sampling[kind],
+        damping,
     )
+    return {
+        Model(delay, kind): Residual(mean_square, rounding, sampling, total / count, one)
+        for delay, mean_square, rounding, sampling, one in zip(
+            *(column[is_usable].tolist() for column in columns)
+        )
+    }
 
 
 def factors(matrix):
@@ -243,7 +277,15 @@ def factors(matrix):
 
 
 def fit_of(motion, model, with_sign=False):
-    """The Fit of a model; None where its columns are collinear.
+    """The Fit of a model; None where its columns are collinear. The motion keeps the fits that were made."""
+    key = model, with_sign
+    if key not in motion.fits:
+        motion.fits[key] = new_fit(motion, model, with_sign)
+    return motion.fits[key]
+
+
+def new_fit(motion, model, with_sign):
+    """The Fit of fit_of().
 
     The intervals are the larger of two: least squares with the memory of the residuals, and a jackknife over
     consecutive blocks, which also covers residuals that are correlated with the motion.
@@ -278,25 +320,32 @@ def fit_of(motion, model, with_sign=False):
 def jackknife(q, inverse, residual):
     """Half-widths of 95 % intervals by leaving out one of BLOCKS consecutive blocks after another."""
     count = min(BLOCKS, len(residual) // 4)
-    changes = []
-    for block in np.array_split(np.arange(len(residual)), count):
-        part = q[block]
-        kept = np.eye(q.shape[1]) - part.T @ part
-        changes.append(inverse @ np.linalg.lstsq(kept, part.T @ residual[block], rcond=1e-9)[0])
-    changes = np.array(changes) - np.mean(changes, axis=0)
-    return student.ppf(0.975, count - 1) * np.sqrt(
-        (count - 1) / count * np.sum(changes**2, axis=0)
-    )
+    sizes = np.full(count, len(residual) // count)
+    sizes[: len(residual) % count] += 1
+    starts = np.concatenate([[0], np.cumsum(sizes)[:-1]])
+    parts = np.add.reduceat(q[:, :, None] * q[:, None, :], starts)
+    products = np.add.reduceat(q * residual[:, None], starts)
+    kept = np.linalg.pinv(np.eye(q.shape[1]) - parts, rcond=1e-9, hermitian=True)
+    changes = (kept @ products[:, :, None])[:, :, 0] @ inverse.T
+    changes -= changes.mean(axis=0)
+    return quantile_95(count - 1) * np.sqrt((count - 1) / count * np.sum(changes**2, axis=0))
+
+
+@lru_cache
+def quantile_95(freedom):
+    """Half-width of the 95 % interval of Student's distribution."""
+    return float(student.ppf(0.975, freedom))
 
 
 def memory(residual):
     """Rows that one independent residual stands for: 1 + 2 times the sum of the autocorrelations above 0.05."""
-    power, total = float(residual @ residual), 1.0
-    if power == 0.0:
+    power = float(residual @ residual)
+    lags = min(len(residual) // 4, LONGEST_MEMORY)
+    if power == 0.0 or lags < 2:
         return 1.0
-    for lag in range(1, min(len(residual) // 4, LONGEST_MEMORY)):
-        correlation = float(residual[lag:] @ residual[:-lag]) / power
-        if correlation < 0.05:
-            break
-        total += 2.0 * correlation
-    return total
+    # Autocorrelations by the spectrum; zeros keep the ends from overlapping.
+    size = next_fast_len(len(residual) + lags, real=True)
+    spectrum = np.abs(rfft(residual / np.sqrt(power), size)) ** 2
+    correlations = irfft(spectrum, size)[1:lags]
+    known = np.append(correlations < 0.05, True).argmax()
+    return 1.0 + 2.0 * float(correlations[:known].sum())

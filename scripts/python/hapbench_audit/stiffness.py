@@ -1,11 +1,11 @@
 """Stiffness, damping and delay that a log determines: of each contact, and combined over the contacts."""
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from scipy.stats import t as student
 
-from .models import Motion, fit_of, low_pass_of, neighbours_of, residual_of
+from .models import Motion, fit_of, low_pass_of, neighbours_of, residuals_of
 
 FEWEST = 20  # rows of a contact
 FEWEST_NEW = 15  # of these, rows with a new force above 0 and below the largest force
@@ -40,6 +40,7 @@ class Evidence:
     motion: object  # Motion along the direction, or None
     found: dict  # numbers for the JSON
     likelihood: dict = field(default_factory=dict)  # logarithm below the best model, by Model
+    dampings: dict = field(default_factory=dict)  # of least squares, by Model [N s/m]
     place: np.ndarray | None = None  # positions of the rows along the direction [m]
     resolution: float = 0.0  # [m]
     rows: np.ndarray | None = None  # row numbers
@@ -135,16 +136,20 @@ def evidence_of_rows(log, rows, given=None):
             "a rigid contact, or with friction along the force"
         )
         return Evidence(None, found, rows=rows)
-    return Evidence(motion, found, likelihoods(motion, known, best), place, resolution, rows)
+    return Evidence(
+        motion,
+        found,
+        likelihoods(motion, known, best),
+        {model: one.damping for model, one in known.items()},
+        place,
+        resolution,
+        rows,
+    )
 
 
 def residuals(motion):
     """(Residual by Model, Model with the smallest residual or None)."""
-    found = {}
-    for model in motion.models():
-        residual = residual_of(motion, model)
-        if residual is not None:
-            found[model] = residual
+    found = residuals_of(motion)
     return found, min(found, key=lambda model: found[model].mean_square, default=None)
 
 
@@ -163,7 +168,7 @@ def likelihoods(motion, found, best):
     def below(one):
         # Rounding is known exactly, the error of a sampled velocity only roughly.
         usual = least.mean_square + share * (one.sampling - least.sampling)
-        usual = float(np.clip(usual, least.mean_square, MOST_EXCUSED * least.mean_square))
+        usual = min(max(usual, least.mean_square), MOST_EXCUSED * least.mean_square)
         usual += share * max(one.rounding - least.rounding, 0.0) + floor
         return max(math.log((one.mean_square + floor) / (1.0 + SIMILAR) / usual), 0.0)
 
@@ -258,12 +263,15 @@ def as_good(evidences):
 def is_negative(evidences, model):
     """True if the damping of a model is negative in most contacts. A delay d of a stiffness K looks like a damping of
     -K d: of this, a quarter of the damping of one row is zero."""
-    fits = [(one, fit_of(one.motion, model)) for one in evidences if model in one.likelihood]
-    signs = [
-        fit.damping + fit.halves[1] < -0.25 * fit.stiffness * one.motion.interval < 0.0
-        for one, fit in fits
-        if fit is not None
-    ]
+
+    def negative(one):
+        if one.dampings[model] >= 0.0:
+            return False
+        fit = fit_of(one.motion, model)
+        least = -0.25 * fit.stiffness * one.motion.interval if fit else 0.0
+        return fit is not None and fit.damping + fit.halves[1] < least < 0.0
+
+    signs = [negative(one) for one in evidences if model in one.likelihood]
     return 2 * sum(signs) > len(signs)
 
 
@@ -326,8 +334,7 @@ def numbers_of(log, evidence, models):
         fits = [fit for fit in again if fit is not None]
         best = next(fit for fit in fits if fit.model == best.model)
     interval = log.interval
-    for fit in fits:
-        widen(evidence.motion, fit, bool(friction))
+    fits = [widened(evidence.motion, fit, bool(friction)) for fit in fits]
     stiffness = spanned(
         best.stiffness, fits, lambda fit: (fit.stiffness, stiffness_half(evidence, fit))
     )
@@ -360,16 +367,18 @@ def numbers_of(log, evidence, models):
     return numbers
 
 
-def widen(motion, fit, with_sign):
-    """Adds the distance to the fits of neighbouring velocities to the intervals."""
+def widened(motion, fit, with_sign):
+    """The fit with intervals that contain the distance to the fits of neighbouring velocities."""
+    halves = fit.halves
     near = [fit_of(motion, model, with_sign) for model in neighbours_of(fit.model, motion.speeds)]
     distances = [np.abs(one.values - fit.values) for one in near if one is not None]
     if fit.explained < 1.0 - EXACTLY:
-        fit.halves = fit.halves + SAMPLED * np.abs(fit.values)
+        halves = halves + SAMPLED * np.abs(fit.values)
     if distances:
         # A filter's time constant lies at most half way to the next one.
         share = 0.5 if low_pass_of(fit.model.kind) else 1.0
-        fit.halves = fit.halves + share * np.max(distances, axis=0)
+        halves = halves + share * np.max(distances, axis=0)
+    return replace(fit, halves=halves)
 
 
 def likely(fits):
@@ -415,19 +424,11 @@ def stiffness_half(evidence, fit):
     return fit.halves[0] + (1e-6 + shrink) * abs(fit.stiffness)
 
 
-def clock_error(log):
-    """Relative error of the interval, from the jitter of the first and the last row."""
-    steps = np.diff(log.time)
-    return (
-        3.0 * float(np.std(steps[steps < 1.5 * log.interval])) / float(log.time[-1] - log.time[0])
-    )
-
-
 def damping_half(log, evidence, fit):
     interval, q = log.interval, evidence.resolution
     half = (
         fit.halves[1]
-        + (1e-6 + clock_error(log)) * abs(fit.damping)
+        + (1e-6 + log.interval_error) * abs(fit.damping)
         + 1e-9 * abs(fit.stiffness) * interval
     )
     if log.velocity is not None or q == 0.0:
