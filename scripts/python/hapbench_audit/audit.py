@@ -10,7 +10,7 @@ from .diagnosis import findings_of
 from .energy import Port, contact_energy, energy_of, stored_at
 from .force import force_of, peaks_of, spectrum_of
 from .log import FASTEST
-from .stiffness import FEWEST, evidence_of, springs_of
+from .stiffness import FEWEST, contradicting, evidence_of, springs_of
 
 
 def audit_log(log, device=None):
@@ -29,7 +29,7 @@ def audit_log(log, device=None):
         "metrics": force,
         "energy": energy_of(log, port, stored_at(log, contacts, 0, main))
         | energy_by_contact(log, contacts, every),
-        "buzz": peaks_of(spectrum, force["force_mean_in_contact_N"]),
+        "buzz": peaks_of(log, contacts, spectrum, force["force_mean_in_contact_N"]),
         "stiffness": main,
         "stiffness_range": stiffness_range(every),
         "device": device_limit(device, loop_interval(log), main) if device else None,
@@ -89,7 +89,8 @@ def with_springs(log, contacts, every):
     springs, main = springs_of(log, evidences)
     for one, spring in zip(every, springs):
         one["spring"] = spring
-    if main is not None or not contacts.stretches:
+    is_known = main is not None or any(has_stiffness(one) for one in springs)
+    if is_known or not contacts.stretches or contradicting(springs):
         return main
     first, after = max(
         contacts.stretches,
@@ -189,8 +190,12 @@ def missing(log, audit, device):
             for one in audit["contacts"]
             if one["spring"] and "why" in one["spring"]
         ]
-        why = whys[0] if whys else f"no contact has {FEWEST} rows"
-        found.append(f"stiffness: {why}; tap, and press to several depths at several speeds")
+        span = stiffness_range(audit["contacts"])
+        if span and span[1] > span[0] and not whys:
+            whys = [f"the contacts have {span[0]:.4g} to {span[1]:.4g} N/m"]
+        why = max(whys, key=whys.count) if whys else f"no contact has {FEWEST} rows"
+        attempt = "" if "rigid" in why else "; tap, and press to several depths at several speeds"
+        found.append(f"stiffness: {why}{attempt}")
     elif audit["stiffness"] and audit["stiffness"].get("why_no_damping"):
         found.append(
             f"damping: {audit['stiffness']['why_no_damping']}; taps and quick presses, more digits, or a column of "

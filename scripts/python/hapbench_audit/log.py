@@ -17,6 +17,9 @@ FEWEST = 20  # samples
 LONG_INTERVALS = 10.0  # median intervals; a longer gap ends a contact
 LATEST_START = 1e6  # first time that is kept [s]
 FASTEST = 5.0  # of a hand [m/s]
+CLEAR = 0.25  # intervals: half of the error at which a row more or less is as likely
+SEVERAL = 20  # steps
+FOLLOWED = 0.05  # share of a stamp's error by which the mean clock follows it
 # Names of the first column of each quantity in usual logs: lower case, without units, signs and blanks.
 USUAL = {
     "time": "time times t ts timestamp stamp secs simtime headerstamp clock",
@@ -66,14 +69,18 @@ class Log:
         off = self.time - self.time[0] - np.arange(len(self.time)) * mean
         if np.abs(off).max() <= 1e-3 * mean:
             return float(mean)
-        usual = steps[steps < 1.5 * np.median(steps)]
-        return float(usual.mean())
+        return float(steps[self.missing == 0].mean())
+
+    @cached_property
+    def missing(self):
+        """Rows that are missing between each row and the next."""
+        return missing_rows(np.diff(self.time))
 
     @cached_property
     def interval_error(self):
         """Relative error of the interval, from the jitter of the first and the last row."""
         steps = np.diff(self.time)
-        jitter = float(np.std(steps[steps < 1.5 * self.interval]))
+        jitter = float(np.std(steps[self.missing == 0]))
         return 3.0 * jitter / float(self.time[-1] - self.time[0])
 
 
@@ -208,6 +215,48 @@ def log_of(recording, options, wanted):
     log.quantum_m, log.quantum_N = quanta(log.position), quanta(log.force)
     log.held, log.held_force = hold_of(log.position), hold_of(log.force)
     return log
+
+
+def missing_rows(steps):
+    """Rows that are missing in each step of a clock: steps are whole numbers of intervals, but for jitter.
+
+    Either each interval has its own error, or each time stamp of an even clock. In the second case, errors of stamps
+    do not add up, and a step is measured from the mean clock of the rows before it. The case that leaves smaller errors
+    counts.
+    """
+    interval = float(np.median(steps))
+    found = np.maximum(np.rint(steps / interval).astype(int) - 1, 0)
+    errors = steps / interval - found - 1.0
+    if np.abs(errors).max() <= CLEAR:
+        return found
+    # The errors of stamps matter less over several steps, few of which have missing rows.
+    several = min(SEVERAL, len(steps))
+    time = np.append(0.0, np.cumsum(steps))
+    interval = float(np.median(time[several:] - time[:-several])) / several
+    for _ in range(2):  # the second time with the mean interval of the first
+        found = np.maximum(np.rint(steps / interval).astype(int) - 1, 0)
+        by_step = steps / interval - found - 1.0
+        followed, by_clock = of_mean_clock((steps / interval).tolist())
+        error = min(np.mean(by_clock**2), np.mean(by_step**2))
+        if np.mean(by_clock**2) == error:
+            found = followed
+        interval = float(time[-1]) / (len(steps) + int(found.sum()))
+    # Errors as large as those of random times: only a step of more than two intervals is longer than jitter makes it.
+    longest = 2.0 * float(time[-1]) / len(steps)
+    return np.where(steps > longest, found, 0) if error > CLEAR**2 else found
+
+
+def of_mean_clock(steps):
+    """(missing rows, errors) of steps in intervals, each measured from the mean clock of the rows before."""
+    found, errors, late = [], [], 0.0  # `late`: the last stamp, relative to the mean clock
+    for row, step in enumerate(steps):
+        rows = max(round(step + late), 1)
+        error = step + late - rows
+        gain = max(1.0 / (row + 2.0), FOLLOWED)
+        found.append(rows - 1)
+        errors.append(error)
+        late = (1.0 - gain) * error
+    return np.array(found), np.array(errors)
 
 
 def times_of(read):

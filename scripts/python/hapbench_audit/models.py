@@ -15,9 +15,12 @@ LONGEST_MEMORY = 1000  # rows
 LOW_PASSES = (1, 2, 4, 8, 16)  # time constants of a filtered velocity [rows]
 LOW_PASS = "low-pass "  # begins their kinds
 EVEN = "even "  # begins the kinds of a clock without jitter
+LOOP = "loop "  # begins the kinds of a loop that is slower than the positions of the log
 BEFORE = MOST_DELAY + 10 * max(LOW_PASSES)  # rows that a filter needs to forget how it started
 BLOCKS = 10  # of the jackknife
-AT_ONCE = 20_000  # numbers of a column that are computed together: they stay in the cache of a processor
+AT_ONCE = (
+    20_000  # numbers of a column that are computed together: they stay in the cache of a processor
+)
 COLLINEAR = 1e-9  # smallest share of a column that the other columns do not explain
 
 
@@ -53,17 +56,29 @@ class Motion:
     def __init__(self, log, rows, direction):
         self.first = max(int(rows[0]) - BEFORE, 0)
         part = slice(self.first, min(int(rows[-1]) + 2, len(log.time)))
-        self.place = log.position[part] @ direction
-        self.speeds = speeds(log, part, self.place, direction)
+        # Rows by the clock: a row that is missing keeps its number, so that a delay counts it.
+        counted = np.append(0, np.cumsum(1 + np.minimum(log.missing, MOST_DELAY)))[part]
+        counted -= counted[0]
+        place, at = log.position[part] @ direction, np.arange(counted[-1] + 1)
+        last = np.searchsorted(counted, at, side="right") - 1
+        self.place = np.interp(at, counted, place)
+        self.speeds = {
+            kind: speed[last] for kind, speed in speeds(log, part, place, direction).items()
+        }
         self.force = log.force[rows] @ direction
-        self.rows = rows - self.first
+        self.rows = counted[rows - self.first]
+        # Rows whose position or difference of positions would need a missing row.
+        absent = counted[last] != at
+        self.unknown = absent | np.append(False, absent[:-1]) | np.append(absent[1:], False)
         self.fits = {}  # by model and whether it has the sign of the velocity
-        self.most = min(MOST_DELAY, max(int(self.rows[-1]) - FEWEST, 0))
+        # A delay of more than half of a contact would make most of its force of positions before the contact.
+        half = int(self.rows[-1] - self.rows[0] + 1) // 2
+        self.most = min(MOST_DELAY, half, max(int(self.rows[-1]) - FEWEST, 0))
         self.interval = log.interval * (1.0 if log.held is None else log.held.rows)
         self.resolution = float(np.abs(direction) @ log.quantum_m)
         within = slice(int(self.rows[0]), int(self.rows[-1]) + 1)
         self.sampling = {
-            kind: self.sampling_of(kind.removeprefix(EVEN), within) for kind in self.speeds
+            kind: self.sampling_of(without_clock(kind)[1], within) for kind in self.speeds
         }
 
     def sampling_of(self, kind, within):
@@ -90,7 +105,7 @@ class Motion:
     def rounding(self, kind, stiffness, damping):
         """Mean square of the force that the resolution of the position causes in a model with this velocity [N^2]."""
         of_speed = damping / self.interval
-        kind = kind.removeprefix(EVEN)
+        kind = without_clock(kind)[1]
         if kind == "logged":
             gain = stiffness**2
         elif kind == "central":
@@ -119,9 +134,13 @@ class Motion:
         """True for rows with a delayed row in every model. The first speed has no row before it."""
         return self.rows > self.most
 
+    def known(self, delay):
+        """True for usable rows whose delayed row is in the log."""
+        return self.usable() & ~self.unknown[np.maximum(self.rows - delay, 0)]
+
     def columns(self, model, with_sign=False):
-        """Centred columns and force of the rows that every model explains."""
-        keep = self.usable()
+        """Centred columns and force of the known rows."""
+        keep = self.known(model.delay)
         before = self.rows[keep] - model.delay
         x, v, f = self.place[before], self.speeds[model.kind][before], self.force[keep]
         columns = [x - x.mean(), v - v.mean()]
@@ -131,9 +150,15 @@ class Motion:
         return np.column_stack(columns), f - f.mean()
 
 
+def without_clock(kind):
+    """(EVEN, LOOP or nothing, the rest of the kind)."""
+    clock = next((one for one in (EVEN, LOOP) if kind.startswith(one)), "")
+    return clock, kind.removeprefix(clock)
+
+
 def low_pass_of(kind):
     """Time constant of a backward difference [rows]; 0: not filtered."""
-    kind = kind.removeprefix(EVEN)
+    kind = without_clock(kind)[1]
     return int(kind.removeprefix(LOW_PASS)) if kind.startswith(LOW_PASS) else 0
 
 
@@ -148,11 +173,24 @@ def speeds(log, part, place, direction):
     found = {} if log.velocity is None else {"logged": log.velocity[part] @ direction}
     steps = np.diff(time[fresh])
     found |= differences(np.diff(place[fresh]) / steps, sample, "")
-    even = np.diff(fresh) * log.interval
+    counted = np.append(0, np.cumsum(1 + log.missing))[part]
+    even = np.diff(counted[fresh]) * log.interval
     if np.std(steps - even) > JITTER * log.interval:
         # The engine may count steps, whatever the clock of the log says.
         found |= differences(np.diff(place[fresh]) / even, sample, EVEN)
+    if log.held is None and log.held_force is not None:
+        # The engine knows the positions of the rows with a new force only.
+        found |= loop_speeds(log, part, place)
     return found
+
+
+def loop_speeds(log, part, place):
+    """Velocities by kind from the positions of the rows in which the force is new."""
+    fresh = np.flatnonzero(log.held_force.fresh[part])
+    if len(fresh) < 3:
+        return {}
+    sample = np.maximum(np.searchsorted(fresh, np.arange(len(place)), side="right") - 1, 0)
+    return differences(np.diff(place[fresh]) / np.diff(log.time[part][fresh]), sample, LOOP)
 
 
 def differences(rates, sample, clock):
@@ -180,8 +218,7 @@ def five_point(rates):
 
 def neighbours_of(model, kinds):
     """Models whose velocity is one step of approximation away, between which the velocity of an engine may lie."""
-    clock = EVEN if model.kind.startswith(EVEN) else ""
-    kind = model.kind.removeprefix(EVEN)
+    clock, kind = without_clock(model.kind)
     constant = low_pass_of(kind)
     if constant:
         near = [
@@ -215,54 +252,67 @@ def residuals_of(motion):
     for first in range(0, motion.most + 1, at_once):
         delays = np.arange(first, min(first + at_once, motion.most + 1))
         before = rows - delays[:, None]
-        place = centred(motion.place[before])
+        known = ~motion.unknown[before]
+        place = centred(motion.place[before], known)
+        pushed = centred(np.broadcast_to(force, before.shape), known)
         for kind, speed in motion.speeds.items():
             some = slice(np.isin(delays, motion.delays_of(kind)).sum())
             if delays[some].size:
+                across = centred(speed[before[some]], known[some])
                 found |= residuals_of_kind(
-                    motion, kind, delays[some], place[some], centred(speed[before[some]]), force
+                    motion, kind, delays[some], place[some], across, pushed[some], known[some]
                 )
     return found
 
 
-def centred(values):
-    return values - values.mean(axis=-1, keepdims=True)
+def residuals(motion):
+    """(Residual by Model, Model with the smallest residual or None)."""
+    found = residuals_of(motion)
+    return found, min(found, key=lambda model: found[model].mean_square, default=None)
 
 
-def residuals_of_kind(motion, kind, delays, place, speed, force):
-    """Residual by Model of some delays, by Gram and Schmidt. `place`, `speed`: centred columns, a row per delay."""
+def centred(values, known):
+    """The values less their means over the known values of each row; 0 where they are unknown."""
+    count = np.maximum(known.sum(axis=1, keepdims=True), 1)
+    return (values - (values * known).sum(axis=1, keepdims=True) / count) * known
+
+
+def residuals_of_kind(motion, kind, delays, place, speed, force, known):
+    """Residual by Model of some delays, by Gram and Schmidt. `place`, `speed`, `force`: centred columns, a row per
+    delay; 0 where they are not `known`."""
 
     def dot(a, b):
         return np.einsum("ij,ij->i", a, b)
 
-    force = centred(force)
-    count, total = len(force), float(force @ force)
-    tiny = 1e-300
+    def by(size):
+        return np.where(size > 0.0, size, 1.0)
+
+    count, total = known.sum(axis=1), dot(force, force)
     size, length = np.sqrt(dot(place, place)), np.sqrt(dot(speed, speed))
-    along = place / np.maximum(size, tiny)[:, None]
+    along = place / by(size)[:, None]
     shared = dot(speed, along)
     across = speed - shared[:, None] * along
     independent = np.sqrt(dot(across, across))
-    across /= np.maximum(independent, tiny)[:, None]
-    slope = along @ force
+    across /= by(independent)[:, None]
+    slope = dot(force, along)
     rest = force - slope[:, None] * along
     other = dot(rest, across)
     rest -= other[:, None] * across
-    is_usable = (size > 0.0) & (independent > COLLINEAR * length)
-    damping = -other / np.maximum(independent, tiny)
-    stiffness = (-slope - damping * shared) / np.maximum(size, tiny)
+    is_usable = (count >= FEWEST) & (size > 0.0) & (independent > COLLINEAR * length)
+    count = np.maximum(count, 1)
+    damping = -other / by(independent)
+    stiffness = (-slope - damping * shared) / by(size)
     columns = (
         delays,
         dot(rest, rest) / count,
         motion.rounding(kind, stiffness, damping),
         damping**2 * motion.sampling[kind],
+        total / count,
         damping,
     )
     return {
-        Model(delay, kind): Residual(mean_square, rounding, sampling, total / count, one)
-        for delay, mean_square, rounding, sampling, one in zip(
-            *(column[is_usable].tolist() for column in columns)
-        )
+        Model(delay, kind): Residual(*numbers)
+        for delay, *numbers in zip(*(column[is_usable].tolist() for column in columns))
     }
 
 

@@ -5,17 +5,25 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from scipy.stats import t as student
 
-from .models import Motion, fit_of, low_pass_of, neighbours_of, residuals_of
+from .models import Motion, fit_of, low_pass_of, neighbours_of, residuals
+from .normal import (
+    AS_GOOD,
+    EXACTLY,
+    FEWEST_COUNTS,
+    FEWEST_NEW,
+    main_direction,
+    normal_by_friction,
+    normal_of,
+)
+from .reasons import no_travel_text, why_unknown
 
 FEWEST = 20  # rows of a contact
-FEWEST_NEW = 15  # of these, rows with a new force above 0 and below the largest force
 LANDING = 10.0  # residuals of a landing by residuals of the rest: an impact is more than a spring
 EXACT = 0.01  # of the largest change of the force: residuals of a landing that is no impact
-FEWEST_COUNTS = 10  # travel in steps of the position's resolution
 EXPLAINED = 0.5  # share of the variance that a spring must explain
+UNSURE = 0.05  # share of 95 % intervals that do not hold the truth
 WELL_KNOWN = 0.25  # half-width of the interval as a share: values known worse are not stated
 UNLIKELY = 5.0  # logarithm of a likelihood ratio: models below it are as good as the best one
-EXACTLY = 1e-9  # share of the variance: an engine whose law the model is leaves less unexplained
 SAMPLED = (
     2e-3  # share of a value that sampling may change otherwise: (2 pi f T)^2 / 6 at 17 Hz and 1 kHz
 )
@@ -28,9 +36,6 @@ TYPICAL = 10.0  # times the unexplained share of a typical contact
 DRY_GAIN = 0.7  # the sign of the velocity must lower the sum of squares below this share
 DRY_SHARE = 0.02  # and be at least this share of the mean force
 AT_LIMIT = 0.999  # of the largest force
-TILTS = 8  # steps of the search for the normal
-MOST_ROWS = 500  # of the search
-SEARCHED = ("logged", "backward", "central", "low-pass 4")  # velocities of the search
 
 
 @dataclass
@@ -41,16 +46,15 @@ class Evidence:
     found: dict  # numbers for the JSON
     likelihood: dict = field(default_factory=dict)  # logarithm below the best model, by Model
     dampings: dict = field(default_factory=dict)  # of least squares, by Model [N s/m]
+    systematic: float = (
+        0.0  # share of the best model's squared residuals that is no noise from row to row
+    )
     place: np.ndarray | None = None  # positions of the rows along the direction [m]
     resolution: float = 0.0  # [m]
     rows: np.ndarray | None = None  # row numbers
-
-
-def main_direction(force):
-    """Unit vector along which the forces are largest, pointing with them."""
-    _, vectors = np.linalg.eigh(force.T @ force)
-    direction = vectors[:, -1]
-    return direction if (force @ direction).sum() >= 0.0 else -direction
+    other: object = (
+        None  # Motion along another normal that explains the force about as well, or None
+    )
 
 
 def evidence_of(log, rows, settled):
@@ -73,9 +77,8 @@ def explains_landing(evidence, rows, settled):
     if not evidence.likelihood:
         return False
     best = min(evidence.likelihood, key=evidence.likelihood.get)
-    matrix, target = evidence.motion.columns(best)
-    residual = target - matrix @ np.linalg.lstsq(matrix, target, rcond=None)[0]
-    is_settled = np.isin(rows, settled)[evidence.motion.usable()]
+    residual, target = residual_of(evidence.motion, best), evidence.motion.force
+    is_settled = np.isin(rows, settled)[evidence.motion.known(best.delay)]
     if is_settled.all() or not is_settled.any():
         return True
     landing, rest = np.mean(residual[~is_settled] ** 2), np.mean(residual[is_settled] ** 2)
@@ -102,33 +105,41 @@ def evidence_of_rows(log, rows, given=None):
     """Evidence of these rows along the normal of the surface, or along a `given` direction."""
     force = log.force[rows]
     direction = main_direction(force) if given is None else given
-    motion, better = Motion(log, rows, direction), None
+    motion, other = Motion(log, rows, direction), None
     if given is None and np.linalg.matrix_rank(log.position[rows] - log.position[rows[0]]) > 1:
-        better = normal_of(log, rows, direction, motion)
-    if better is not None:
-        direction, motion = better
+        direction, motion, other = normal_of(log, rows, direction, motion)
     sideways = np.linalg.norm(force - np.outer(force @ direction, direction)) / np.linalg.norm(
         force
     )
     place = log.position[rows] @ direction
     resolution, travel = float(np.abs(direction) @ log.quantum_m), float(np.ptp(place))
+    # What neither the motion nor the rows before and after explain, in most rows. 1.4826 times the median is the
+    # standard deviation of normal errors, and second differences of white noise have 6 times its variance.
+    changes = np.diff(force @ direction, 2) / math.sqrt(6.0)
     found = {
         "direction": direction.tolist(),
+        "direction_is_known": other is None,
         "off_direction_share": float(sideways),
         "travel_m": travel,
         "resolution_m": resolution,
+        "noise_N": 1.4826 * float(np.median(np.abs(changes))),
         "start_s": float(log.time[rows[0]]),
         "end_s": float(log.time[rows[-1]]),
     }
     if travel <= FEWEST_COUNTS * resolution or travel <= 1e-12:
-        counts = f", {travel / resolution:.3g} steps of its resolution" if resolution else ""
-        why = f"the position along the force moves by {travel:.3g} m only{counts}"
-        return Evidence(None, found | {"why": why}, rows=rows)
+        return Evidence(
+            None,
+            found | {"why": no_travel_text(travel, resolution, force, found["noise_N"])},
+            rows=rows,
+        )
     if np.ptp(log.force[rows] @ direction) == 0.0:
         return Evidence(None, found | {"why": "the force is constant"})
     known, best = residuals(motion)
     if best is None:
         return Evidence(None, found | {"why": "position and velocity are not independent"})
+    rest = residual_of(motion, best)
+    unexplained_N = 1.4826 * float(np.median(np.abs(rest)))
+    found["noise_N"] = min(found["noise_N"], unexplained_N)
     found["explained"] = 1.0 - known[best].mean_square / max(known[best].total, 1e-300)
     if found["explained"] < EXPLAINED:
         found["why"] = (
@@ -141,16 +152,12 @@ def evidence_of_rows(log, rows, given=None):
         found,
         likelihoods(motion, known, best),
         {model: one.damping for model, one in known.items()},
+        systematic_share(motion, rest),
         place,
         resolution,
         rows,
+        other,
     )
-
-
-def residuals(motion):
-    """(Residual by Model, Model with the smallest residual or None)."""
-    found = residuals_of(motion)
-    return found, min(found, key=lambda model: found[model].mean_square, default=None)
 
 
 def likelihoods(motion, found, best):
@@ -175,92 +182,54 @@ def likelihoods(motion, found, best):
     return {model: 0.5 * independent * below(one) for model, one in found.items()}
 
 
-def normal_of(log, rows, direction, motion):
-    """(normal, Motion along it) of a surface over which the tool slides with friction, or None if the main direction
-    of the force explains the force as well. A force that depends on the depth has its gradient along the normal. The
-    force along the normal is free of friction."""
-    known, best = residuals(motion)
-    if best is None:
-        return None
-    first, normal, model = known[best], direction, None
-    if first.mean_square <= EXACTLY * first.total:
-        return None
-    space = [Motion(log, rows, axis) for axis in np.eye(3)]
-    for _ in range(TILTS):
-        gradient, model = gradient_of(log, rows, normal, space, model)
-        if gradient is None:
-            return None
-        is_found = np.linalg.norm(np.cross(gradient, normal)) < 1e-7
-        normal = gradient
-        if is_found:
-            break
-    motion = Motion(log, rows, normal)
-    known, best = residuals(motion)
-    if best is None:
-        return None
-    is_better = known[best].mean_square * first.total < 0.5 * first.mean_square * known[best].total
-    return (normal, motion) if is_better else None
+def systematic_share(motion, residual):
+    """Share of the squared residuals that is no noise: second differences of white noise have 6 times its variance."""
+    power = float(residual @ residual) / len(residual)
+    if len(residual) < 3 or power <= NEGLIGIBLE * float(np.var(motion.force)):
+        return 0.0
+    return max(1.0 - float(np.mean(np.diff(residual, 2) ** 2)) / 6.0 / power, 0.0)
 
 
-def gradient_of(log, rows, normal, space, model):
-    """(direction in which the force along `normal` grows the most, Model), or (None, None). `space`: Motion along each
-    axis. `model`: None for the best one."""
-    keep = space[0].usable()
-    force = (log.force[rows] @ normal)[keep]
-    some = np.linspace(0, keep.sum() - 1, min(keep.sum(), MOST_ROWS)).astype(int)
-    force = force[some] - force[some].mean()
-    moving = [
-        i for i in range(3) if np.ptp(log.position[rows, i]) > FEWEST_COUNTS * log.quantum_m[i]
-    ]
-    if len(force) < FEWEST_NEW or not moving:
-        return None, None
-    best = (math.inf, None, None)
-    tried = [one for one in space[0].models() if one.kind in SEARCHED] if model is None else [model]
-    for one in tried:
-        columns = np.hstack([space[i].columns(one)[0][some] for i in moving])
-        sizes = np.maximum(np.linalg.norm(columns, axis=0), 1e-300)
-        slopes = np.linalg.lstsq(columns / sizes, force, rcond=1e-6)[0]
-        residual = force - columns / sizes @ slopes
-        best = min(best, (float(residual @ residual), one, slopes / sizes), key=lambda it: it[0])
-    _, model, slopes = best
-    # Components in which the tool does not move keep their share of the direction of the force.
-    gradient, size = normal.copy(), np.linalg.norm(slopes[::2])
-    if not size > 0.0:
-        return None, None
-    gradient[moving] = -slopes[::2] / size * np.linalg.norm(normal[moving])
-    gradient *= np.sign(gradient @ normal) or 1.0
-    return gradient / np.linalg.norm(gradient), model
+def residual_of(motion, model):
+    """Force less the force of a model [N], of the rows that every model explains."""
+    matrix, target = motion.columns(model)
+    return target - matrix @ np.linalg.lstsq(matrix, target, rcond=None)[0]
 
 
-def as_good(evidences):
+def as_good(log, evidences):
     """Models that explain all contacts nearly as well as the best one, the best first. A contact that is too short for
     a long delay counts as with its longest."""
     models = sorted({model for one in evidences for model in one.likelihood})
     if not models:
         return []
 
+    # A law that is no spring and damper leaves the same residuals in each contact: contacts are then no independent
+    # evidence. With a correlation of s between them, n contacts weigh as n / (1 + (n - 1) s) do.
+    alike = float(np.mean([one.systematic for one in evidences]))
+    weight = 1.0 / (1.0 + (len(evidences) - 1) * alike)
+
     def score(model):
         total = 0.0
         for one in evidences:
             while model not in one.likelihood and model.delay > 0:
                 model = type(model)(model.delay - 1, model.kind)
-            total += min(one.likelihood.get(model, CERTAIN), CERTAIN)
+            total += weight * min(one.likelihood.get(model, CERTAIN), CERTAIN)
         return total
 
     scores = {model: score(model) for model in models}
     order = sorted(models, key=lambda model: (scores[model], model))
     least = scores[order[0]]
     found = [model for model in order if scores[model] <= least + UNLIKELY]
-    calm = [model for model in found if not is_negative(evidences, model)]
+    calm = [model for model in found if not is_negative(log, evidences, model)]
     if calm:
         return calm
     # Neither negative damping nor the next model without it is certain where no model fits well.
     near = [m for m in order if scores[m] <= least + 0.5 * CERTAIN * len(evidences)]
-    best = next((m for m in near[:MOST_TRIED] if not is_negative(evidences, m)), None)
+    best = next((m for m in near[:MOST_TRIED] if not is_negative(log, evidences, m)), None)
     return found if best is None else [*found, best]
 
 
-def is_negative(evidences, model):
+def is_negative(log, evidences, model):
     """True if the damping of a model is negative in most contacts. A delay d of a stiffness K looks like a damping of
     -K d: of this, a quarter of the damping of one row is zero."""
 
@@ -268,8 +237,10 @@ def is_negative(evidences, model):
         if one.dampings[model] >= 0.0:
             return False
         fit = fit_of(one.motion, model)
-        least = -0.25 * fit.stiffness * one.motion.interval if fit else 0.0
-        return fit is not None and fit.damping + fit.halves[1] < least < 0.0
+        if fit is None:
+            return False
+        half = damping_half(log, one, widened(one.motion, fit, False))
+        return fit.damping + half < -0.25 * fit.stiffness * one.motion.interval < 0.0
 
     signs = [negative(one) for one in evidences if model in one.likelihood]
     return 2 * sum(signs) > len(signs)
@@ -282,19 +253,25 @@ def well_explained(evidences):
 
 
 def with_shared_normal(log, evidences):
-    """The evidences, where contacts that a spring explains worse than the best contact use its direction if that
-    explains them better: most logs have one flat surface."""
+    """The evidences, where contacts use a normal of all contacts if it explains them better: the normal of the contact
+    that a spring explains best, or the normal by the friction in all contacts. Most logs have one flat surface.
+    """
     known = [one for one in evidences if one is not None and one.likelihood]
     if log.axes == 1 or len(known) < 2:
         return evidences
     best = min(known, key=unexplained)
     direction = np.array(best.found["direction"])
+    rubbed = normal_by_friction(log, np.concatenate([one.rows for one in known]), direction)
 
     def improved(one):
-        if one is None or one.rows is None or unexplained(one) <= TYPICAL * unexplained(best):
+        if one is None or one.rows is None:
             return one
-        other = evidence_of_rows(log, one.rows, direction)
-        return other if unexplained(other) < 0.5 * unexplained(one) else one
+        shared = [] if rubbed is None or unexplained(one) <= EXACTLY else [rubbed]
+        if unexplained(one) > TYPICAL * unexplained(best):
+            shared.append(direction)
+        others = [evidence_of_rows(log, one.rows, normal) for normal in shared]
+        other = min(others, key=unexplained, default=one)
+        return other if unexplained(other) < AS_GOOD * unexplained(one) else one
 
     return [improved(one) for one in evidences]
 
@@ -335,6 +312,7 @@ def numbers_of(log, evidence, models):
         best = next(fit for fit in fits if fit.model == best.model)
     interval = log.interval
     fits = [widened(evidence.motion, fit, bool(friction)) for fit in fits]
+    fits += along_other_normal(evidence, fits)
     stiffness = spanned(
         best.stiffness, fits, lambda fit: (fit.stiffness, stiffness_half(evidence, fit))
     )
@@ -363,8 +341,16 @@ def numbers_of(log, evidence, models):
         "fits": fits,
     }
     if stiffness.low <= 0.0 or stiffness.half > WELL_KNOWN * stiffness.value:
-        numbers["why"] = why_unknown(fits, stiffness, delays, interval)
+        numbers["why"] = why_unknown(best, stiffness, delays, interval)
     return numbers
+
+
+def along_other_normal(evidence, fits):
+    """The fits along the other normal, if there is one."""
+    if evidence.other is None:
+        return []
+    found = [fit_of(evidence.other, fit.model) for fit in fits]
+    return [widened(evidence.other, fit, False) for fit in found if fit is not None]
 
 
 def widened(motion, fit, with_sign):
@@ -386,16 +372,6 @@ def likely(fits):
     return next(
         (fit for fit in fits if fit.stiffness > 0.0 and fit.damping + fit.halves[1] >= 0.0), fits[0]
     )
-
-
-def why_unknown(fits, stiffness, delays, interval):
-    text = f"stiffnesses of {stiffness.low:.3g} to {stiffness.high:.3g} N/m explain the force equally well"
-    if len(delays) > 1:
-        return (
-            f"{text}, with delays of {1e3 * delays[0] * interval:.3g} to {1e3 * delays[-1] * interval:.3g} ms, as in a "
-            "single oscillation or decay"
-        )
-    return text
 
 
 def spanned(value, fits, ends):
@@ -480,11 +456,10 @@ def weighted_median(values, weights):
 
 def linearity(motion, fit):
     """Stiffness of the deeper half of the travel divided by the stiffness of the other half, or None; 1: linear."""
-    if fit.model.delay:
-        return None
-    keep = motion.usable()
-    place = motion.place[motion.rows[keep]]
-    force = motion.force[keep] + fit.damping * motion.speeds[fit.model.kind][motion.rows[keep]]
+    keep = motion.known(fit.model.delay)
+    before = motion.rows[keep] - fit.model.delay
+    place = motion.place[before]
+    force = motion.force[keep] + fit.damping * motion.speeds[fit.model.kind][before]
     middle = 0.5 * (place.min() + place.max())
     slopes = []
     for half in (place < middle, place >= middle):
@@ -544,16 +519,18 @@ def springs_of(log, evidences):
     """
     evidences = with_shared_normal(log, evidences)
     known = [one for one in evidences if one is not None and one.likelihood]
-    models = as_good(well_explained(known))
+    models = as_good(log, well_explained(known))
     numbers = [numbers_of(log, one, models) if one and one.likelihood else {} for one in evidences]
     each = [
         None if one is None else one.found | stated(log, its)
         for one, its in zip(evidences, numbers)
     ]
     good = [i for i, one in enumerate(each) if one and "stiffness_N_per_m" in one]
-    if not good:
+    if not good or shows_no_spring(each):
         return each, None
     stiffness, at = combined([numbers[i]["stiffness"] for i in good])
+    if stiffness.half > WELL_KNOWN * stiffness.value:
+        return each, None
     damping, _ = combined([numbers[i]["damping"] for i in good])
     slow, _ = combined([numbers[i]["slow_damping"] for i in good])
     chosen = good[at]
@@ -567,6 +544,25 @@ def springs_of(log, evidences):
         "loops": loops_of(log, stiffness, [numbers[i] for i in good]),
     }
     return each, main
+
+
+def shows_no_spring(each):
+    """True if more contacts contradict a spring than have a stiffness, or so few have one that the errors of 95 %
+    intervals explain them."""
+    known = [one for one in each if one]
+    good = sum("stiffness_N_per_m" in one for one in known)
+    return contradicting(each) > good or good <= UNSURE * len(known)
+
+
+def contradicting(each):
+    """Number of contacts that are no spring: most of the force does not follow the motion, or nothing moves."""
+    return sum(
+        one.get("explained", 1.0) < EXPLAINED
+        or "apparent_stiffness_N_per_m" in one
+        or one["travel_m"] <= FEWEST_COUNTS * one["resolution_m"]
+        for one in each
+        if one and "travel_m" in one
+    )
 
 
 def loops_of(log, stiffness, numbers):

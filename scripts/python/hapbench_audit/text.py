@@ -151,7 +151,7 @@ def stiffness_rows(audit):
         ("delay", delay_text(spring)),
         (
             "along",
-            f"({x:.2g}, {y:.2g}, {z:.2g}); explains {100.0 * spring['explained']:.4g} % of the variance",
+            f"{'' if spring['direction_is_known'] else 'about '}({x:.2g}, {y:.2g}, {z:.2g}); explains {100.0 * spring['explained']:.4g} % of the variance",
         ),
     ]
     if spring["linearity"] is not None:
