@@ -67,6 +67,18 @@ class Clocks(unittest.TestCase):
                 rate = (rows - 1) / t[-1]
                 self.assertAlmostEqual(found["rate_Hz"] / rate, 1.0, delta=2e-3, msg=name)
 
+    def test_held_values_of_a_log_that_lost_rows(self):
+        """Each value is in five rows, of which 1 % are lost."""
+        rng, rows = np.random.default_rng(7), 3000
+        t = T * np.arange(rows)
+        z = np.repeat(presses(t, 2, 1.0)[::5] + tremor(t)[::5], 5)
+        force = spring(z[::5], 900.0).repeat(5)
+        keep = rng.random(rows) >= 0.01
+        keep[[0, -1]] = True
+        clock = audit(log_of(t[keep], z[keep], force[keep]))["clock"]
+        self.assertAlmostEqual(clock["rows_per_position"], 5.0, delta=0.05)
+        self.assertAlmostEqual(clock["rows_per_force"], 5.0, delta=0.05)
+
     def test_times_without_order_have_no_missing_rows(self):
         """Errors of half an interval, as of sorted random times: no row can be counted."""
         rng = np.random.default_rng(2)

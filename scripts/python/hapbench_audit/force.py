@@ -173,6 +173,9 @@ def peaks_of(log, contacts, spectrum, mean):
     frequency, amplitude, seconds = spectrum
     resolution = 4.0 / seconds  # width of a peak of the Hann window
     above = frequency > max(LOWEST_PEAK, LEAST_PERIODS / seconds)
+    if log.held_force is not None:
+        # Holding a force repeats its spectrum around the rate of the loop.
+        above &= frequency <= 0.5 / (log.interval * log.held_force.rows)
     # The spectrum of noise exceeds its median r times with the probability 2^(-r^2).
     stands_out = math.sqrt(math.log2(seconds * frequency[-1] / FALSE_ALARM))
     top = np.r_[
@@ -204,8 +207,8 @@ def peaks_of(log, contacts, spectrum, mean):
 
 
 def amplitude_at(log, first, after, frequency):
-    """Amplitude [N] of an oscillation in these rows, by least squares at the times of the rows beside a slow force, with
-    the weights of a Hann window."""
+    """Amplitude [N] of an oscillation in these rows, by least squares at the times of the rows beside a slow force. The
+    weights are a Hann window."""
     time = log.time[first:after] - log.time[first]
     angle = 2.0 * math.pi * frequency * time
     slow = time / time[-1] - 0.5

@@ -7,7 +7,7 @@ from types import SimpleNamespace
 import numpy as np
 from hapbench_command import fail, finite_number, quoted, require_name
 from hapbench_import.columns import ABSENT, Names
-from hapbench_import.holds import hold_of
+from hapbench_import.holds import Hold, hold_of
 from hapbench_import.options import QUANTITIES, options_of
 from hapbench_import.recording import EXACT, Recording, open_recording
 from hapbench_import.samples import read_samples
@@ -19,6 +19,7 @@ LATEST_START = 1e6  # first time that is kept [s]
 FASTEST = 5.0  # of a hand [m/s]
 CLEAR = 0.25  # intervals: half of the error at which a row more or less is as likely
 SEVERAL = 20  # steps
+MOST_MISSING = 50  # rows that are counted in a gap, as many as the longest delay has
 FOLLOWED = 0.05  # share of a stamp's error by which the mean clock follows it
 # Names of the first column of each quantity in usual logs: lower case, without units, signs and blanks.
 USUAL = {
@@ -75,6 +76,11 @@ class Log:
     def missing(self):
         """Rows that are missing between each row and the next."""
         return missing_rows(np.diff(self.time))
+
+    @cached_property
+    def counted(self):
+        """Numbers of the rows, with missing rows, but for those of long gaps."""
+        return np.append(0, np.cumsum(1 + np.minimum(self.missing, MOST_MISSING)))
 
     @cached_property
     def interval_error(self):
@@ -213,7 +219,7 @@ def log_of(recording, options, wanted):
             f"{read.left_out[0][0]}: {read.left_out[0][1]}"
         )
     log.quantum_m, log.quantum_N = quanta(log.position), quanta(log.force)
-    log.held, log.held_force = hold_of(log.position), hold_of(log.force)
+    log.held, log.held_force = held_of(log, log.position), held_of(log, log.force)
     return log
 
 
@@ -257,6 +263,14 @@ def of_mean_clock(steps):
         errors.append(error)
         late = (1.0 - gain) * error
     return np.array(found), np.array(errors)
+
+
+def held_of(log, values):
+    """The Hold of values, or None. Missing rows count in the rhythm."""
+    rows = log.counted
+    whole = np.arange(rows[-1] + 1)
+    found = hold_of(values[np.searchsorted(rows, whole, side="right") - 1])
+    return None if found is None else Hold(found.rows, found.fresh[rows])
 
 
 def times_of(read):

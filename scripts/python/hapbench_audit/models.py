@@ -8,7 +8,9 @@ from scipy.fft import irfft, next_fast_len, rfft
 from scipy.signal import lfilter
 from scipy.stats import t as student
 
-MOST_DELAY = 50  # rows
+from .log import MOST_MISSING
+
+MOST_DELAY = MOST_MISSING  # rows
 FEWEST = 10  # rows of a fit
 JITTER = 1e-3  # of the interval: below, both clocks give the same velocities
 LONGEST_MEMORY = 1000  # rows
@@ -57,8 +59,7 @@ class Motion:
         self.first = max(int(rows[0]) - BEFORE, 0)
         part = slice(self.first, min(int(rows[-1]) + 2, len(log.time)))
         # Rows by the clock: a row that is missing keeps its number, so that a delay counts it.
-        counted = np.append(0, np.cumsum(1 + np.minimum(log.missing, MOST_DELAY)))[part]
-        counted -= counted[0]
+        counted = log.counted[part] - log.counted[part.start]
         place, at = log.position[part] @ direction, np.arange(counted[-1] + 1)
         last = np.searchsorted(counted, at, side="right") - 1
         self.place = np.interp(at, counted, place)

@@ -21,12 +21,14 @@ def no_travel_text(travel, resolution, force, noise):
 
 
 def why_unknown(best, stiffness, delays, interval):
-    text = f"stiffnesses of {stiffness.low:.3g} to {stiffness.high:.3g} N/m explain the force equally well"
-    if stiffness.low <= 0.0:
+    """`stiffness`: the Estimate, or None if a stiffness of zero is possible."""
+    if stiffness is None or stiffness.low <= 0.0:
         text = (
             "the log does not bound the stiffness (position and velocity explain "
             f"{100.0 * best.explained:.3g} % of the force's variance)"
         )
+    else:
+        text = f"stiffnesses of {stiffness.low:.3g} to {stiffness.high:.3g} N/m explain the force equally well"
     if len(delays) > 1:
         return (
             f"{text}, with delays of {1e3 * delays[0] * interval:.3g} to {1e3 * delays[-1] * interval:.3g} ms, as in a "

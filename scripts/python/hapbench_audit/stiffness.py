@@ -5,6 +5,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from scipy.stats import t as student
 
+from .linearity import median_linearity
 from .models import Motion, fit_of, low_pass_of, neighbours_of, residuals
 from .normal import (
     AS_GOOD,
@@ -242,8 +243,14 @@ def is_negative(log, evidences, model):
         half = damping_half(log, one, widened(one.motion, fit, False))
         return fit.damping + half < -0.25 * fit.stiffness * one.motion.interval < 0.0
 
-    signs = [negative(one) for one in evidences if model in one.likelihood]
-    return 2 * sum(signs) > len(signs)
+    having = [one for one in evidences if model in one.likelihood]
+    negatives = 0
+    for number, one in enumerate(having, start=1):
+        negatives += negative(one)
+        # The contacts that are left may no longer make most of them negative, or need not.
+        if 2 * negatives > len(having) or 2 * (negatives + len(having) - number) <= len(having):
+            break
+    return 2 * negatives > len(having)
 
 
 def well_explained(evidences):
@@ -291,11 +298,12 @@ class Estimate:
 
 def numbers_of(log, evidence, models):
     """Numbers for the JSON of one contact, with intervals over these models; `why`: why it has no stiffness."""
-    fits = [
-        fit
-        for model in models
-        if model in evidence.likelihood and (fit := fit_of(evidence.motion, model)) is not None
-    ]
+    usable = [model for model in models if model in evidence.likelihood]
+    unbounded = unbounded_by(evidence, usable)
+    if unbounded is not None:
+        delays = sorted({model.delay for model in usable})
+        return {"why": why_unknown(unbounded, None, delays, log.interval)}
+    fits = [fit for model in usable if (fit := fit_of(evidence.motion, model)) is not None]
     if not fits:
         return {"why": "the contact is too short for the delay of the force"}
     nearest = min(fits, key=lambda fit: fit.model.delay)
@@ -343,6 +351,22 @@ def numbers_of(log, evidence, models):
     if stiffness.low <= 0.0 or stiffness.half > WELL_KNOWN * stiffness.value:
         numbers["why"] = why_unknown(best, stiffness, delays, interval)
     return numbers
+
+
+def unbounded_by(evidence, models):
+    """The best Fit, if one of the models allows a stiffness of zero; else None. Further models then matter no more."""
+    best = None
+    for model in models:
+        fit = fit_of(evidence.motion, model)
+        if fit is None:
+            continue
+        if best is None:
+            best = fit
+            if dry_friction(evidence.motion, best):
+                return None
+        if abs(fit.stiffness) <= fit.halves[0]:
+            return best
+    return None
 
 
 def along_other_normal(evidence, fits):
@@ -454,23 +478,6 @@ def weighted_median(values, weights):
     return float(values[order][np.searchsorted(total, 0.5 * total[-1])])
 
 
-def linearity(motion, fit):
-    """Stiffness of the deeper half of the travel divided by the stiffness of the other half, or None; 1: linear."""
-    keep = motion.known(fit.model.delay)
-    before = motion.rows[keep] - fit.model.delay
-    place = motion.place[before]
-    force = motion.force[keep] + fit.damping * motion.speeds[fit.model.kind][before]
-    middle = 0.5 * (place.min() + place.max())
-    slopes = []
-    for half in (place < middle, place >= middle):
-        if half.sum() < FEWEST or np.ptp(place[half]) == 0.0:
-            return None
-        slopes.append(-np.polyfit(place[half] - middle, force[half], 1)[0])
-    # The force points out of the surface, so deeper is the smaller position.
-    deep, shallow = slopes
-    return float(deep / shallow) if shallow > 0.0 else None
-
-
 def stated(log, numbers):
     """The JSON of one contact's numbers_of()."""
     found = {key: numbers[key] for key in ("why", "apparent_stiffness_N_per_m") if key in numbers}
@@ -540,7 +547,7 @@ def springs_of(log, evidences):
     main = evidences[chosen].found | values_of(log, stiffness, damping, slow, its)
     main |= {
         "contacts": len(good),
-        "linearity": linearity(evidences[chosen].motion, its["best"]),
+        "linearity": median_linearity([(evidences[i].motion, numbers[i]["best"]) for i in good]),
         "loops": loops_of(log, stiffness, [numbers[i] for i in good]),
     }
     return each, main
