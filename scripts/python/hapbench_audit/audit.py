@@ -10,7 +10,7 @@ from .diagnosis import findings_of
 from .energy import Port, contact_energy, energy_of, stored_at
 from .force import force_of, peaks_of, spectrum_of
 from .log import FASTEST
-from .stiffness import FEWEST, evidence_of, springs_of
+from .stiffness import FEWEST, contradicting, evidence_of, springs_of
 
 
 def audit_log(log, device=None):
@@ -29,7 +29,7 @@ def audit_log(log, device=None):
         "metrics": force,
         "energy": energy_of(log, port, stored_at(log, contacts, 0, main))
         | energy_by_contact(log, contacts, every),
-        "buzz": peaks_of(spectrum, force["force_mean_in_contact_N"]),
+        "buzz": peaks_of(log, contacts, spectrum, force["force_mean_in_contact_N"]),
         "stiffness": main,
         "stiffness_range": stiffness_range(every),
         "device": device_limit(device, loop_interval(log), main) if device else None,
@@ -90,7 +90,8 @@ def with_springs(log, contacts, every):
     springs, main = springs_of(log, evidences)
     for one, spring in zip(every, springs):
         one["spring"] = spring
-    if main is not None or not contacts.stretches:
+    is_known = main is not None or any(has_stiffness(one) for one in springs)
+    if is_known or not contacts.stretches or contradicting(springs):
         return main
     first, after = max(
         contacts.stretches,
@@ -178,6 +179,84 @@ def disagreement(springs):
         f"the contacts disagree by more than their intervals: {min(values):.4g} to {max(values):.4g} N/m. The "
         "stiffness is not linear, or the tool touches several surfaces; audit.json has each contact"
     ]
+
+
+def missing(log, audit, device):
+    """What the log cannot show, and what would."""
+    found = []
+    if not len(audit["contacts"]):
+        found.append("contact: no row has a force")
+    if audit["stiffness"] is None and audit["contacts"]:
+        whys = [
+            one["spring"]["why"]
+            for one in audit["contacts"]
+            if one["spring"] and "why" in one["spring"]
+        ]
+        span = stiffness_range(audit["contacts"])
+        if span and span[1] > span[0] and not whys:
+            whys = [f"the contacts have {span[0]:.4g} to {span[1]:.4g} N/m"]
+        why = max(whys, key=whys.count) if whys else f"no contact has {FEWEST} rows"
+        attempt = "" if "rigid" in why else "; tap, and press to several depths at several speeds"
+        found.append(f"stiffness: {why}{attempt}")
+    elif audit["stiffness"] and audit["stiffness"].get("why_no_damping"):
+        found.append(
+            f"damping: {audit['stiffness']['why_no_damping']}; taps and quick presses, more digits, or a column of "
+            "velocities"
+        )
+    elif audit["stiffness"] and audit["stiffness"]["delay_s"] is None:
+        found.append("delay: the log does not separate it from damping; taps and quick presses")
+    if device is None:
+        found.append("whether the device can render this stiffness: --device FILE.json or a preset")
+    elif audit["device"] is None:
+        found.append("the limit of the device: it needs the stiffness of a contact")
+    if log.contacts is None:
+        found.append(
+            "whether force steps are changes of contacts: a column with the number of contacts"
+        )
+    if log.measured is None:
+        found.append(
+            "whether the device renders the force: a column of the measured force (measured=...)"
+        )
+    if log.turn is not None:
+        turned = float((log.turn[0].inv() * log.turn).magnitude().max())
+        if turned > 0.01:
+            found.append(
+                f"energy of rotation: the tool turns by up to {turned:.3g} rad, and the log has no torque"
+            )
+    if audit["metrics"]["force_mean_in_contact_N"] is None and audit["contacts"]:
+        found.append("vibration: there is less than 1/30 s of contact after the landings")
+    if audit["energy"]["net_created_J"] is None:
+        found.append(
+            "created energy: the log begins in contact, and without a stiffness the energy stored there is unknown; "
+            "a log that begins without contact"
+        )
+    if audit["clock"]["rate_Hz"] <= 60.0:
+        found.append("vibration above 30 Hz: a log of more than 60 Hz")
+    return found
+
+
+def missing_of_spring(audit):
+    """Returns which of stiffness, damping and delay the log does not determine, and what would determine it."""
+    if audit["stiffness"] is None and audit["contacts"]:
+        whys = [
+            one["spring"]["why"]
+            for one in audit["contacts"]
+            if one["spring"] and "why" in one["spring"]
+        ]
+        span = stiffness_range(audit["contacts"])
+        if span and span[1] > span[0] and not whys:
+            whys = [f"the contacts have {span[0]:.4g} to {span[1]:.4g} N/m"]
+        why = max(whys, key=whys.count) if whys else f"no contact has {FEWEST} rows"
+        attempt = "" if "rigid" in why else "; tap, and press to several depths at several speeds"
+        return [f"stiffness: {why}{attempt}"]
+    if audit["stiffness"] and audit["stiffness"].get("why_no_damping"):
+        return [
+            f"damping: {audit['stiffness']['why_no_damping']}; taps and quick presses, more digits, or a column of "
+            "velocities"
+        ]
+    if audit["stiffness"] and audit["stiffness"]["delay_s"] is None:
+        return ["delay: the log does not separate it from damping; taps and quick presses"]
+    return []
 
 
 def missing(log, audit, device):

@@ -10,9 +10,8 @@ JITTER = 0.05
 
 
 def clock_of(log):
-    """Returns the numbers of the clock as a dictionary."""
-    steps, interval = np.diff(log.time), log.interval
-    missing = np.maximum(np.rint(steps / interval).astype(int) - 1, 0)
+    """A dictionary of numbers."""
+    steps, interval, missing = np.diff(log.time), log.interval, log.missing
     usual = steps[missing == 0]
     return {
         "rows": len(log.time),

@@ -5,11 +5,10 @@ import numpy as np
 
 from .log import LONG_INTERVALS
 
-SETTLING = 0.05  # [s], default of metrics.settling_s of a scenario
-# If at least this fraction of the rows has exactly zero force, every other row is in contact.
-SOME_ZEROS = 0.01
-# Threshold of contact relative to the 99th percentile of the force; used if the force is hardly ever zero.
-TOUCH_SHARE = 0.05
+SETTLING = 0.05  # [s], as metrics.settling_s of a scenario
+SOME_ZEROS = 0.01  # share of rows without force from which any force is a contact
+FAR = 3.0  # standard deviations of noise
+TOUCH_SHARE = 0.05  # of the 99th percentile of the force; where the force is never zero
 
 
 @dataclass
@@ -78,13 +77,24 @@ def rows_in_contact(log, size):
         return log.contacts > 0, 0.0, "the column of contacts is above 0"
     if np.mean(size == 0.0) >= SOME_ZEROS or not size.any():
         return size > 0.0, 0.0, "any force"
-    threshold = TOUCH_SHARE * float(np.percentile(size, 99))
+    release = TOUCH_SHARE * float(np.percentile(size, 99))
+    # Rows below have noise only. Noise must neither touch nor lose contact.
+    noise = float(np.sqrt(np.mean(size[size < release] ** 2))) if (size < release).any() else 0.0
+    release = max(release, FAR * noise)
+    touch = release + 2.0 * FAR * noise / np.sqrt(log.axes)
+    ends = f"until below {release:.3g} N, " if noise > 0.0 else ""
     return (
-        size > threshold,
-        threshold,
-        f"force above {threshold:.3g} N, 5 % of its 99th percentile, because the log has no rows without force "
-        "(--set touch_N=... sets it)",
+        between(size, release, touch),
+        touch,
+        f"force above {touch:.3g} N {ends}by 5 % of its 99th percentile and its noise, because the log has no rows "
+        "without force (--set touch_N=... sets it)",
     )
+
+
+def between(values, low, high):
+    """True from a value above `high` until a value below `low`."""
+    event = np.where((values > high) | (values < low), np.arange(len(values)), 0)
+    return values[np.maximum.accumulate(event)] > high
 
 
 def runs_of(flags, gap):

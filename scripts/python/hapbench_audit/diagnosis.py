@@ -1,10 +1,14 @@
 """The diagnosis of a log, with the texts and thresholds of the diagnosis of `run`, and advice for another engine."""
 import json
+import math
 from functools import lru_cache
 
 import numpy as np
 from hapbench_command import asked_of_program
 
+from .contacts import runs_of
+from .force import CUTOFF
+from .normal import main_direction
 from .text import HAMMERS, expected_text
 
 AT_LIMIT = 0.999  # fraction of the largest force from which a row counts as saturated
@@ -13,6 +17,7 @@ FLAT = 20  # number of rows at the largest force from which this force counts as
 # Vibration relative to the mean force; the threshold of the rule "edge" of the program.
 HAS_BUZZ = 0.1
 GAIN_MARGIN = 2.0
+NOISE = 4.0  # standard deviations: normal errors beyond are 1 of 16 000
 
 
 @lru_cache
@@ -64,18 +69,21 @@ def findings_of(log, contacts, audit):
     found.add(
         "pop",
         share(force["settled_force_step_max_N"], mean),
-        against_pop(log, contacts, force),
+        against_pop(log, contacts, audit),
         f", at {force['time_of_largest_step_s']:.6g} s",
     )
-    found.add("encoder", encoder_share(audit, mean), against_encoder(audit))
+    reversals = reversals_per_s(log, contacts, audit)
+    pop = share(force["settled_force_step_max_N"], mean) or 0.0
+    if vibrates or max(pop, vibration or 0.0) > HAS_BUZZ or reversals:
+        found.add("encoder", encoder_share(audit, mean), against_encoder(audit))
     found.add(
         "saturated",
-        saturated_share(log, contacts),
+        saturated_share(log, contacts, audit["stiffness"]),
         "a smaller stiffness, or a larger force limit in engine or device",
     )
     landings = force["landings"] / max(audit["clock"]["duration_s"], 1e-9)
     found.add("bounces", landings, "more damping or a smaller stiffness")
-    found.add("chatter", force["force_reversals_per_s"], against_chatter(vibration))
+    found.add("chatter", reversals, against_chatter(vibration))
     energy = audit["energy"]
     created, error = energy["net_created_J"], energy["net_created_error_J"]
     if created is not None and created > error:
@@ -91,8 +99,10 @@ def energy_text(energy):
 
 
 def buzz_text(buzz):
+    """The strongest oscillation that the rule counts."""
+    fast = [one for one in buzz if one["frequency_Hz"] > CUTOFF]
     return (
-        f", at {buzz[0]['frequency_Hz']:.0f} Hz with {buzz[0]['amplitude_N']:.3g} N" if buzz else ""
+        f", at {fast[0]['frequency_Hz']:.0f} Hz with {fast[0]['amplitude_N']:.3g} N" if fast else ""
     )
 
 
@@ -133,7 +143,10 @@ def against_buzz(audit, ratio):
         return 'what the rule "encoder" says'
     lost = audit["metrics"]["contacts_lost_per_s"] or 0.0
     if lost > HAMMERS:
-        text = f"a smaller stiffness or more damping: the tool hammers and loses contact {lost:.3g} times per second"
+        text = (
+            "a smaller stiffness, less restitution or more damping: the tool hammers and loses contact "
+            f"{lost:.3g} times per second"
+        )
         return text + ("; --device FILE.json shows the limit" if audit["device"] is None else "")
     if audit["device"] is None:
         return (
@@ -146,7 +159,27 @@ def against_buzz(audit, ratio):
     )
 
 
-def against_pop(log, contacts, force):
+def against_pop(log, contacts, audit):
+    force, k = audit["metrics"], int(
+        np.searchsorted(log.time, audit["metrics"]["time_of_largest_step_s"])
+    )
+    moved, caused = motion_at(log, audit["stiffness"], k)
+    if caused is not None and caused > 0.5 * (force["settled_force_step_max_N"] or math.inf):
+        return (
+            f"a higher rate, slower motion or a smaller stiffness: the tool moves by {1e3 * moved:.3g} mm in one row, of "
+            f"which the stiffness makes {caused:.3g} N"
+        )
+    if k > 0 and contacts.in_contact[k] and not contacts.in_contact[k - 1]:
+        return (
+            "a compliant contact, such as a spring or a time constant of several rows: the largest step is a touch, "
+            "and the engine stops the tool within a row, as rigid contacts and impulses do"
+        )
+    part = travel_share(log, contacts, k)
+    if part > 0.5 * share_of_largest(log, k):
+        return (
+            f"a higher rate or slower motion: the tool moves by {1e3 * moved:.3g} mm in one row, {100.0 * part:.0f} % of "
+            "its travel in contact"
+        )
     if log.contacts is not None:
         step = np.linalg.norm(np.diff(log.force, axis=0), axis=1)
         large = contacts.settled[1:] & (step > 0.5 * (force["force_mean_in_contact_N"] or 0.0))
@@ -157,43 +190,103 @@ def against_pop(log, contacts, force):
             return said + (
                 ": forces that fade in and out with depth, or contacts that are kept from step to step"
                 if part > 0.5
-                else ": look at normals and depths of the contacts there"
+                else f": look at normals and depths of the contacts there (the tool moves by {1e3 * moved:.3g} mm "
+                "in the row of the largest step)"
             )
     if (force["contacts_lost_per_s"] or 0.0) > HAMMERS:
         return (
-            f"contact is lost {force['contacts_lost_per_s']:.3g} times per second: a smaller stiffness or more "
-            "damping, and a force that starts at zero at touch"
+            f"contact is lost {force['contacts_lost_per_s']:.3g} times per second: a smaller stiffness, less "
+            "restitution or more damping, and a force that starts at zero at touch"
         )
-    return "look at the contacts at that time; a log with a column of their number shows whether they change there"
+    return (
+        f"look at the contacts at that time, where the tool moves by {1e3 * moved:.3g} mm in a row; a log with a column "
+        "of their number shows whether they change there"
+    )
+
+
+def travel_share(log, contacts, row):
+    """Motion along the force in the row, as a share of the travel of all rows in contact."""
+    rows = np.flatnonzero(contacts.in_contact)
+    place = log.position @ main_direction(log.force[rows])
+    travel = float(np.ptp(place[rows]))
+    return abs(float(place[row] - place[row - 1])) / travel if row > 0 and travel > 0.0 else 0.0
+
+
+def share_of_largest(log, row):
+    """The force step at the row as a share of the largest force of the log."""
+    size = float(np.linalg.norm(log.force, axis=1).max())
+    return float(np.linalg.norm(log.force[row] - log.force[row - 1])) / size
+
+
+def motion_at(log, stiffness, row):
+    """(largest motion in one row [m], force that the stiffness makes of it [N] or None) of the rows that cause the force
+    step at a row, with any delay that the log allows."""
+    delay = 0 if not stiffness else round(stiffness["delay_interval_s"][1] / log.interval)
+    held = 1 if log.held is None else round(log.held.rows)
+    steps = np.diff(log.position[max(row - delay - held, 0) : row + 1], axis=0)
+    if not len(steps):
+        return 0.0, None
+    moved = float(np.linalg.norm(steps, axis=1).max())
+    if not stiffness:
+        return moved, None
+    along = float(np.abs(steps @ np.array(stiffness["direction"])).max())
+    return moved, stiffness["stiffness_N_per_m"] * along
+
+
+def reversals_per_s(log, contacts, audit):
+    """Reversals of the force per second of settled contact, without reversals of a force that is as small as its
+    noise: what spring and damper leave unexplained in most rows."""
+    settled, force = contacts.settled, log.force
+    seconds = audit["metrics"]["settled_s"]
+    if audit["metrics"]["force_reversals_per_s"] is None:
+        return None
+    noises = [
+        one["spring"]["noise_N"] for one in audit["contacts"] if "noise_N" in (one["spring"] or {})
+    ]
+    size = np.linalg.norm(force, axis=1)
+    is_large = size > (NOISE * float(np.median(noises)) if noises else 0.0)
+    reverses = np.einsum("ij,ij->i", force[1:], force[:-1]) < 0.0
+    return float(np.sum(reverses & is_large[1:] & is_large[:-1] & settled[1:]) / seconds)
 
 
 def encoder_share(audit, mean):
     """Force that one step of the position causes through the damping, divided by the mean force."""
-    stiffness, device = audit["stiffness"], audit["device"] or {}
+    stiffness, step = audit["stiffness"], audit["clock"]["position_resolution_m"]
     damping = stiffness and stiffness.get("damping_N_s_per_m")
-    step = device.get("encoder_step_m") or audit["clock"]["position_resolution_m"]
     if not damping or damping <= 0.0 or not step:
         return None
     return share(damping * step / audit["clock"]["interval_s"], mean)
 
 
 def against_encoder(audit):
-    step = (audit["device"] or {}).get("encoder_step_m") or audit["clock"]["position_resolution_m"]
+    step = audit["clock"]["position_resolution_m"]
     return (
         f"a low-pass on the velocity, less damping, or a finer position than {1e6 * step:.3g} um (if that is only the "
         "resolution of the log, more digits in the log)"
     )
 
 
-def saturated_share(log, contacts):
-    """Returns the fraction of the rows in contact that have the largest force. Returns None if too few rows have it, so
-    that it is not a limit, or if nearly all have it, so that the force is constant."""
+def saturated_share(log, contacts, stiffness):
+    """Share of the rows in contact at the largest force; None if too few rows are there to be a limit, or if nearly
+    all are there: the force is then constant. A force that is constant because the tool rests is at no limit.
+    """
     size = np.linalg.norm(log.force, axis=1)
+    rows = np.flatnonzero(contacts.in_contact)
+    if not len(rows):
+        return None
+    normal = np.array(stiffness["direction"]) if stiffness else main_direction(log.force[rows])
+    place, resolution = log.position @ normal, float(np.abs(normal) @ log.quantum_m)
+    # The share of the travel within which the force of a spring changes by less than its rows differ here.
+    least = max((1.0 - AT_LIMIT) * float(np.ptp(place[rows])), 2.0 * resolution)
     at = contacts.in_contact & (size >= AT_LIMIT * size.max())
     # A limit cuts off peaks: consecutive rows then have the same force.
     flat = at[1:] & at[:-1] & (np.abs(np.diff(size)) <= 1e-6 * size.max())
-    part = share(float(at.sum()), float(contacts.in_contact.sum()))
-    return part if flat.sum() >= FLAT and part < CONSTANT else None
+    count = 0
+    for first, after in runs_of(flat, np.zeros(len(flat) - 1, bool)).tolist():
+        if np.ptp(place[first : after + 1]) > least:
+            count += after - first + 1
+    part = share(float(count), float(len(rows)))
+    return part if count >= FLAT and part < CONSTANT else None
 
 
 def against_chatter(vibration):
@@ -234,7 +327,17 @@ def against_energy(audit):
         )
     if stiffness and (stiffness.get("damping_N_s_per_m") or 0.0) < 0.0:
         return "the contact has negative damping: look for a filter or a delay in its velocity"
+    if stiffness and stiffness["delay_interval_s"][1] == 0.0:
+        return (
+            "a passivity controller, or contacts whose force follows from the position alone: the energy appears along "
+            "the path too, so that contacts, weights or an internal state changed the force while the tool moved"
+        )
+    allowed = (
+        f" (the log allows up to {1e3 * stiffness['delay_interval_s'][1]:.3g} ms)"
+        if stiffness
+        else ""
+    )
     return (
-        "a passivity controller, or contacts whose force follows from the position alone: the energy appears along the "
-        "path too, so that contacts, weights or an internal state changed the force while the tool moved"
+        f"the energy appears along the path too: a delay of the force{allowed} creates it, or contacts, weights or an "
+        "internal state that change the force while the tool moves; taps and quick presses show which"
     )

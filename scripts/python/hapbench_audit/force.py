@@ -10,12 +10,14 @@ CUTOFF = 30.0  # cutoff of the high-pass filter [Hz]; equals kVibrationCutoff of
 LEAST_SETTLED = 1.0 / CUTOFF  # shortest settled contact that has metrics [s]
 STEP_SHARE = 0.1  # steps above this fraction of the mean force are counted
 MOST_PEAKS = 3
-SMALLEST_PEAK = 0.1  # smallest reported peak, relative to the amplitude of the strongest peak
-LOWEST_PEAK = 10.0  # lowest reported frequency [Hz]; voluntary motion of a hand is slower
-# Relative distance within which a frequency counts as a multiple of a stronger peak.
-HARMONIC = 0.02
-LEAST_PEAK = 0.01  # smallest reported amplitude of the strongest peak, relative to the mean force
-SHORTEST_SPECTRUM = 64  # smallest number of rows of a spectrum
+SMALLEST_PEAK = 0.1  # of the amplitude of the strongest peak
+LOWEST_PEAK = 10.0  # [Hz]; voluntary motion of a hand is slower
+HARMONIC = 0.02  # relative: multiples of a stronger peak
+LEAST_PEAK = 0.01  # amplitude of the strongest peak, as a share of the mean force
+SHORTEST_SPECTRUM = 64  # rows
+LEAST_PERIODS = 6.0  # of an oscillation: two in the middle third of a contact
+LASTING = 0.5  # of the amplitude that remains in the middle third
+FALSE_ALARM = 0.01  # probability that noise has a peak in a log
 
 
 def high_pass(rate):
@@ -57,7 +59,7 @@ def force_of(log, contacts):
     size = np.linalg.norm(log.force, axis=1)
     change = np.diff(log.force, axis=0, prepend=log.force[:1])
     step = np.linalg.norm(change, axis=1)
-    step[1:][np.diff(log.time) > 1.5 * interval] = 0.0
+    step[1:][log.missing > 0] = 0.0
     reverses = np.append(False, np.einsum("ij,ij->i", log.force[1:], log.force[:-1]) < 0.0)
     settled, landing = contacts.settled, contacts.landing
     settled_s = float(settled.sum() * interval)
@@ -164,31 +166,57 @@ def is_same(frequency, other, resolution):
     return abs(frequency - times * other) <= max(resolution, HARMONIC * frequency)
 
 
-def peaks_of(spectrum, mean):
-    """Returns frequency and amplitude of the strongest oscillations above LOWEST_PEAK, largest first. A peak exceeds
-    the median of its neighbourhood by a factor of 4 and is no multiple of a stronger peak."""
+def peaks_of(log, contacts, spectrum, mean):
+    """The strongest oscillations above LOWEST_PEAK, largest first: frequency and amplitude. A peak stands out from the
+    median of its neighbourhood, is no multiple of a stronger one, and lasts: it is there in the middle of the contact
+    too."""
     if spectrum is None or not mean:
         return []
     frequency, amplitude, seconds = spectrum
-    resolution = 4.0 / seconds  # width of a peak with the Hann window [Hz]
-    above = frequency > max(LOWEST_PEAK, resolution)
+    resolution = 4.0 / seconds  # width of a peak of the Hann window
+    above = frequency > max(LOWEST_PEAK, LEAST_PERIODS / seconds)
+    if log.held_force is not None:
+        # Holding a force repeats its spectrum around the rate of the loop.
+        above &= frequency <= 0.5 / (log.interval * log.held_force.rows)
+    # The spectrum of noise exceeds its median r times with the probability 2^(-r^2).
+    stands_out = math.sqrt(math.log2(seconds * frequency[-1] / FALSE_ALARM))
     top = np.r_[
         False, (amplitude[1:-1] > amplitude[:-2]) & (amplitude[1:-1] >= amplitude[2:]), False
     ]
     top[-1] = amplitude[-1] > amplitude[-2]
+    first, after = longest_stretch(log, contacts)
+    third = (after - first) // 3
     found = []
     for i in sorted(np.flatnonzero(top & above), key=lambda i: -amplitude[i]):
         least = SMALLEST_PEAK * found[0]["amplitude_N"] if found else LEAST_PEAK * mean
         if amplitude[i] < least or len(found) == MOST_PEAKS:
             break
         near = np.abs(frequency - frequency[i]) < max(10.0 * resolution, 0.2 * frequency[i])
-        is_peak = amplitude[i] > 4.0 * np.median(amplitude[near])
-        if is_peak and not any(
+        is_peak = amplitude[i] > max(stands_out, 4.0) * np.median(amplitude[near])
+        if not is_peak or any(
             is_same(frequency[i], one["frequency_Hz"], resolution) for one in found
         ):
-            # At half the sampling rate, positive and negative frequency coincide in one line.
-            both = 0.5 if i == len(frequency) - 1 else 1.0
-            found.append(
-                {"frequency_Hz": float(frequency[i]), "amplitude_N": float(both * amplitude[i])}
-            )
+            continue
+        if i == len(frequency) - 1:
+            # At half the rate both halves of the spectrum are one line.
+            size = 0.5 * amplitude[i]
+        else:
+            size = amplitude_at(log, first, after, frequency[i])
+            if amplitude_at(log, first + third, after - third, frequency[i]) < LASTING * size:
+                continue
+        found.append({"frequency_Hz": float(frequency[i]), "amplitude_N": float(size)})
     return found
+
+
+def amplitude_at(log, first, after, frequency):
+    """Amplitude [N] of an oscillation in these rows, by least squares at the times of the rows beside a slow force. The
+    weights are a Hann window."""
+    time = log.time[first:after] - log.time[first]
+    angle = 2.0 * math.pi * frequency * time
+    slow = time / time[-1] - 0.5
+    columns = [np.cos(angle), np.sin(angle), np.ones(len(time)), slow, slow**2]
+    weight = np.sqrt(np.hanning(len(time)))[:, None]
+    found = np.linalg.lstsq(
+        weight * np.column_stack(columns), weight * log.force[first:after], rcond=None
+    )[0]
+    return math.sqrt(float(np.sum(found[:2] ** 2)))

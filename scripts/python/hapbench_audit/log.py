@@ -1,22 +1,27 @@
 """A log of any engine: times, positions and forces in SI units, and the other quantities that its columns hold."""
 import re
 from dataclasses import dataclass, field
+from functools import cached_property
 from types import SimpleNamespace
 
 import numpy as np
 from hapbench_command import fail, finite_number, quoted, require_name
 from hapbench_import.columns import ABSENT, Names
-from hapbench_import.holds import hold_of
+from hapbench_import.holds import Hold, hold_of
 from hapbench_import.options import QUANTITIES, options_of
 from hapbench_import.recording import EXACT, Recording, open_recording
 from hapbench_import.samples import read_samples
 from hapbench_import.stroke import resolution_of
 
-FEWEST = 20  # smallest number of samples
-LONG_INTERVALS = 10.0  # in median intervals; a longer gap ends a contact
-LATEST_START = 1e6  # largest first time that is kept; later clocks are shifted to start at 0 [s]
-FASTEST = 5.0  # largest plausible speed of a hand [m/s]
-# Usual names of the first column of each quantity, in lower case, without units, signs and blanks.
+FEWEST = 20  # samples
+LONG_INTERVALS = 10.0  # median intervals; a longer gap ends a contact
+LATEST_START = 1e6  # first time that is kept [s]
+FASTEST = 5.0  # of a hand [m/s]
+CLEAR = 0.25  # intervals: half of the error at which a row more or less is as likely
+SEVERAL = 20  # steps
+MOST_MISSING = 50  # rows that are counted in a gap, as many as the longest delay has
+FOLLOWED = 0.05  # share of a stamp's error by which the mean clock follows it
+# Names of the first column of each quantity in usual logs: lower case, without units, signs and blanks.
 USUAL = {
     "time": "time times t ts timestamp stamp secs simtime headerstamp clock",
     "position": "px posx positionx poseposition posepositionx tipx toolx tcpx eex hipx pos0 p0 position0 x",
@@ -59,7 +64,7 @@ class Log:
     # Force above which a row is in contact [N]; None: found from the log.
     touch: float | None = None
 
-    @property
+    @cached_property
     def interval(self):
         """Mean time between consecutive rows [s], without the steps over missing rows."""
         steps = np.diff(self.time)
@@ -67,8 +72,24 @@ class Log:
         off = self.time - self.time[0] - np.arange(len(self.time)) * mean
         if np.abs(off).max() <= 1e-3 * mean:
             return float(mean)
-        usual = steps[steps < 1.5 * np.median(steps)]
-        return float(usual.mean())
+        return float(steps[self.missing == 0].mean())
+
+    @cached_property
+    def missing(self):
+        """Rows that are missing between each row and the next."""
+        return missing_rows(np.diff(self.time))
+
+    @cached_property
+    def counted(self):
+        """Numbers of the rows, with missing rows, but for those of long gaps."""
+        return np.append(0, np.cumsum(1 + np.minimum(self.missing, MOST_MISSING)))
+
+    @cached_property
+    def interval_error(self):
+        """Relative error of the interval, from the jitter of the first and the last row."""
+        steps = np.diff(self.time)
+        jitter = float(np.std(steps[self.missing == 0]))
+        return 3.0 * jitter / float(self.time[-1] - self.time[0])
 
 
 def read_log(options):
@@ -203,8 +224,58 @@ def log_of(recording, options, wanted):
             f"{read.left_out[0][0]}: {read.left_out[0][1]}"
         )
     log.quantum_m, log.quantum_N = quanta(log.position), quanta(log.force)
-    log.held, log.held_force = hold_of(log.position), hold_of(log.force)
+    log.held, log.held_force = held_of(log, log.position), held_of(log, log.force)
     return log
+
+
+def missing_rows(steps):
+    """Rows that are missing in each step of a clock: steps are whole numbers of intervals, but for jitter.
+
+    Either each interval has its own error, or each time stamp of an even clock. In the second case, errors of stamps
+    do not add up, and a step is measured from the mean clock of the rows before it. The case that leaves smaller errors
+    counts.
+    """
+    interval = float(np.median(steps))
+    found = np.maximum(np.rint(steps / interval).astype(int) - 1, 0)
+    errors = steps / interval - found - 1.0
+    if np.abs(errors).max() <= CLEAR:
+        return found
+    # The errors of stamps matter less over several steps, few of which have missing rows.
+    several = min(SEVERAL, len(steps))
+    time = np.append(0.0, np.cumsum(steps))
+    interval = float(np.median(time[several:] - time[:-several])) / several
+    for _ in range(2):  # the second time with the mean interval of the first
+        found = np.maximum(np.rint(steps / interval).astype(int) - 1, 0)
+        by_step = steps / interval - found - 1.0
+        followed, by_clock = of_mean_clock((steps / interval).tolist())
+        error = min(np.mean(by_clock**2), np.mean(by_step**2))
+        if np.mean(by_clock**2) == error:
+            found = followed
+        interval = float(time[-1]) / (len(steps) + int(found.sum()))
+    # Errors as large as those of random times: only a step of more than two intervals is longer than jitter makes it.
+    longest = 2.0 * float(time[-1]) / len(steps)
+    return np.where(steps > longest, found, 0) if error > CLEAR**2 else found
+
+
+def of_mean_clock(steps):
+    """(missing rows, errors) of steps in intervals, each measured from the mean clock of the rows before."""
+    found, errors, late = [], [], 0.0  # `late`: the last stamp, relative to the mean clock
+    for row, step in enumerate(steps):
+        rows = max(round(step + late), 1)
+        error = step + late - rows
+        gain = max(1.0 / (row + 2.0), FOLLOWED)
+        found.append(rows - 1)
+        errors.append(error)
+        late = (1.0 - gain) * error
+    return np.array(found), np.array(errors)
+
+
+def held_of(log, values):
+    """The Hold of values, or None. Missing rows count in the rhythm."""
+    rows = log.counted
+    whole = np.arange(rows[-1] + 1)
+    found = hold_of(values[np.searchsorted(rows, whole, side="right") - 1])
+    return None if found is None else Hold(found.rows, found.fresh[rows])
 
 
 def times_of(read):

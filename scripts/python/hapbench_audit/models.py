@@ -1,22 +1,29 @@
 """Models of a contact's force, and their least-squares fits. A model is a spring and a damper at the position `delay`
 rows earlier. Models differ in the way in which the engine may compute the velocity."""
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
+from scipy.fft import irfft, next_fast_len, rfft
 from scipy.signal import lfilter
 from scipy.stats import t as student
 
-MOST_DELAY = 50  # largest delay [rows]
-FEWEST = 10  # smallest number of rows of a fit
-JITTER = 1e-3  # jitter relative to the interval; below it, both clocks give the same velocities
-LONGEST_MEMORY = 1000  # largest correlation length of a residual [rows]
+from .log import MOST_MISSING
+
+MOST_DELAY = MOST_MISSING  # rows
+FEWEST = 10  # rows of a fit
+JITTER = 1e-3  # of the interval: below, both clocks give the same velocities
+LONGEST_MEMORY = 1000  # rows
 LOW_PASSES = (1, 2, 4, 8, 16)  # time constants of a filtered velocity [rows]
-LOW_PASS = "low-pass "  # prefix of the kinds of filtered velocity
-EVEN = "even "  # prefix of the kinds that assume a clock without jitter
-BEFORE = MOST_DELAY + 10 * max(LOW_PASSES)  # rows after which the start of a filter has no effect
-BLOCKS = 10  # number of blocks of the jackknife
-# Smallest fraction of a column's norm that the other columns must leave unexplained.
-COLLINEAR = 1e-9
+LOW_PASS = "low-pass "  # begins their kinds
+EVEN = "even "  # begins the kinds of a clock without jitter
+LOOP = "loop "  # begins the kinds of a loop that is slower than the positions of the log
+BEFORE = MOST_DELAY + 10 * max(LOW_PASSES)  # rows that a filter needs to forget how it started
+BLOCKS = 10  # of the jackknife
+AT_ONCE = (
+    20_000  # numbers of a column that are computed together: they stay in the cache of a processor
+)
+COLLINEAR = 1e-9  # smallest share of a column that the other columns do not explain
 
 
 @dataclass(frozen=True, order=True)
@@ -52,16 +59,28 @@ class Motion:
     def __init__(self, log, rows, direction):
         self.first = max(int(rows[0]) - BEFORE, 0)
         part = slice(self.first, min(int(rows[-1]) + 2, len(log.time)))
-        self.place = log.position[part] @ direction
-        self.speeds = speeds(log, part, self.place, direction)
+        # Rows by the clock: a row that is missing keeps its number, so that a delay counts it.
+        counted = log.counted[part] - log.counted[part.start]
+        place, at = log.position[part] @ direction, np.arange(counted[-1] + 1)
+        last = np.searchsorted(counted, at, side="right") - 1
+        self.place = np.interp(at, counted, place)
+        self.speeds = {
+            kind: speed[last] for kind, speed in speeds(log, part, place, direction).items()
+        }
         self.force = log.force[rows] @ direction
-        self.rows = rows - self.first
-        self.most = min(MOST_DELAY, max(int(self.rows[-1]) - FEWEST, 0))
+        self.rows = counted[rows - self.first]
+        # Rows whose position or difference of positions would need a missing row.
+        absent = counted[last] != at
+        self.unknown = absent | np.append(False, absent[:-1]) | np.append(absent[1:], False)
+        self.fits = {}  # by model and whether it has the sign of the velocity
+        # A delay of more than half of a contact would make most of its force of positions before the contact.
+        half = int(self.rows[-1] - self.rows[0] + 1) // 2
+        self.most = min(MOST_DELAY, half, max(int(self.rows[-1]) - FEWEST, 0))
         self.interval = log.interval * (1.0 if log.held is None else log.held.rows)
         self.resolution = float(np.abs(direction) @ log.quantum_m)
         within = slice(int(self.rows[0]), int(self.rows[-1]) + 1)
         self.sampling = {
-            kind: self.sampling_of(kind.removeprefix(EVEN), within) for kind in self.speeds
+            kind: self.sampling_of(without_clock(kind)[1], within) for kind in self.speeds
         }
 
     def sampling_of(self, kind, within):
@@ -87,10 +106,10 @@ class Motion:
             found += np.mean(error**2)
         return float(found)
 
-    def rounding(self, model, stiffness, damping):
-        """Returns the mean square of the force error that the resolution of the position causes in a model [N^2]."""
+    def rounding(self, kind, stiffness, damping):
+        """Mean square of the force that the resolution of the position causes in a model with this velocity [N^2]."""
         of_speed = damping / self.interval
-        kind = model.kind.removeprefix(EVEN)
+        kind = without_clock(kind)[1]
         if kind == "logged":
             gain = stiffness**2
         elif kind == "central":
@@ -104,22 +123,28 @@ class Motion:
             gain = (stiffness + share * of_speed) ** 2 + of_speed**2 * share**3 / (2.0 - share)
         return gain * self.resolution**2 / 12.0
 
+    def delays_of(self, kind):
+        """Delays of a velocity. A forward difference stands for an implicit step: with a delay it would equal a backward
+        difference with one row less."""
+        return np.arange(1 if kind.endswith("forward") else self.most + 1)
+
     def models(self):
-        """Returns all models. There is a forward difference only for an implicit step: with a delay, a forward
-        difference would equal a backward difference with one row less delay."""
+        """All models."""
         return [
-            Model(delay, kind)
-            for kind in self.speeds
-            for delay in range(1 if kind.endswith("forward") else self.most + 1)
+            Model(delay, kind) for kind in self.speeds for delay in self.delays_of(kind).tolist()
         ]
 
     def usable(self):
         """Returns True for rows whose delayed row exists in every model. The first velocity has no row before it."""
         return self.rows > self.most
 
+    def known(self, delay):
+        """True for usable rows whose delayed row is in the log."""
+        return self.usable() & ~self.unknown[np.maximum(self.rows - delay, 0)]
+
     def columns(self, model, with_sign=False):
-        """Returns the centred columns and the force of the rows that every model explains."""
-        keep = self.usable()
+        """Centred columns and force of the known rows."""
+        keep = self.known(model.delay)
         before = self.rows[keep] - model.delay
         x, v, f = self.place[before], self.speeds[model.kind][before], self.force[keep]
         columns = [x - x.mean(), v - v.mean()]
@@ -129,9 +154,15 @@ class Motion:
         return np.column_stack(columns), f - f.mean()
 
 
+def without_clock(kind):
+    """(EVEN, LOOP or nothing, the rest of the kind)."""
+    clock = next((one for one in (EVEN, LOOP) if kind.startswith(one)), "")
+    return clock, kind.removeprefix(clock)
+
+
 def low_pass_of(kind):
-    """Returns the time constant of a low-pass filtered backward difference [rows]; 0 if it is not filtered."""
-    kind = kind.removeprefix(EVEN)
+    """Time constant of a backward difference [rows]; 0: not filtered."""
+    kind = without_clock(kind)[1]
     return int(kind.removeprefix(LOW_PASS)) if kind.startswith(LOW_PASS) else 0
 
 
@@ -147,11 +178,24 @@ def speeds(log, part, place, direction):
     found = {} if log.velocity is None else {"logged": log.velocity[part] @ direction}
     steps = np.diff(time[fresh])
     found |= differences(np.diff(place[fresh]) / steps, sample, "")
-    even = np.diff(fresh) * log.interval
+    counted = np.append(0, np.cumsum(1 + log.missing))[part]
+    even = np.diff(counted[fresh]) * log.interval
     if np.std(steps - even) > JITTER * log.interval:
         # The engine may assume a constant step, even if the clock of the log has jitter.
         found |= differences(np.diff(place[fresh]) / even, sample, EVEN)
+    if log.held is None and log.held_force is not None:
+        # The engine knows the positions of the rows with a new force only.
+        found |= loop_speeds(log, part, place)
     return found
+
+
+def loop_speeds(log, part, place):
+    """Velocities by kind from the positions of the rows in which the force is new."""
+    fresh = np.flatnonzero(log.held_force.fresh[part])
+    if len(fresh) < 3:
+        return {}
+    sample = np.maximum(np.searchsorted(fresh, np.arange(len(place)), side="right") - 1, 0)
+    return differences(np.diff(place[fresh]) / np.diff(log.time[part][fresh]), sample, LOOP)
 
 
 def differences(rates, sample, clock):
@@ -179,10 +223,8 @@ def five_point(rates):
 
 
 def neighbours_of(model, kinds):
-    """Returns the models whose velocity differs by one approximation step. The engine's velocity may lie between
-    `model` and these neighbours."""
-    clock = EVEN if model.kind.startswith(EVEN) else ""
-    kind = model.kind.removeprefix(EVEN)
+    """Models whose velocity is one step of approximation away, between which the velocity of an engine may lie."""
+    clock, kind = without_clock(model.kind)
     constant = low_pass_of(kind)
     if constant:
         near = [
@@ -199,44 +241,85 @@ class Residual:
     """The part of the force that a model leaves unexplained. Mean squares are per row [N^2]."""
 
     mean_square: float
-    rounding: float  # mean square error that the resolution of the position may cause
-    sampling: float  # mean square error that the sampling of the velocity may cause
-    total: float  # variance of the force: mean square of the difference from its mean
+    rounding: float  # mean square that the resolution of the position may cause
+    sampling: float  # mean square that the sampling of the velocity may cause
+    total: float  # mean square of the force less its mean
+    damping: float  # [N s/m]
 
 
-def residual_of(motion, model):
-    """Returns the Residual of a model; None if its columns are collinear."""
+def residuals_of(motion):
+    """Residual by Model, without models whose columns are collinear. Computes several delays at once."""
     keep = motion.usable()
-    before, force = motion.rows[keep] - model.delay, motion.force[keep]
-    if len(before) < FEWEST:
-        return None
-    rest = force - force.mean()
-    total = rest @ rest
-    basis_so_far, slopes, sizes, shared = [], [], [], 0.0
-    for values in (motion.place, motion.speeds[model.kind]):
-        column = values[before]
-        column -= column.mean()
-        size = np.sqrt(column @ column)
-        for direction in basis_so_far:
-            shared = column @ direction
-            column -= shared * direction
-        independent = np.sqrt(column @ column)
-        if not independent > COLLINEAR * size:
-            return None
-        basis_so_far.append(column / independent)
-        slopes.append(rest @ basis_so_far[-1])
-        sizes.append(independent)
-        rest -= slopes[-1] * basis_so_far[-1]
-    damping = -slopes[1] / sizes[1]
-    stiffness = (-slopes[0] - damping * shared) / sizes[0]
-    rows = len(before)
-    sampling = damping**2 * motion.sampling[model.kind]
-    return Residual(
-        float(rest @ rest) / rows,
-        float(motion.rounding(model, stiffness, damping)),
-        float(sampling),
-        float(total) / rows,
+    rows, force = motion.rows[keep], motion.force[keep]
+    if len(rows) < FEWEST:
+        return {}
+    found = {}
+    at_once = max(AT_ONCE // len(rows), 1)
+    for first in range(0, motion.most + 1, at_once):
+        delays = np.arange(first, min(first + at_once, motion.most + 1))
+        before = rows - delays[:, None]
+        known = ~motion.unknown[before]
+        place = centred(motion.place[before], known)
+        pushed = centred(np.broadcast_to(force, before.shape), known)
+        for kind, speed in motion.speeds.items():
+            some = slice(np.isin(delays, motion.delays_of(kind)).sum())
+            if delays[some].size:
+                across = centred(speed[before[some]], known[some])
+                found |= residuals_of_kind(
+                    motion, kind, delays[some], place[some], across, pushed[some], known[some]
+                )
+    return found
+
+
+def residuals(motion):
+    """(Residual by Model, Model with the smallest residual or None)."""
+    found = residuals_of(motion)
+    return found, min(found, key=lambda model: found[model].mean_square, default=None)
+
+
+def centred(values, known):
+    """The values less their means over the known values of each row; 0 where they are unknown."""
+    count = np.maximum(known.sum(axis=1, keepdims=True), 1)
+    return (values - (values * known).sum(axis=1, keepdims=True) / count) * known
+
+
+def residuals_of_kind(motion, kind, delays, place, speed, force, known):
+    """Residual by Model of some delays, by Gram and Schmidt. `place`, `speed`, `force`: centred columns, a row per
+    delay; 0 where they are not `known`."""
+
+    def dot(a, b):
+        return np.einsum("ij,ij->i", a, b)
+
+    def by(size):
+        return np.where(size > 0.0, size, 1.0)
+
+    count, total = known.sum(axis=1), dot(force, force)
+    size, length = np.sqrt(dot(place, place)), np.sqrt(dot(speed, speed))
+    along = place / by(size)[:, None]
+    shared = dot(speed, along)
+    across = speed - shared[:, None] * along
+    independent = np.sqrt(dot(across, across))
+    across /= by(independent)[:, None]
+    slope = dot(force, along)
+    rest = force - slope[:, None] * along
+    other = dot(rest, across)
+    rest -= other[:, None] * across
+    is_usable = (count >= FEWEST) & (size > 0.0) & (independent > COLLINEAR * length)
+    count = np.maximum(count, 1)
+    damping = -other / by(independent)
+    stiffness = (-slope - damping * shared) / by(size)
+    columns = (
+        delays,
+        dot(rest, rest) / count,
+        motion.rounding(kind, stiffness, damping),
+        damping**2 * motion.sampling[kind],
+        total / count,
+        damping,
     )
+    return {
+        Model(delay, kind): Residual(*numbers)
+        for delay, *numbers in zip(*(column[is_usable].tolist() for column in columns))
+    }
 
 
 def factors(matrix):
@@ -250,7 +333,15 @@ def factors(matrix):
 
 
 def fit_of(motion, model, with_sign=False):
-    """Returns the Fit of a model; None if its columns are collinear.
+    """The Fit of a model; None where its columns are collinear. The motion keeps the fits that were made."""
+    key = model, with_sign
+    if key not in motion.fits:
+        motion.fits[key] = new_fit(motion, model, with_sign)
+    return motion.fits[key]
+
+
+def new_fit(motion, model, with_sign):
+    """The Fit of fit_of().
 
     Each interval is the larger of two: the least-squares interval with the memory of the residuals, and the interval of
     a jackknife over consecutive blocks, which also covers residuals that are correlated with the motion.
@@ -285,26 +376,32 @@ def fit_of(motion, model, with_sign=False):
 def jackknife(q, inverse, residual):
     """Returns half-widths of 95 % intervals from fits that each omit one of BLOCKS consecutive blocks."""
     count = min(BLOCKS, len(residual) // 4)
-    changes = []
-    for block in np.array_split(np.arange(len(residual)), count):
-        part = q[block]
-        kept = np.eye(q.shape[1]) - part.T @ part
-        changes.append(inverse @ np.linalg.lstsq(kept, part.T @ residual[block], rcond=1e-9)[0])
-    changes = np.array(changes) - np.mean(changes, axis=0)
-    return student.ppf(0.975, count - 1) * np.sqrt(
-        (count - 1) / count * np.sum(changes**2, axis=0)
-    )
+    sizes = np.full(count, len(residual) // count)
+    sizes[: len(residual) % count] += 1
+    starts = np.concatenate([[0], np.cumsum(sizes)[:-1]])
+    parts = np.add.reduceat(q[:, :, None] * q[:, None, :], starts)
+    products = np.add.reduceat(q * residual[:, None], starts)
+    kept = np.linalg.pinv(np.eye(q.shape[1]) - parts, rcond=1e-9, hermitian=True)
+    changes = (kept @ products[:, :, None])[:, :, 0] @ inverse.T
+    changes -= changes.mean(axis=0)
+    return quantile_95(count - 1) * np.sqrt((count - 1) / count * np.sum(changes**2, axis=0))
+
+
+@lru_cache
+def quantile_95(freedom):
+    """Half-width of the 95 % interval of Student's distribution."""
+    return float(student.ppf(0.975, freedom))
 
 
 def memory(residual):
-    """Returns the number of rows for one independent residual: 1 + 2 times the sum of the autocorrelations up to the
-    first below 0.05."""
-    power, total = float(residual @ residual), 1.0
-    if power == 0.0:
+    """Rows that one independent residual stands for: 1 + 2 times the sum of the autocorrelations above 0.05."""
+    power = float(residual @ residual)
+    lags = min(len(residual) // 4, LONGEST_MEMORY)
+    if power == 0.0 or lags < 2:
         return 1.0
-    for lag in range(1, min(len(residual) // 4, LONGEST_MEMORY)):
-        correlation = float(residual[lag:] @ residual[:-lag]) / power
-        if correlation < 0.05:
-            break
-        total += 2.0 * correlation
-    return total
+    # Autocorrelations by the spectrum; zeros keep the ends from overlapping.
+    size = next_fast_len(len(residual) + lags, real=True)
+    spectrum = np.abs(rfft(residual / np.sqrt(power), size)) ** 2
+    correlations = irfft(spectrum, size)[1:lags]
+    known = np.append(correlations < 0.05, True).argmax()
+    return 1.0 + 2.0 * float(correlations[:known].sum())

@@ -1,46 +1,43 @@
 """Stiffness, damping and delay that a log determines, for each contact and combined over the contacts."""
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from scipy.stats import t as student
 
-from .models import Motion, fit_of, low_pass_of, neighbours_of, residual_of
+from .linearity import median_linearity
+from .models import Motion, fit_of, low_pass_of, neighbours_of, residuals
+from .normal import (
+    AS_GOOD,
+    EXACTLY,
+    FEWEST_COUNTS,
+    FEWEST_NEW,
+    main_direction,
+    normal_by_friction,
+    normal_of,
+)
+from .reasons import no_travel_text, why_unknown
 
-FEWEST = 20  # smallest number of rows of a contact
-# Smallest number of these rows with a new force above 0 and below the largest force.
-FEWEST_NEW = 15
-# Ratio of the rms residual in a landing to the residual elsewhere up to which the landing is no impact.
-LANDING = 10.0
-# Rms residual of a landing, relative to the range of the force, up to which the landing is no impact.
-EXACT = 0.01
-FEWEST_COUNTS = 10  # smallest travel, in steps of the position's resolution
-EXPLAINED = 0.5  # smallest fraction of the variance that a spring must explain
-WELL_KNOWN = 0.25  # largest relative half-width of the interval with which a value is stated
-# Difference of log-likelihood within which a model counts as equally good as the best model.
-UNLIKELY = 5.0
-# Unexplained fraction of the variance below which the engine's law is exactly the model.
-EXACTLY = 1e-9
+FEWEST = 20  # rows of a contact
+LANDING = 10.0  # residuals of a landing by residuals of the rest: an impact is more than a spring
+EXACT = 0.01  # of the largest change of the force: residuals of a landing that is no impact
+EXPLAINED = 0.5  # share of the variance that a spring must explain
+UNSURE = 0.05  # share of 95 % intervals that do not hold the truth
+WELL_KNOWN = 0.25  # half-width of the interval as a share: values known worse are not stated
+UNLIKELY = 5.0  # logarithm of a likelihood ratio: models below it are as good as the best one
 SAMPLED = (
     # Relative change of a value by sampling that is allowed: (2 pi f T)^2 / 6 at 17 Hz and 1 kHz.
     2e-3
 )
-MOST_TRIED = 60  # largest number of models tried in the search for a model without negative damping
-CERTAIN = 20.0  # largest log-likelihood difference that one contact contributes
-# Relative difference below which two mean squares count as equal, because the residuals are not white noise.
-SIMILAR = 0.1
-# Largest factor, over the smallest mean square, that the sampling of the velocity may explain.
-MOST_EXCUSED = 2.0
-NEGLIGIBLE = 1e-12  # fraction of the variance that rounding may leave unexplained
-TYPICAL = 10.0  # factor over the unexplained fraction of a typical contact
-# Dry friction is reported if the sign of the velocity reduces the sum of squares below this fraction.
-DRY_GAIN = 0.7
-DRY_SHARE = 0.02  # and if it is at least this fraction of the mean force
-AT_LIMIT = 0.999  # fraction of the largest force from which a row counts as saturated
-TILTS = 8  # number of steps of the search for the normal
-MOST_ROWS = 500  # largest number of rows in the search for the normal
-# Kinds of velocity in the search for the normal.
-SEARCHED = ("logged", "backward", "central", "low-pass 4")
+MOST_TRIED = 60  # models with negative damping before one without
+CERTAIN = 20.0  # the logarithm that one contact contributes at most
+SIMILAR = 0.1  # share by which mean squares must differ: the residuals are no white noise
+MOST_EXCUSED = 2.0  # times the smallest mean square: what the sampling of a velocity excuses
+NEGLIGIBLE = 1e-12  # share of the variance that rounding may leave unexplained
+TYPICAL = 10.0  # times the unexplained share of a typical contact
+DRY_GAIN = 0.7  # the sign of the velocity must lower the sum of squares below this share
+DRY_SHARE = 0.02  # and be at least this share of the mean force
+AT_LIMIT = 0.999  # of the largest force
 
 
 @dataclass
@@ -49,18 +46,17 @@ class Evidence:
 
     motion: object  # Motion along the fitted direction, or None
     found: dict  # numbers for the JSON
-    # Difference of log-likelihood to the best model, by Model.
-    likelihood: dict = field(default_factory=dict)
+    likelihood: dict = field(default_factory=dict)  # logarithm below the best model, by Model
+    dampings: dict = field(default_factory=dict)  # of least squares, by Model [N s/m]
+    systematic: float = (
+        0.0  # share of the best model's squared residuals that is no noise from row to row
+    )
     place: np.ndarray | None = None  # positions of the rows along the direction [m]
-    resolution: float = 0.0  # resolution of the position along the direction [m]
-    rows: np.ndarray | None = None  # row numbers of the contact
-
-
-def main_direction(force):
-    """Returns the unit vector along which the forces are largest, with the sign of the forces."""
-    _, vectors = np.linalg.eigh(force.T @ force)
-    direction = vectors[:, -1]
-    return direction if (force @ direction).sum() >= 0.0 else -direction
+    resolution: float = 0.0  # [m]
+    rows: np.ndarray | None = None  # row numbers
+    other: object = (
+        None  # Motion along another normal that explains the force about as well, or None
+    )
 
 
 def evidence_of(log, rows, settled):
@@ -82,9 +78,8 @@ def explains_landing(evidence, rows, settled):
     if not evidence.likelihood:
         return False
     best = min(evidence.likelihood, key=evidence.likelihood.get)
-    matrix, target = evidence.motion.columns(best)
-    residual = target - matrix @ np.linalg.lstsq(matrix, target, rcond=None)[0]
-    is_settled = np.isin(rows, settled)[evidence.motion.usable()]
+    residual, target = residual_of(evidence.motion, best), evidence.motion.force
+    is_settled = np.isin(rows, settled)[evidence.motion.known(best.delay)]
     if is_settled.all() or not is_settled.any():
         return True
     landing, rest = np.mean(residual[~is_settled] ** 2), np.mean(residual[is_settled] ** 2)
@@ -111,33 +106,41 @@ def evidence_of_rows(log, rows, given=None):
     """Returns the Evidence of these rows along the normal of the surface, or along a `given` direction."""
     force = log.force[rows]
     direction = main_direction(force) if given is None else given
-    motion, better = Motion(log, rows, direction), None
+    motion, other = Motion(log, rows, direction), None
     if given is None and np.linalg.matrix_rank(log.position[rows] - log.position[rows[0]]) > 1:
-        better = normal_of(log, rows, direction, motion)
-    if better is not None:
-        direction, motion = better
+        direction, motion, other = normal_of(log, rows, direction, motion)
     sideways = np.linalg.norm(force - np.outer(force @ direction, direction)) / np.linalg.norm(
         force
     )
     place = log.position[rows] @ direction
     resolution, travel = float(np.abs(direction) @ log.quantum_m), float(np.ptp(place))
+    # What neither the motion nor the rows before and after explain, in most rows. 1.4826 times the median is the
+    # standard deviation of normal errors, and second differences of white noise have 6 times its variance.
+    changes = np.diff(force @ direction, 2) / math.sqrt(6.0)
     found = {
         "direction": direction.tolist(),
+        "direction_is_known": other is None,
         "off_direction_share": float(sideways),
         "travel_m": travel,
         "resolution_m": resolution,
+        "noise_N": 1.4826 * float(np.median(np.abs(changes))),
         "start_s": float(log.time[rows[0]]),
         "end_s": float(log.time[rows[-1]]),
     }
     if travel <= FEWEST_COUNTS * resolution or travel <= 1e-12:
-        counts = f", {travel / resolution:.3g} steps of its resolution" if resolution else ""
-        why = f"the position along the force moves by {travel:.3g} m only{counts}"
-        return Evidence(None, found | {"why": why}, rows=rows)
+        return Evidence(
+            None,
+            found | {"why": no_travel_text(travel, resolution, force, found["noise_N"])},
+            rows=rows,
+        )
     if np.ptp(log.force[rows] @ direction) == 0.0:
         return Evidence(None, found | {"why": "the force is constant"})
     known, best = residuals(motion)
     if best is None:
         return Evidence(None, found | {"why": "position and velocity are not independent"})
+    rest = residual_of(motion, best)
+    unexplained_N = 1.4826 * float(np.median(np.abs(rest)))
+    found["noise_N"] = min(found["noise_N"], unexplained_N)
     found["explained"] = 1.0 - known[best].mean_square / max(known[best].total, 1e-300)
     if found["explained"] < EXPLAINED:
         found["why"] = (
@@ -145,17 +148,17 @@ def evidence_of_rows(log, rows, given=None):
             "in a rigid contact, or with friction along the force"
         )
         return Evidence(None, found, rows=rows)
-    return Evidence(motion, found, likelihoods(motion, known, best), place, resolution, rows)
-
-
-def residuals(motion):
-    """Returns (Residual by Model, Model with the smallest residual or None)."""
-    found = {}
-    for model in motion.models():
-        residual = residual_of(motion, model)
-        if residual is not None:
-            found[model] = residual
-    return found, min(found, key=lambda model: found[model].mean_square, default=None)
+    return Evidence(
+        motion,
+        found,
+        likelihoods(motion, known, best),
+        {model: one.damping for model, one in known.items()},
+        systematic_share(motion, rest),
+        place,
+        resolution,
+        rows,
+        other,
+    )
 
 
 def likelihoods(motion, found, best):
@@ -173,109 +176,81 @@ def likelihoods(motion, found, best):
     def below(one):
         # The effect of rounding is known exactly; the error of a sampled velocity is known only roughly.
         usual = least.mean_square + share * (one.sampling - least.sampling)
-        usual = float(np.clip(usual, least.mean_square, MOST_EXCUSED * least.mean_square))
+        usual = min(max(usual, least.mean_square), MOST_EXCUSED * least.mean_square)
         usual += share * max(one.rounding - least.rounding, 0.0) + floor
         return max(math.log((one.mean_square + floor) / (1.0 + SIMILAR) / usual), 0.0)
 
     return {model: 0.5 * independent * below(one) for model, one in found.items()}
 
 
-def normal_of(log, rows, direction, motion):
-    """Returns (normal, Motion along it) of a surface on which the tool slides with friction; None if the main direction
-    of the force explains the force equally well. The gradient of a force that depends on the depth points along the
-    normal, and the force along the normal does not contain friction."""
-    known, best = residuals(motion)
-    if best is None:
-        return None
-    first, normal, model = known[best], direction, None
-    if first.mean_square <= EXACTLY * first.total:
-        return None
-    space = [Motion(log, rows, axis) for axis in np.eye(3)]
-    for _ in range(TILTS):
-        gradient, model = gradient_of(log, rows, normal, space, model)
-        if gradient is None:
-            return None
-        is_found = np.linalg.norm(np.cross(gradient, normal)) < 1e-7
-        normal = gradient
-        if is_found:
-            break
-    motion = Motion(log, rows, normal)
-    known, best = residuals(motion)
-    if best is None:
-        return None
-    is_better = known[best].mean_square * first.total < 0.5 * first.mean_square * known[best].total
-    return (normal, motion) if is_better else None
+def systematic_share(motion, residual):
+    """Share of the squared residuals that is no noise: second differences of white noise have 6 times its variance."""
+    power = float(residual @ residual) / len(residual)
+    if len(residual) < 3 or power <= NEGLIGIBLE * float(np.var(motion.force)):
+        return 0.0
+    return max(1.0 - float(np.mean(np.diff(residual, 2) ** 2)) / 6.0 / power, 0.0)
 
 
-def gradient_of(log, rows, normal, space, model):
-    """Returns (direction in which the force along `normal` grows fastest, Model), or (None, None). `space`: Motion
-    along each axis. `model`: None for the best model."""
-    keep = space[0].usable()
-    force = (log.force[rows] @ normal)[keep]
-    some = np.linspace(0, keep.sum() - 1, min(keep.sum(), MOST_ROWS)).astype(int)
-    force = force[some] - force[some].mean()
-    moving = [
-        i for i in range(3) if np.ptp(log.position[rows, i]) > FEWEST_COUNTS * log.quantum_m[i]
-    ]
-    if len(force) < FEWEST_NEW or not moving:
-        return None, None
-    best = (math.inf, None, None)
-    tried = [one for one in space[0].models() if one.kind in SEARCHED] if model is None else [model]
-    for one in tried:
-        columns = np.hstack([space[i].columns(one)[0][some] for i in moving])
-        sizes = np.maximum(np.linalg.norm(columns, axis=0), 1e-300)
-        slopes = np.linalg.lstsq(columns / sizes, force, rcond=1e-6)[0]
-        residual = force - columns / sizes @ slopes
-        best = min(best, (float(residual @ residual), one, slopes / sizes), key=lambda it: it[0])
-    _, model, slopes = best
-    # Along axes in which the tool does not move, keep the components of the force's direction.
-    gradient, size = normal.copy(), np.linalg.norm(slopes[::2])
-    if not size > 0.0:
-        return None, None
-    gradient[moving] = -slopes[::2] / size * np.linalg.norm(normal[moving])
-    gradient *= np.sign(gradient @ normal) or 1.0
-    return gradient / np.linalg.norm(gradient), model
+def residual_of(motion, model):
+    """Force less the force of a model [N], of the rows that every model explains."""
+    matrix, target = motion.columns(model)
+    return target - matrix @ np.linalg.lstsq(matrix, target, rcond=None)[0]
 
 
-def as_good(evidences):
-    """Returns the models that explain all contacts nearly as well as the best model, best first. If a contact is too
-    short for a long delay, the score of its longest possible delay is used."""
+def as_good(log, evidences):
+    """Models that explain all contacts nearly as well as the best one, the best first. A contact that is too short for
+    a long delay counts as with its longest."""
     models = sorted({model for one in evidences for model in one.likelihood})
     if not models:
         return []
+
+    # A law that is no spring and damper leaves the same residuals in each contact: contacts are then no independent
+    # evidence. With a correlation of s between them, n contacts weigh as n / (1 + (n - 1) s) do.
+    alike = float(np.mean([one.systematic for one in evidences]))
+    weight = 1.0 / (1.0 + (len(evidences) - 1) * alike)
 
     def score(model):
         total = 0.0
         for one in evidences:
             while model not in one.likelihood and model.delay > 0:
                 model = type(model)(model.delay - 1, model.kind)
-            total += min(one.likelihood.get(model, CERTAIN), CERTAIN)
+            total += weight * min(one.likelihood.get(model, CERTAIN), CERTAIN)
         return total
 
     scores = {model: score(model) for model in models}
     order = sorted(models, key=lambda model: (scores[model], model))
     least = scores[order[0]]
     found = [model for model in order if scores[model] <= least + UNLIKELY]
-    calm = [model for model in found if not is_negative(evidences, model)]
+    calm = [model for model in found if not is_negative(log, evidences, model)]
     if calm:
         return calm
     # If no model fits well, neither negative damping nor the next model without negative damping is certain.
     near = [m for m in order if scores[m] <= least + 0.5 * CERTAIN * len(evidences)]
-    best = next((m for m in near[:MOST_TRIED] if not is_negative(evidences, m)), None)
+    best = next((m for m in near[:MOST_TRIED] if not is_negative(log, evidences, m)), None)
     return found if best is None else [*found, best]
 
 
-def is_negative(evidences, model):
-    """Returns True if the damping of a model is negative in most contacts. A delay d of a stiffness K has the effect of
-    a damping of -K d; a negative damping smaller than a quarter of the effect of one row counts as zero.
-    """
-    fits = [(one, fit_of(one.motion, model)) for one in evidences if model in one.likelihood]
-    signs = [
-        fit.damping + fit.halves[1] < -0.25 * fit.stiffness * one.motion.interval < 0.0
-        for one, fit in fits
-        if fit is not None
-    ]
-    return 2 * sum(signs) > len(signs)
+def is_negative(log, evidences, model):
+    """True if the damping of a model is negative in most contacts. A delay d of a stiffness K looks like a damping of
+    -K d: of this, a quarter of the damping of one row is zero."""
+
+    def negative(one):
+        if one.dampings[model] >= 0.0:
+            return False
+        fit = fit_of(one.motion, model)
+        if fit is None:
+            return False
+        half = damping_half(log, one, widened(one.motion, fit, False))
+        return fit.damping + half < -0.25 * fit.stiffness * one.motion.interval < 0.0
+
+    having = [one for one in evidences if model in one.likelihood]
+    negatives = 0
+    for number, one in enumerate(having, start=1):
+        negatives += negative(one)
+        # The contacts that are left may no longer make most of them negative, or need not.
+        if 2 * negatives > len(having) or 2 * (negatives + len(having) - number) <= len(having):
+            break
+    return 2 * negatives > len(having)
 
 
 def well_explained(evidences):
@@ -285,19 +260,25 @@ def well_explained(evidences):
 
 
 def with_shared_normal(log, evidences):
-    """Returns the evidences. If a spring explains a contact worse than the best contact, and the direction of the best
-    contact explains it better, this direction is used: most logs have one flat surface."""
+    """The evidences, where contacts use a normal of all contacts if it explains them better: the normal of the contact
+    that a spring explains best, or the normal by the friction in all contacts. Most logs have one flat surface.
+    """
     known = [one for one in evidences if one is not None and one.likelihood]
     if log.axes == 1 or len(known) < 2:
         return evidences
     best = min(known, key=unexplained)
     direction = np.array(best.found["direction"])
+    rubbed = normal_by_friction(log, np.concatenate([one.rows for one in known]), direction)
 
     def improved(one):
-        if one is None or one.rows is None or unexplained(one) <= TYPICAL * unexplained(best):
+        if one is None or one.rows is None:
             return one
-        other = evidence_of_rows(log, one.rows, direction)
-        return other if unexplained(other) < 0.5 * unexplained(one) else one
+        shared = [] if rubbed is None or unexplained(one) <= EXACTLY else [rubbed]
+        if unexplained(one) > TYPICAL * unexplained(best):
+            shared.append(direction)
+        others = [evidence_of_rows(log, one.rows, normal) for normal in shared]
+        other = min(others, key=unexplained, default=one)
+        return other if unexplained(other) < AS_GOOD * unexplained(one) else one
 
     return [improved(one) for one in evidences]
 
@@ -316,13 +297,13 @@ class Estimate:
 
 
 def numbers_of(log, evidence, models):
-    """Returns the numbers of one contact for the JSON, with intervals over these models. `why`: the reason if it has no
-    stiffness."""
-    fits = [
-        fit
-        for model in models
-        if model in evidence.likelihood and (fit := fit_of(evidence.motion, model)) is not None
-    ]
+    """Numbers for the JSON of one contact, with intervals over these models; `why`: why it has no stiffness."""
+    usable = [model for model in models if model in evidence.likelihood]
+    unbounded = unbounded_by(evidence, usable)
+    if unbounded is not None:
+        delays = sorted({model.delay for model in usable})
+        return {"why": why_unknown(unbounded, None, delays, log.interval)}
+    fits = [fit for model in usable if (fit := fit_of(evidence.motion, model)) is not None]
     if not fits:
         return {"why": "the contact is too short for the delay of the force"}
     nearest = min(fits, key=lambda fit: fit.model.delay)
@@ -338,8 +319,8 @@ def numbers_of(log, evidence, models):
         fits = [fit for fit in again if fit is not None]
         best = next(fit for fit in fits if fit.model == best.model)
     interval = log.interval
-    for fit in fits:
-        widen(evidence.motion, fit, bool(friction))
+    fits = [widened(evidence.motion, fit, bool(friction)) for fit in fits]
+    fits += along_other_normal(evidence, fits)
     stiffness = spanned(
         best.stiffness, fits, lambda fit: (fit.stiffness, stiffness_half(evidence, fit))
     )
@@ -368,20 +349,46 @@ def numbers_of(log, evidence, models):
         "fits": fits,
     }
     if stiffness.low <= 0.0 or stiffness.half > WELL_KNOWN * stiffness.value:
-        numbers["why"] = why_unknown(fits, stiffness, delays, interval)
+        numbers["why"] = why_unknown(best, stiffness, delays, interval)
     return numbers
 
 
-def widen(motion, fit, with_sign):
-    """Extends the intervals by the distance to the fits with neighbouring velocities."""
+def unbounded_by(evidence, models):
+    """The best Fit, if one of the models allows a stiffness of zero; else None. Further models then matter no more."""
+    best = None
+    for model in models:
+        fit = fit_of(evidence.motion, model)
+        if fit is None:
+            continue
+        if best is None:
+            best = fit
+            if dry_friction(evidence.motion, best):
+                return None
+        if abs(fit.stiffness) <= fit.halves[0]:
+            return best
+    return None
+
+
+def along_other_normal(evidence, fits):
+    """The fits along the other normal, if there is one."""
+    if evidence.other is None:
+        return []
+    found = [fit_of(evidence.other, fit.model) for fit in fits]
+    return [widened(evidence.other, fit, False) for fit in found if fit is not None]
+
+
+def widened(motion, fit, with_sign):
+    """The fit with intervals that contain the distance to the fits of neighbouring velocities."""
+    halves = fit.halves
     near = [fit_of(motion, model, with_sign) for model in neighbours_of(fit.model, motion.speeds)]
     distances = [np.abs(one.values - fit.values) for one in near if one is not None]
     if fit.explained < 1.0 - EXACTLY:
-        fit.halves = fit.halves + SAMPLED * np.abs(fit.values)
+        halves = halves + SAMPLED * np.abs(fit.values)
     if distances:
         # The time constant of a filter differs by at most half the distance to the next time constant.
         share = 0.5 if low_pass_of(fit.model.kind) else 1.0
-        fit.halves = fit.halves + share * np.max(distances, axis=0)
+        halves = halves + share * np.max(distances, axis=0)
+    return replace(fit, halves=halves)
 
 
 def likely(fits):
@@ -390,16 +397,6 @@ def likely(fits):
     return next(
         (fit for fit in fits if fit.stiffness > 0.0 and fit.damping + fit.halves[1] >= 0.0), fits[0]
     )
-
-
-def why_unknown(fits, stiffness, delays, interval):
-    text = f"stiffnesses of {stiffness.low:.3g} to {stiffness.high:.3g} N/m explain the force equally well"
-    if len(delays) > 1:
-        return (
-            f"{text}, with delays of {1e3 * delays[0] * interval:.3g} to {1e3 * delays[-1] * interval:.3g} ms, as in a "
-            "single oscillation or decay"
-        )
-    return text
 
 
 def spanned(value, fits, ends):
@@ -428,19 +425,11 @@ def stiffness_half(evidence, fit):
     return fit.halves[0] + (1e-6 + shrink) * abs(fit.stiffness)
 
 
-def clock_error(log):
-    """Returns the relative error of the mean interval, caused by the jitter of the first and the last row."""
-    steps = np.diff(log.time)
-    return (
-        3.0 * float(np.std(steps[steps < 1.5 * log.interval])) / float(log.time[-1] - log.time[0])
-    )
-
-
 def damping_half(log, evidence, fit):
     interval, q = log.interval, evidence.resolution
     half = (
         fit.halves[1]
-        + (1e-6 + clock_error(log)) * abs(fit.damping)
+        + (1e-6 + log.interval_error) * abs(fit.damping)
         + 1e-9 * abs(fit.stiffness) * interval
     )
     if log.velocity is not None or q == 0.0:
@@ -491,25 +480,6 @@ def weighted_median(values, weights):
     return float(values[order][np.searchsorted(total, 0.5 * total[-1])])
 
 
-def linearity(motion, fit):
-    """Returns the stiffness in the deeper half of the travel divided by the stiffness in the other half, or None. The
-    value is 1 for a linear spring."""
-    if fit.model.delay:
-        return None
-    keep = motion.usable()
-    place = motion.place[motion.rows[keep]]
-    force = motion.force[keep] + fit.damping * motion.speeds[fit.model.kind][motion.rows[keep]]
-    middle = 0.5 * (place.min() + place.max())
-    slopes = []
-    for half in (place < middle, place >= middle):
-        if half.sum() < FEWEST or np.ptp(place[half]) == 0.0:
-            return None
-        slopes.append(-np.polyfit(place[half] - middle, force[half], 1)[0])
-    # The force points out of the surface, so the deeper half has the smaller positions.
-    deep, shallow = slopes
-    return float(deep / shallow) if shallow > 0.0 else None
-
-
 def stated(log, numbers):
     """Returns the JSON of one contact's numbers_of()."""
     found = {key: numbers[key] for key in ("why", "apparent_stiffness_N_per_m") if key in numbers}
@@ -558,16 +528,18 @@ def springs_of(log, evidences):
     """
     evidences = with_shared_normal(log, evidences)
     known = [one for one in evidences if one is not None and one.likelihood]
-    models = as_good(well_explained(known))
+    models = as_good(log, well_explained(known))
     numbers = [numbers_of(log, one, models) if one and one.likelihood else {} for one in evidences]
     each = [
         None if one is None else one.found | stated(log, its)
         for one, its in zip(evidences, numbers)
     ]
     good = [i for i, one in enumerate(each) if one and "stiffness_N_per_m" in one]
-    if not good:
+    if not good or shows_no_spring(each):
         return each, None
     stiffness, at = combined([numbers[i]["stiffness"] for i in good])
+    if stiffness.half > WELL_KNOWN * stiffness.value:
+        return each, None
     damping, _ = combined([numbers[i]["damping"] for i in good])
     slow, _ = combined([numbers[i]["slow_damping"] for i in good])
     chosen = good[at]
@@ -577,10 +549,29 @@ def springs_of(log, evidences):
     main = evidences[chosen].found | values_of(log, stiffness, damping, slow, its)
     main |= {
         "contacts": len(good),
-        "linearity": linearity(evidences[chosen].motion, its["best"]),
+        "linearity": median_linearity([(evidences[i].motion, numbers[i]["best"]) for i in good]),
         "loops": loops_of(log, stiffness, [numbers[i] for i in good]),
     }
     return each, main
+
+
+def shows_no_spring(each):
+    """True if more contacts contradict a spring than have a stiffness, or so few have one that the errors of 95 %
+    intervals explain them."""
+    known = [one for one in each if one]
+    good = sum("stiffness_N_per_m" in one for one in known)
+    return contradicting(each) > good or good <= UNSURE * len(known)
+
+
+def contradicting(each):
+    """Number of contacts that are no spring: most of the force does not follow the motion, or nothing moves."""
+    return sum(
+        one.get("explained", 1.0) < EXPLAINED
+        or "apparent_stiffness_N_per_m" in one
+        or one["travel_m"] <= FEWEST_COUNTS * one["resolution_m"]
+        for one in each
+        if one and "travel_m" in one
+    )
 
 
 def loops_of(log, stiffness, numbers):

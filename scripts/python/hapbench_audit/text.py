@@ -146,7 +146,8 @@ def stiffness_rows(audit):
     rows = [
         (
             "K",
-            f"{spring['stiffness_N_per_m']:.4g} N/m, 95 % {ends_text(spring['stiffness_interval'])}",
+            f"{spring['stiffness_N_per_m']:.4g} N/m, 95 % {ends_text(spring['stiffness_interval'])}"
+            f"{few_text(spring['contacts'], len(audit['contacts']))}",
         ),
         ("B", damping_text(spring)),
     ]
@@ -156,7 +157,7 @@ def stiffness_rows(audit):
         ("delay", delay_text(spring)),
         (
             "along",
-            f"({x:.2g}, {y:.2g}, {z:.2g}); explains {100.0 * spring['explained']:.4g} % of the variance",
+            f"{'' if spring['direction_is_known'] else 'about '}({x:.2g}, {y:.2g}, {z:.2g}); explains {100.0 * spring['explained']:.4g} % of the variance",
         ),
     ]
     if spring["linearity"] is not None:
@@ -170,6 +171,11 @@ def stiffness_rows(audit):
     if span and span[1] > 1.05 * span[0]:
         rows.append(("contacts", f"have {span[0]:.4g} to {span[1]:.4g} N/m"))
     return rows
+
+
+def few_text(known, count):
+    """Says so if less than half of the contacts determine the stiffness."""
+    return f", from {known} of {counted(count, 'contact')}" if 1 <= 2 * known < count else ""
 
 
 def damping_text(spring):

@@ -1,0 +1,153 @@
+"""The normal of the surface that a tool touches: of a contact with friction, the force is not along it."""
+import math
+
+import numpy as np
+from scipy.optimize import least_squares
+
+from .models import Motion, residuals
+
+FEWEST_COUNTS = 10  # travel in steps of the position's resolution
+EXACTLY = 1e-9  # share of the variance: an engine whose law the model is leaves less unexplained
+TILTS = 8  # steps of the search for the normal
+MOST_ROWS = 500  # of the search
+SEARCHED = ("logged", "backward", "central", "low-pass 4")  # velocities of the search
+FEWEST_NEW = 15  # of these, rows with a new force above 0 and below the largest force
+BLOCKS = 10  # of rows
+AS_GOOD = 0.5  # times the unexplained share: a normal is better than another
+SLOW = 0.2  # of the median speed: below, the direction of sliding is uncertain
+MOST_FRICTION = 1.0  # coefficient
+KNOWN_TILT = 0.05  # error of a normal, as a tangent: it changes a stiffness by 1 - cos = 0.1 %
+EXPLAINED_REST = 0.25  # of the squares of the force across the normal: friction explains the others
+MOST_EVALUATIONS = 50
+
+
+def main_direction(force):
+    """Unit vector along which the forces are largest, pointing with them."""
+    _, vectors = np.linalg.eigh(force.T @ force)
+    direction = vectors[:, -1]
+    return direction if (force @ direction).sum() >= 0.0 else -direction
+
+
+def normal_of(log, rows, direction, motion):
+    """(normal, Motion along it, Motion along another normal that explains the force about as well or None) of a surface
+    over which the tool slides with friction. Without friction, the normal is the main direction of the force.
+
+    A force that depends on the depth has its gradient along the normal. The force along the normal is free of friction.
+    """
+    same = direction, motion, None
+    known, best = residuals(motion)
+    if best is None:
+        return same
+    first, normal, model = known[best], direction, None
+    if first.mean_square <= EXACTLY * first.total:
+        return same
+    rubbed = normal_by_friction(log, rows, direction)
+    if rubbed is not None:
+        return rubbed, Motion(log, rows, rubbed), None
+    space = [Motion(log, rows, axis) for axis in np.eye(3)]
+    for _ in range(TILTS):
+        gradient, model = gradient_of(log, rows, normal, space, model)
+        if gradient is None:
+            return same
+        is_found = np.linalg.norm(np.cross(gradient, normal)) < 1e-7
+        normal = gradient
+        if is_found:
+            break
+    # Beyond, friction would be larger than the normal force.
+    if normal @ direction < math.sqrt(0.5):
+        return same
+    other = Motion(log, rows, normal)
+    known, best = residuals(other)
+    if best is None:
+        return same
+    ratio = known[best].mean_square * first.total / (first.mean_square * known[best].total)
+    if ratio < AS_GOOD:
+        return normal, other, None
+    return direction, motion, other if ratio * AS_GOOD < 1.0 else None
+
+
+def normal_by_friction(log, rows, direction):
+    """The normal for which the rest of the force is friction, mu times the normal force against the sliding, or None
+    where the log does not determine it: nothing slides, or it slides along one straight line. It needs no stiffness and
+    no delay."""
+    velocity = sliding_velocity(log, rows)
+    if velocity is None:
+        return None
+    speed = np.linalg.norm(velocity, axis=1)
+    chosen = np.flatnonzero(speed > np.median(speed) * SLOW)
+    chosen = chosen[np.linspace(0, len(chosen) - 1, min(len(chosen), MOST_ROWS)).astype(int)]
+    force, velocity = log.force[rows][chosen], velocity[chosen]
+    force = force / math.sqrt(np.mean(np.sum(force**2, axis=1)))
+    sides = np.linalg.svd(direction[None])[2][1:]
+
+    def normal_at(tilts):
+        normal = direction + tilts @ sides
+        return normal / np.linalg.norm(normal)
+
+    def rest(values):
+        normal = normal_at(values[:2])
+        along = force @ normal
+        sliding = velocity - np.outer(velocity @ normal, normal)
+        sliding /= np.maximum(np.linalg.norm(sliding, axis=1), 1e-300)[:, None]
+        sideways = force - np.outer(along, normal)
+        return (sideways + values[2] * along[:, None] * sliding).ravel()
+
+    found = least_squares(rest, [0.0, 0.0, 0.1], max_nfev=MOST_EVALUATIONS)
+    # Blocks of rows share what is no noise: as many independent residuals as there are blocks.
+    variance = 2.0 * found.cost / max(BLOCKS - 3, 1)
+    error = np.sqrt(variance * np.diag(np.linalg.pinv(found.jac.T @ found.jac)))[:2].max()
+    before = np.sum((force - np.outer(force @ direction, direction)) ** 2)
+    is_found = 0.0 <= found.x[2] <= MOST_FRICTION and error <= KNOWN_TILT
+    is_friction = 2.0 * found.cost < EXPLAINED_REST * before
+    return normal_at(found.x[:2]) if is_found and is_friction else None
+
+
+def sliding_velocity(log, rows):
+    """Velocities of the rows over a time in which the position moves by many steps of its resolution; None for a
+    position that does not."""
+    if log.velocity is not None:
+        return log.velocity[rows]
+    position, most = log.position, len(rows) // 8
+    half = 1 if log.held is None else max(round(log.held.rows), 1)
+    while True:
+        first = np.maximum(rows - half, 0)
+        last = np.minimum(rows + half, len(position) - 1)
+        moved = position[last] - position[first]
+        typical = float(np.median(np.linalg.norm(moved, axis=1)))
+        if typical > FEWEST_COUNTS * float(log.quantum_m.max()) and typical > 0.0:
+            return moved / (log.time[last] - log.time[first])[:, None]
+        half *= 2
+        if half > most:
+            return None
+
+
+def gradient_of(log, rows, normal, space, model):
+    """(direction in which the force along `normal` grows the most, Model), or (None, None). `space`: Motion along each
+    axis. `model`: None for the best one."""
+    keep = space[0].usable()
+    force = (log.force[rows] @ normal)[keep]
+    some = np.linspace(0, keep.sum() - 1, min(keep.sum(), MOST_ROWS)).astype(int)
+    force = force[some] - force[some].mean()
+    moving = [
+        i for i in range(3) if np.ptp(log.position[rows, i]) > FEWEST_COUNTS * log.quantum_m[i]
+    ]
+    if len(force) < FEWEST_NEW or not moving:
+        return None, None
+    best = (math.inf, None, None)
+    tried = [one for one in space[0].models() if one.kind in SEARCHED] if model is None else [model]
+    for one in tried:
+        before = space[0].rows[keep][some] - one.delay
+        parts = [part for i in moving for part in (space[i].place, space[i].speeds[one.kind])]
+        columns = np.column_stack([part[before] - part[before].mean() for part in parts])
+        sizes = np.maximum(np.linalg.norm(columns, axis=0), 1e-300)
+        slopes = np.linalg.lstsq(columns / sizes, force, rcond=1e-6)[0]
+        residual = force - columns / sizes @ slopes
+        best = min(best, (float(residual @ residual), one, slopes / sizes), key=lambda it: it[0])
+    _, model, slopes = best
+    # Components in which the tool does not move keep their share of the direction of the force.
+    gradient, size = normal.copy(), np.linalg.norm(slopes[::2])
+    if not size > 0.0:
+        return None, None
+    gradient[moving] = -slopes[::2] / size * np.linalg.norm(normal[moving])
+    gradient *= np.sign(gradient @ normal) or 1.0
+    return gradient / np.linalg.norm(gradient), model

@@ -1,0 +1,37 @@
+"""Why a contact has no stiffness, in words."""
+import numpy as np
+
+EXTREMES = 10.0  # standard deviations between the extremes of a million normal errors
+LEAST_CHANGE = 0.01  # of the largest force
+
+
+def no_travel_text(travel, resolution, force, noise):
+    """Why a tool that rests along the force has no stiffness; a lower bound of it, if the force changes."""
+    moves = f"moves by {travel:.3g} m only" if travel > 1e-12 else "does not move"
+    if resolution:
+        moves += f", {travel / resolution:.3g} steps of its resolution"
+    text = f"the position along the force {moves}"
+    size = np.linalg.norm(force, axis=1)
+    change = float(np.ptp(size)) - EXTREMES * noise
+    if change <= LEAST_CHANGE * float(size.max()):
+        return text
+    text = f"{text}, and the force changes by {change:.3g} N"
+    least = change / max(travel + resolution, 1e-12)
+    return f"{text}, as in a rigid contact (more than {least:.2g} N/m)"
+
+
+def why_unknown(best, stiffness, delays, interval):
+    """`stiffness`: the Estimate, or None if a stiffness of zero is possible."""
+    if stiffness is None or stiffness.low <= 0.0:
+        text = (
+            "the log does not bound the stiffness (position and velocity explain "
+            f"{100.0 * best.explained:.3g} % of the force's variance)"
+        )
+    else:
+        text = f"stiffnesses of {stiffness.low:.3g} to {stiffness.high:.3g} N/m explain the force equally well"
+    if len(delays) > 1:
+        return (
+            f"{text}, with delays of {1e3 * delays[0] * interval:.3g} to {1e3 * delays[-1] * interval:.3g} ms, as in a "
+            "single oscillation or decay"
+        )
+    return text
