@@ -1,5 +1,6 @@
 #include "scenarios/run/linear_contact.hpp"
 
+#include <Eigen/LU>
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
@@ -75,12 +76,7 @@ class RestingTool {
     for (int i = 0; i < kIterations; ++i) {
       const Vec3 before = position_;
       const LinearContact here = linearised();
-      const Mat3 slope = here.rendered.stiffness + here.input * here.hand.stiffness;
-      const Eigen::JacobiSVD<Eigen::Matrix3d> svd(slope, Eigen::ComputeFullU | Eigen::ComputeFullV);
-      Vec3 step = Vec3::Zero();
-      for (Eigen::Index k = 0; k < 3; ++k)
-        if (const double s = svd.singularValues()[k]; s > 1e-6 * svd.singularValues()[0] && s > 0.0)
-          step += svd.matrixU().col(k).dot(total_force()) / s * svd.matrixV().col(k);
+      Vec3 step = newton_step(here.rendered.stiffness + here.input * here.hand.stiffness);
       const double longest = kLargestStep * parts_.tool->half_width();
       if (const double length = step.norm(); length > longest) step *= longest / length;
       place(before + step);
@@ -174,6 +170,27 @@ class RestingTool {
     }
     measured_ = parts_.device->measure(hand_);
     input_ = measured_.input;
+  }
+
+  /// Returns the step that a linear force with this slope [N/m] moves to equilibrium. A tool moves only in directions
+  /// in which forces act: a law without a force along the surface does not move the tool along it, although its force
+  /// along the normal depends on the position there.
+  Vec3 newton_step(const Mat3& slope) const {
+    constexpr double kSingular = 1e-6;  // smallest singular value, in units of the largest
+    const Eigen::JacobiSVD<Eigen::Matrix3d> svd(slope, Eigen::ComputeFullU | Eigen::ComputeFullV);
+    const Vec3& values = svd.singularValues();
+    Eigen::Index rank = 0;
+    while (rank < 3 && values[rank] > kSingular * values[0] && values[rank] > 0.0) ++rank;
+    if (rank == 1 || rank == 2) {
+      const auto acted = svd.matrixU().leftCols(rank);
+      const Eigen::FullPivLU<Eigen::MatrixXd> within(acted.transpose() * slope * acted);
+      if (within.rcond() > kSingular) return acted * within.solve(acted.transpose() * total_force());
+    }
+    // Forces act in all directions, or turn as the tool moves: use the smallest step.
+    Vec3 step = Vec3::Zero();
+    for (Eigen::Index k = 0; k < rank; ++k)
+      step += svd.matrixU().col(k).dot(total_force()) / values[k] * svd.matrixV().col(k);
+    return step;
   }
 
   /// Returns the sum of the forces on the tool at rest [N].
