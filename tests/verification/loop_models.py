@@ -56,12 +56,13 @@ def sampled_hand(hand, across=True):
     return 0.0, 0.0
 
 
-def damping_of(scene):
-    """Damping B of the rendering."""
+def damping_of(scene, K=None):
+    """Damping B of the rendering at a stiffness, by default at the scene's."""
     r = scene["rendering"]
     if "damping_N_s_per_m" in r:
         return r["damping_N_s_per_m"]
-    return 2 * r["damping_ratio"] * np.sqrt(r["stiffness_N_per_m"] * r["mass_kg"])
+    K = r["stiffness_N_per_m"] if K is None else K
+    return 2 * r["damping_ratio"] * np.sqrt(K * r["mass_kg"])
 
 
 def impedance_map(scene, K, B=None, across=True):
