@@ -170,6 +170,8 @@ std::string remedy(const TuneQuestion& question, const TuneFailure& failure) {
   const bool margin_helps = failure.binding == "margin" && !contact_fails && !failure.unstable_at_K;
   if (margin_helps) text += std::string(text.empty() ? "" : "; ") + "a smaller --margin";
   if (!text.empty()) return text;
+  if (failure.binding == "friction")
+    return R"(rendering.friction {"type": "dry"}, a smaller rendering.friction.mu_f_s_per_m, or a shorter time step)";
   if (failure.binding == "no_force") return "check the device: its encoder, or its force resolution, hides the contact";
   if (contact_fails)
     return "no option of tune changes this: change the hand or the start of the scene (\"hapbench run\" explains the "

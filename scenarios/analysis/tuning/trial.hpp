@@ -62,7 +62,7 @@ struct TuneTrial {
   std::string algorithm = {};
   double stiffness = 0.0;  ///< K [N/m]
   /// Violated constraint; empty if the trial is feasible. "settled": not settled at K. "margin": not settled at G K.
-  /// "no_force": no force is rendered. "runs": the
+  /// "no_force": no force is rendered. "friction": explicit integration of friction is unstable in the run. "runs": the
   /// maximum number of runs is reached. "range": K is at the end of the range. Otherwise the name of the metric whose
   /// limit is violated.
   std::string binding = {};

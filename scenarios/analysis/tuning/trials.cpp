@@ -463,6 +463,10 @@ void Trials::measure_scene(TuneTrial& trial) {
           "no_force", fmt::format("no force is rendered: the largest force of the law is {:.3g} N", largest)};
       trial.failure->too_soft = true;
     }
+    // A run beyond the limit of explicit friction is a numerical artefact: its metrics mean nothing.
+    if (const double steps = number_of(run.metrics, "explicit_friction_rows_beyond").value_or(0.0); steps > 0.0)
+      trial.failure = TuneFailure{
+          "friction", fmt::format("explicit integration of friction is unstable in {:g} steps of the run", steps)};
   });
   for (const auto& [name, bound] : question_.limits) note_worst(trial, name, bound, {&trial.metrics, 1}, variants_);
 }

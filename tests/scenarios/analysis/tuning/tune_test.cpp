@@ -223,5 +223,15 @@ TEST(Tune, EvaluatesATrialOnlyAsFarAsAnAnswerNeedsIt) {
   }
 }
 
+/// With 340 s/m, explicit integration of friction is unstable above 1.2 N. The hand presses with up to 2 N, and with
+/// less at the end of the run, where the linear loop is stable.
+TEST(Tune, RecommendsNoRunThatIsAnArtefactOfFriction) {
+  TuneQuestion asked = question("poke_plane", {"rendering.friction.mu_f_s_per_m=340"});
+  const std::string law = "shaped_stiffness";  // must outlive the trials
+  Trials trials(asked, law);
+  const TuneTrial& trial = trials.trial_at({}, 20000.0);
+  EXPECT_EQ(trial.binding, "friction") << trial.why;
+}
+
 }  // namespace
 }  // namespace hapbench::tune_test
