@@ -428,8 +428,9 @@ def check_quote(scene, bench, row):
     if row["first_unstable"] is not None:
         claims.append((row["first_unstable"], False, "the first unstable value"))
     for K, said, name in claims:
-        rows, _ = bench.rows(K)
-        seen = Motion(scene, rows).is_stable()
+        rows, summary = bench.rows(K)
+        completes = summary[0]["outcome"] == "completes"
+        seen = Motion(scene, rows).is_stable() if completes else False
         runs += 1
         if seen is not None and seen != said:
             faults.append(f"the run at {name}, {K:.6g}, is {'' if seen else 'not '}stable")
@@ -446,7 +447,8 @@ def check_tune(scene, bench):
     K, zeta, faults = law["stiffness_N_per_m"], law["damping_ratio"], []
     chosen = json.loads(json.dumps(scene))
     chosen["rendering"].pop("damping_N_s_per_m", None)
-    chosen["rendering"].update(stiffness_N_per_m=K, damping_ratio=zeta)
+    mass = tuned["rendering"]["mass_kg"]  # searched on an admittance device
+    chosen["rendering"].update(stiffness_N_per_m=K, damping_ratio=zeta, mass_kg=mass)
     contact, push = Contact(chosen), push_of(chosen)
     at_K = loops_of(chosen, contact, push, K)
     for gain in (1, 2):
@@ -485,8 +487,8 @@ def check_binding(scene, bench, law, zeta):
     with (bench.folder / "tune" / "tune_trials.csv").open(encoding="utf-8") as file:
         trials = [
             float(row["stiffness_N_per_m"])
-            for row in csv.DictReader(line for line in file if not line.startswith("#"))
-            if abs(float(row["rendering.damping_ratio"]) / zeta - 1) < 1e-9
+            for row in csv.DictReader(file)
+            if row["why"] == why and abs(float(row["rendering.damping_ratio"]) / zeta - 1) < 1e-9
         ]
     above = [K for K in trials if K > law["stiffness_N_per_m"]]
     if re.search(r"^at [0-9.e+]+ N/m", why):
