@@ -1,9 +1,11 @@
 #include "scenarios/run/linear_contact.hpp"
 
+#include <Eigen/LU>
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "algorithms/stages/damping_and_limits.hpp"
 #include "scenarios/run/assemble.hpp"
@@ -75,12 +77,7 @@ class RestingTool {
     for (int i = 0; i < kIterations; ++i) {
       const Vec3 before = position_;
       const LinearContact here = linearised();
-      const Mat3 slope = here.rendered.stiffness + here.input * here.hand.stiffness;
-      const Eigen::JacobiSVD<Eigen::Matrix3d> svd(slope, Eigen::ComputeFullU | Eigen::ComputeFullV);
-      Vec3 step = Vec3::Zero();
-      for (Eigen::Index k = 0; k < 3; ++k)
-        if (const double s = svd.singularValues()[k]; s > 1e-6 * svd.singularValues()[0] && s > 0.0)
-          step += svd.matrixU().col(k).dot(total_force()) / s * svd.matrixV().col(k);
+      Vec3 step = newton_step(here.rendered.stiffness + here.input * here.hand.stiffness);
       const double longest = kLargestStep * parts_.tool->half_width();
       if (const double length = step.norm(); length > longest) step *= longest / length;
       place(before + step);
@@ -176,6 +173,27 @@ class RestingTool {
     input_ = measured_.input;
   }
 
+  /// Returns the step that a linear force with this slope [N/m] moves to equilibrium. A tool moves only in directions
+  /// in which forces act: a law without a force along the surface does not move the tool along it, although its force
+  /// along the normal depends on the position there.
+  Vec3 newton_step(const Mat3& slope) const {
+    constexpr double kSingular = 1e-6;  // smallest singular value, in units of the largest
+    const Eigen::JacobiSVD<Eigen::Matrix3d> svd(slope, Eigen::ComputeFullU | Eigen::ComputeFullV);
+    const Vec3& values = svd.singularValues();
+    Eigen::Index rank = 0;
+    while (rank < 3 && values[rank] > kSingular * values[0] && values[rank] > 0.0) ++rank;
+    if (rank == 1 || rank == 2) {
+      const auto acted = svd.matrixU().leftCols(rank);
+      const Eigen::FullPivLU<Eigen::MatrixXd> within(acted.transpose() * slope * acted);
+      if (within.rcond() > kSingular) return acted * within.solve(acted.transpose() * total_force());
+    }
+    // Forces act in all directions, or turn as the tool moves: use the smallest step.
+    Vec3 step = Vec3::Zero();
+    for (Eigen::Index k = 0; k < rank; ++k)
+      step += svd.matrixU().col(k).dot(total_force()) / values[k] * svd.matrixV().col(k);
+    return step;
+  }
+
   /// Returns the sum of the forces on the tool at rest [N].
   Vec3 total_force() const { return force_.rendered + (parts_.device->moves_tool() ? hand_ : input_); }
 
@@ -212,8 +230,7 @@ std::optional<ContactAtRest> contact_at_rest(const Scenario& scenario, const Nam
   RestingTool tool(linear, files, shell, near);
   if (!tool.touches()) return std::nullopt;
   const bool is_equilibrium = tool.find_equilibrium();
-  // If the force jumps, the search ends without an equilibrium, and the derivatives at its end would belong to the
-  // jump. Use the derivatives at the pose of the run instead.
+  // The search ends without an equilibrium where the force jumps. The derivatives there are those of the jump.
   LinearContact contact = is_equilibrium ? tool.linearised() : RestingTool(linear, files, shell, near).linearised();
   if (!contact.rendered.stiffness.allFinite() || !contact.rendered.damping.allFinite()) return std::nullopt;
   // A hand that is attached to the handle moves with it between the samples: it is part of the device.
@@ -238,43 +255,58 @@ LinearContact scaled(LinearContact contact, const RenderingConfig& from, const R
   return contact;
 }
 
-std::optional<double> linear_stiffness_limit(const CheckedScenario& scenario,
-                                             const std::shared_ptr<const PointShell>& shell, const ContactState& near) {
-  constexpr double kStep = 1.1, kMax = 2.0,
-                   kMin = 1e-9;  // factor of a search step, and ends of the search relative to the scenario's K
-  const double K = scenario.scenario().rendering.stiffness;
-  if (!(K > 0.0) || !has_linear_loop(scenario.scenario())) return std::nullopt;
-  const auto at_K = contact_at_rest(scenario.scenario(), scenario.files(), shell, near);
-  if (!at_K) return std::nullopt;
-  LinearContact known = at_K->contact;  // latest contact found, with stiffness and damping of `rendering`
-  RenderingConfig rendering = scenario.scenario().rendering;
-  bool has_equilibrium = at_K->is_equilibrium;
-  Scenario at = scenario.scenario();
-  const auto is_stable = [&](double stiffness) {
-    at.rendering.stiffness = stiffness;
-    const auto found = has_equilibrium ? contact_at_rest(at, scenario.files(), shell, near) : std::nullopt;
-    has_equilibrium = found && found->is_equilibrium;
-    known = has_equilibrium ? found->contact : scaled(known, rendering, at.rendering);
-    rendering = at.rendering;
-    const std::vector<Eigen::MatrixXd> loop = contact_loop(at, known);
-    return !loop.empty() && is_stable_loop(loop);
-  };
-  // Walk from K towards the limit: up while the loop is stable, otherwise down to a stable stiffness.
-  const bool is_stable_at_K = is_stable(K);
-  double last = K, next = K;
+std::optional<bool> ContactLoops::is_stable(const Scenario& scenario, const NamedFiles& files,
+                                            const std::shared_ptr<const PointShell>& shell) {
+  const auto at_rest = contact_at_rest(scenario, files, shell, near_);
+  std::optional<LinearContact> contact;
+  if (at_rest && (at_rest->is_equilibrium || (at_any_pose_ && !known_)))
+    contact = at_rest->contact;
+  else if (known_ && is_stiffness_)
+    contact = scaled(*known_, known_rendering_, scenario.rendering);
+  if (!contact) return std::nullopt;
+  known_ = contact;
+  known_rendering_ = scenario.rendering;
+  const std::vector<Eigen::MatrixXd> loop = contact_loop(scenario, *contact);
+  return loop.empty() ? std::nullopt : std::optional(is_stable_loop(loop));
+}
+
+std::optional<double> limit_along(const LimitWalk& walk, const std::function<std::optional<bool>(double)>& is_stable) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  const std::optional<bool> first = is_stable(walk.start);
+  if (!first) return std::nullopt;
+  const auto holds = [&](double value) { return is_stable(value).value_or(false); };
+  double last = walk.start, next = last;
   do {
-    last = next;
-    next = is_stable_at_K ? std::min(last * kStep, kMax * K) : last / kStep;
-    if (next == last) return std::numeric_limits<double>::infinity();
-    if (next < kMin * K) return 0.0;
-  } while (is_stable(next) == is_stable_at_K);
-  // Bisect between the two.
+    last = std::exchange(next, walk.next(next, *first));
+    if (next == last) return *first ? kInfinity : -kInfinity;
+  } while (holds(next) == *first);
   double stable = std::min(last, next), unstable = std::max(last, next);
-  for (int i = 0; i < 30; ++i) {
+  while (!walk.is_resolved(stable, unstable)) {
     const double middle = 0.5 * (stable + unstable);
-    (is_stable(middle) ? stable : unstable) = middle;
+    (holds(middle) ? stable : unstable) = middle;
   }
   return stable;
+}
+
+std::optional<double> linear_stiffness_limit(const CheckedScenario& scenario,
+                                             const std::shared_ptr<const PointShell>& shell, const ContactState& near) {
+  constexpr double kStep = 1.1, kMax = 2.0, kMin = 1e-9;  // of the walk, in units of the scenario's K
+  constexpr double kResolution = 1e-10;
+  const double K = scenario.scenario().rendering.stiffness;
+  if (!(K > 0.0) || !has_linear_loop(scenario.scenario())) return std::nullopt;
+  ContactLoops loops(near, /*is_stiffness=*/true, /*at_any_pose=*/true);
+  Scenario at = scenario.scenario();
+  LimitWalk walk{.start = K};
+  walk.next = [&](double value, bool up) {
+    if (up) return std::min(value * kStep, kMax * K);
+    return value / kStep < kMin * K ? value : value / kStep;
+  };
+  walk.is_resolved = [](double stable, double unstable) { return unstable - stable <= kResolution * unstable; };
+  const auto limit = limit_along(walk, [&](double stiffness) {
+    at.rendering.stiffness = stiffness;
+    return loops.is_stable(at, scenario.files(), shell);
+  });
+  return limit ? std::optional(std::max(*limit, 0.0)) : std::nullopt;
 }
 
 }  // namespace hapbench

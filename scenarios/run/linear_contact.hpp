@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 
@@ -13,7 +14,7 @@ namespace hapbench {
 
 /// A state of a run in contact, from which linear_contact() searches the equilibrium.
 struct ContactState {
-  ToolPose pose;      ///< pose of the tool; true position of the handle if the handle moves the tool
+  ToolPose pose;      ///< of the tool; true position of the handle if the handle moves the tool
   double time = 0.0;  ///< [s]
 };
 
@@ -42,15 +43,50 @@ struct ContactAtRest {
 std::optional<ContactAtRest> linear_contact(const CheckedScenario& scenario,
                                             const std::shared_ptr<const PointShell>& shell, const ContactState& near);
 
-/// Converts a contact that was linearised with the stiffness K and damping B of `from` to the K and B of `to`: its
-/// stiffness is proportional to K, and its damping to B.
+/// Returns a contact that was linearised with the stiffness and damping of `from`, as it is with those of `to`:
+/// stiffness in proportion to K, damping in proportion to B.
 LinearContact scaled(LinearContact contact, const RenderingConfig& from, const RenderingConfig& to);
 
-/// Returns the largest stiffness K [N/m] at which the loop of hand, device and contact is stable. The search starts at
-/// the scenario's K and uses steps of 10 %, up to twice this K and down to a billionth of it. Returns infinity if the
-/// loop is stable up to twice K, and 0 if no K is stable. At each K, the contact is linearised at the equilibrium of
-/// the tool near `near`. If there is no equilibrium at a K, the latest contact found is used, scaled(). Empty without
-/// has_linear_loop(), and if the tool touches nothing at `near`.
+/// Judges the loop of hand, device and contact at several values of a field of a scenario, near one state of a run.
+class ContactLoops {
+ public:
+  /// `near`: see linear_contact(). `is_stiffness`: true if the field is K. A K without an equilibrium (a surface too
+  /// soft to hold the tool, or a force that jumps) then has the last contact that was found, scaled(). `at_any_pose`:
+  /// true if the first contact need not be an equilibrium.
+  ContactLoops(const ContactState& near, bool is_stiffness, bool at_any_pose)
+      : near_(near), is_stiffness_(is_stiffness), at_any_pose_(at_any_pose) {}
+
+  /// Returns true if the loop of the scenario is stable; empty without a contact or a linear loop.
+  std::optional<bool> is_stable(const Scenario& scenario, const NamedFiles& files,
+                                const std::shared_ptr<const PointShell>& shell);
+
+ private:
+  ContactState near_;
+  bool is_stiffness_, at_any_pose_;
+  std::optional<LinearContact> known_;  ///< the last contact that was found, with the stiffness and damping of
+                                        ///< known_rendering_
+  RenderingConfig known_rendering_;
+};
+
+/// The values of a field on the way to its linear limit.
+struct LimitWalk {
+  double start = 0.0;
+  /// Returns the next value above (`up`) or below a value; the value itself at the end of the range.
+  std::function<double(double value, bool up)> next = {};
+  std::function<bool(double stable, double unstable)> is_resolved = {};  ///< true ends the bisection
+};
+
+/// Walks from the start towards the limit: up while the loop is stable, otherwise down to a stable value. Then bisects.
+/// Returns the largest stable value before the first unstable one; infinity if all values above a stable start are
+/// stable, minus infinity if no value is stable. Returns nothing if `is_stable` returns nothing at the start; later
+/// this counts as unstable.
+std::optional<double> limit_along(const LimitWalk& walk, const std::function<std::optional<bool>(double)>& is_stable);
+
+/// Returns the largest stiffness K [N/m] at which the loop of hand, device and contact is stable, searched from the
+/// scenario's K in steps of 10 %, up to twice this K and down to a billionth of it. Infinite if the loop is stable up
+/// to twice K; 0 if no K is stable. At each K, the contact is the equilibrium of the tool near `near`; a K without an
+/// equilibrium has the last contact that was found, scaled(). Empty without has_linear_loop(), and if the tool touches
+/// nothing at `near`.
 std::optional<double> linear_stiffness_limit(const CheckedScenario& scenario,
                                              const std::shared_ptr<const PointShell>& shell, const ContactState& near);
 

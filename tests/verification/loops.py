@@ -1,7 +1,8 @@
-"""Verification of linear limits. Eigenvalues of the loop of hand, device and contact, computed here with numpy from the
-description of the devices in the manual, are compared with `limit` and with runs. Shares no code with hapbench.
+"""Verification of linear limits: the eigenvalues of the loop of hand, device and contact, computed
+here with numpy from the description of the devices in the manual, against `limit` and against runs.
+Shares no code with hapbench.
 
-  python3 tests/verification/loops.py PROGRAM [COUNT]    # COUNT random loops of each pair, default 2
+    python3 tests/verification/loops.py PROGRAM [COUNT]    # COUNT random loops of each pair, default 2
 """
 import json
 import subprocess
@@ -10,273 +11,37 @@ import tempfile
 from pathlib import Path
 
 import numpy as np
-from scipy import signal
-from scipy.linalg import expm
+
+from loop_models import MAPS, between, edge_of, radius, random_device, random_hand
 
 PROGRAM = Path(sys.argv[1]).resolve()
 COUNT = int(sys.argv[2]) if len(sys.argv) > 2 else 2
 RANDOM = np.random.default_rng(85)
-# `limit` bisects eigenvalues to 1e-11. A double eigenvalue has an error of the square root of rounding, 1e-8.
+# `limit` bisects eigenvalues to 1e-11. A double eigenvalue is known to the square root of rounding, 1e-8.
 SPRINGS_AGREE = 1e-7
-# The derivative of a rendered force is a difference quotient with an error of 1e-7; the limit depends on it about
-# linearly.
+# The derivative of a rendered force is a difference with an error of 1e-7; the limit depends on it about linearly.
 SURFACES_AGREE = 1e-5
-# Distance of K in the runs from the limit (relative), the amplitude ratio that a run must reach, and the largest number
-# of steps.
+# K of the runs, relative to the limit. A run is long enough for an amplitude ratio of GROWN.
 BESIDE, GROWN, MOST_STEPS = 0.05, 100.0, 200_000
 
 
-def map_of(step, n):
-    """Returns the matrix of a linear function of n numbers."""
-    return np.column_stack([step(unit) for unit in np.eye(n)])
-
-
-def radius(A):
-    return np.abs(np.linalg.eigvals(A)).max()
-
-
-def held(rate, inputs, t):
-    """Returns the maps of state and constant inputs of z' = rate z + inputs u over the time t."""
-    n, m = rate.shape[0], inputs.shape[1]
-    joint = np.zeros((n + m, n + m))
-    joint[:n, :n], joint[:n, n:] = rate, inputs
-    whole = expm(joint * t)
-    return whole[:n, :n], whole[:n, n:]
-
-
-class LowPass:
-    """Butterworth low-pass with an input that is held over the period before its sample."""
-
-    def __init__(self, given, T):
-        if given is None:
-            self.n = 0
-            return
-        analog = signal.butter(
-            given["order"], 2 * np.pi * given["cutoff_Hz"], analog=True, output="zpk"
-        )
-        A, B, self.C, _ = signal.zpk2ss(*analog)
-        self.A, self.B, *_ = signal.cont2discrete((A, B, self.C, 0), T)
-        self.n = len(A)
-
-    def step(self, state, u):
-        if self.n == 0:
-            return state, u
-        state = self.A @ state + self.B[:, 0] * u
-        return state, (self.C @ state)[0]
-
-
-def impedance_map(scene, K):
-    """The handle, or motors and handle, move exactly between samples. The wall acts on the measured position."""
-    T, device, B = scene["time"]["step_s"], scene["device"], scene["rendering"]["damping_N_s_per_m"]
-    hand = scene["hand"]
-    m, b = device["handle_mass_kg"], device["viscous_N_s_per_m"]
-    attached = hand if hand["type"] == "mass_spring_damper" else {}
-    sampled = hand if hand["type"] == "impedance" else {}
-    M, k, c = (
-        attached.get(name, 0.0) for name in ("mass_kg", "stiffness_N_per_m", "damping_N_s_per_m")
-    )
-    if "transmission" in device:
-        given = device["transmission"]
-        motor = given["motor_share"] * m
-        handle = m - motor + M
-        s, d = given["stiffness_N_per_m"], given["damping_N_s_per_m"]
-        rate = np.array(
-            [
-                [0, 1, 0, 0],
-                [-s / motor, -(d + b) / motor, s / motor, d / motor],
-                [0, 0, 0, 1],
-                [s / handle, d / handle, -(s + k) / handle, -(d + c) / handle],
-            ]
-        )
-        inputs = np.array([[0, 0], [1 / motor, 0], [0, 0], [0, 1 / handle]])
-    else:
-        rate = np.array([[0, 1], [-k / (m + M), -(b + c) / (m + M)]])
-        inputs = np.array([[0, 0], [1 / (m + M), 1 / (m + M)]])
-    body = len(rate)
-    position, velocity = LowPass(device.get("position_filter"), T), LowPass(
-        device["velocity_filter"] if device["velocity_filter"]["type"] == "low_pass" else None, T
-    )
-    delay = device["delay_samples"]
-    whole, part = int(delay), delay - int(delay)
-    before, after = held(rate, inputs, part * T), held(rate, inputs, (1 - part) * T)
-    sizes = np.cumsum([body, 1, position.n, velocity.n, whole + 1])
-
-    def step(state):
-        z, last, of_position, of_velocity, forces = np.split(state, sizes[:-1])
-        of_position, y = position.step(of_position, z[0])
-        of_velocity, w = velocity.step(of_velocity, (z[0] - last[0]) / T)
-        forces = np.append(-K * y - B * w, forces)  # the newest force first
-        force_of_hand = (
-            -sampled.get("stiffness_N_per_m", 0.0) * z[-2]
-            - sampled.get("damping_N_s_per_m", 0.0) * z[-1]
-        )
-        last = [z[0]]
-        for (of_state, of_input), force in ((before, forces[whole + 1]), (after, forces[whole])):
-            z = of_state @ z + of_input @ [force, force_of_hand]
-        return np.concatenate([z, last, of_position, of_velocity, forces[: whole + 1]])
-
-    return map_of(step, sizes[-1])
-
-
-def leapfrog(x, v, f, M, dt):
-    v = v + f / M * dt
-    return x + v * dt, v
-
-
-def admittance_map(scene, K):
-    """Steps the virtual mass, then the servo of the carriage, then carriage and handle by the implicit midpoint
-    rule."""
-    dt, r, device, hand = (scene[name] for name in ("time", "rendering", "device", "hand"))
-    dt = dt["step_s"]
-    servo, parts = device["servo"], device["mechanics"]
-    k, c = (
-        hand.get(name, 0.0) if hand["type"] == "impedance" else 0.0
-        for name in ("stiffness_N_per_m", "damping_N_s_per_m")
-    )
-    s, d = parts["structure_stiffness_N_per_m"], parts["structure_damping_N_s_per_m"]
-    mc, mh, b = parts["carriage_mass_kg"], parts["handle_mass_kg"], parts["friction_N_s_per_m"]
-    rate = np.array(
-        [
-            [0, 1, 0, 0],
-            [-s / mc, -(d + b) / mc, s / mc, d / mc],
-            [0, 0, 0, 1],
-            [s / mh, d / mh, -s / mh, -d / mh],
-        ]
-    )
-    inputs = np.array([[0, 0], [1 / mc, 0], [0, 0], [0, 1 / mh]])
-    implicit = np.linalg.inv(np.eye(4) - dt / 2 * rate)
-    delay = servo["delay_samples"]
-
-    def step(state):
-        x, v, z, commands = state[0], state[1], state[2:6], state[6:]
-        force = -k * z[2] - c * z[3]
-        x, v = leapfrog(x, v, force - K * x - r["damping_N_s_per_m"] * v, r["mass_kg"], dt)
-        command = servo["stiffness_N_per_m"] * (x - z[0]) + servo["damping_N_s_per_m"] * (v - z[1])
-        commands = np.append(command, commands)
-        z = implicit @ ((np.eye(4) + dt / 2 * rate) @ z + dt * inputs @ [commands[delay], force])
-        return np.concatenate([[x, v], z, commands[:delay]])
-
-    return map_of(step, 6 + delay)
-
-
-def ideal_map(scene, K):
-    r, hand = scene["rendering"], scene["hand"]
-    k, c = hand.get("stiffness_N_per_m", 0.0), hand.get("damping_N_s_per_m", 0.0)
-
-    def step(state):
-        x, v = state
-        f = -(K + k) * x - (r["damping_N_s_per_m"] + c) * v
-        return np.array(leapfrog(x, v, f, r["mass_kg"], scene["time"]["step_s"]))
-
-    return map_of(step, 2)
-
-
-MAPS = {"impedance": impedance_map, "admittance": admittance_map, "ideal": ideal_map}
-
-
-def between(low, high):
-    """Returns a random number, uniform on a logarithmic scale."""
-    return float(np.exp(RANDOM.uniform(np.log(low), np.log(high))))
-
-
-def random_hand(kind):
-    target = {axis: 0 for axis in ("x_m", "y_m", "z_m")}
-    spring = {
-        "stiffness_N_per_m": between(50, 1000),
-        "damping_N_s_per_m": between(0.5, 10),
-        "target": target,
-    }
-    return {
-        "none": {"type": "none"},
-        "force": {"type": "force", "z_N": 0.0},
-        "impedance": {"type": "impedance", **spring},
-        "mass_spring_damper": {
-            "type": "mass_spring_damper",
-            "mass_kg": between(0.02, 0.4),
-            **spring,
-        },
-    }[kind]
-
-
-def random_low_pass():
-    return {"cutoff_Hz": between(20, 300), "order": int(RANDOM.integers(1, 5))}
-
-
-def random_device(kind):
-    if kind == "ideal":
-        return {"type": "ideal"}
-    if kind == "admittance":
-        return {
-            "type": "admittance",
-            "force_limit_N": None,
-            "servo": {
-                "stiffness_N_per_m": between(1e4, 5e4),
-                "damping_N_s_per_m": between(80, 200),
-                "max_force_N": 1e6,
-                "delay_samples": int(RANDOM.integers(0, 3)),
-            },
-            "mechanics": {
-                "carriage_mass_kg": between(0.15, 0.5),
-                "handle_mass_kg": between(0.05, 0.15),
-                "friction_N_s_per_m": between(0.5, 4),
-                "structure_stiffness_N_per_m": between(5e4, 3e5),
-                "structure_damping_N_s_per_m": between(10, 60),
-            },
-        }
-    device = {
-        "type": "impedance",
-        "handle_mass_kg": between(0.04, 0.4),
-        "viscous_N_s_per_m": between(0.1, 3),
-        "delay_samples": float(RANDOM.choice([0, 0.25, 1, 1.5, 2.3, 4])),
-        "velocity_filter": {"type": "difference"},
-    }
-    if RANDOM.random() < 0.5:
-        device["velocity_filter"] = {"type": "low_pass", **random_low_pass()}
-    if RANDOM.random() < 0.4:
-        device["position_filter"] = random_low_pass()
-    if RANDOM.random() < 0.3:
-        device["transmission"] = {
-            "motor_share": float(RANDOM.uniform(0.2, 0.8)),
-            "stiffness_N_per_m": between(2e3, 5e4),
-            "damping_N_s_per_m": between(0.2, 5),
-        }
-    return device
-
-
 def random_scene(device, hand):
-    """Returns a scene with one bilateral spring along z."""
+    """One spring that pulls and pushes, along z."""
     return {
         "name": f"{device}_{hand}",
         "time": {"step_s": float(RANDOM.choice([0.00025, 0.0005, 0.001])), "steps": 16},
         "environment": {"type": "springs", "groups": [{"direction": [0, 0, 1], "count": 1}]},
         "initial": {"position_m": [0, 0, 1e-4]},
-        "hand": random_hand(hand),
-        "device": random_device(device),
+        "hand": random_hand(RANDOM, hand),
+        "device": random_device(RANDOM, device),
         "rendering": {
             "algorithm": "summation",
             "stiffness_N_per_m": 1000,
-            "damping_N_s_per_m": between(0.2, 8),
-            "mass_kg": between(0.05, 0.3),
+            "damping_N_s_per_m": between(RANDOM, 0.2, 8),
+            "mass_kg": between(RANDOM, 0.05, 0.3),
             "friction": {"mu_s_N_s_per_m": 0, "mu_f_s_per_m": 0},
         },
     }
-
-
-def edge_of(stable, low=1e-3, high=1e9):
-    """Returns the limit up to which `stable` holds. Requires that it holds from `low` on, and at no value between the
-    limit and 20 times the limit."""
-    value, factor = low, 1.1
-    while stable(value * factor):
-        value *= factor
-        if value > high:
-            return None
-    if value == low or any(stable(value * factor ** (i + 1)) for i in range(32)):
-        return None
-    inside, outside = value, value * factor
-    while outside > inside * (1 + 1e-12):
-        middle = np.sqrt(inside * outside)
-        inside, outside = (middle, outside) if stable(middle) else (inside, middle)
-    return inside
 
 
 def told(folder, *words):
@@ -300,8 +65,7 @@ def limit(folder, scene, low, high, *words):
 
 
 def grows(folder, scene, A, K):
-    """Returns True if the amplitude of a run at K grows, False if it decays, and None if the decision would take too
-    many steps."""
+    """True if the amplitude of a run at K grows, False if it decays; None if that would take too many steps."""
     steps = int(np.log(GROWN) / abs(np.log(radius(A)))) + 100
     if steps > MOST_STEPS:
         return None
@@ -328,7 +92,7 @@ def check(name, got, known, within, faults):
 
 
 def check_springs(folder, faults):
-    """Checks each device with each hand on a spring, and runs on both sides of the limit."""
+    """Each device with each hand on a spring, and runs beside the limit."""
     pairs = [(device, hand) for device in MAPS for hand in ("none", "force", "impedance")]
     pairs.append(("impedance", "mass_spring_damper"))
     for device, hand in pairs:
@@ -356,7 +120,7 @@ def check_springs(folder, faults):
 
 
 def pressed(device, hand, tip, diameter):
-    """Returns a scene in which a hand presses a tool on a plane."""
+    """A tool that a hand presses on a plane."""
     scene = random_scene(device, "none")
     scene.update(
         time={"step_s": 0.001, "duration_s": 2},
@@ -370,8 +134,8 @@ def pressed(device, hand, tip, diameter):
 
 
 def slope_of_flat_tip(K, F, radius_of_tip, spacing=0.0005):
-    """Returns dF/dz of equal weights under a flat tip that F presses down by z. The depth of a point at distance rho
-    from the axis is min(z, r - rho), the smaller distance to bottom and side."""
+    """dF/dz of equal weights under a flat tip that F presses down by z: the depth of a point at rho from the axis
+    is min(z, r - rho), the nearer of bottom and side."""
     at = spacing * np.arange(-50, 51)
     rho = np.hypot(*np.meshgrid(at, at)).ravel()
     side = radius_of_tip - rho[rho <= radius_of_tip * (1 + 1e-12)]
@@ -383,7 +147,7 @@ def slope_of_flat_tip(K, F, radius_of_tip, spacing=0.0005):
 
 
 def check_surfaces(folder, faults):
-    """Checks a flat tip, whose contact is softer than K, and a drag, whose damping along the normal is in the loop."""
+    """A flat tip, whose contact is softer than K, and a drag, whose damping along the normal is in the loop."""
     for F in (0.5, 0.8):
         scene = pressed("impedance", {"type": "force", "z_N": -F}, "flat", 0.004)
         scene["device"] = {
@@ -414,7 +178,7 @@ def check_surfaces(folder, faults):
         scene["environment"]["spacing_m"] = 0.0002
         scene["rendering"][
             "depth_model"
-        ] = "normal_projection"  # gives all points of a plane the same depth
+        ] = "normal_projection"  # one depth at all points of a plane
         scene["device"] = {
             "type": "impedance",
             "handle_mass_kg": 0.2,

@@ -11,25 +11,50 @@
 
 namespace hapbench {
 
-MetricErrors metric_errors(const ScenarioText& scene, const std::vector<std::string>& overrides,
-                           const MetricValues& metrics, unsigned threads) {
+/// Returns the cases of a refinement.
+static std::vector<Cases> refined_cases(const ScenarioText& scene, const std::vector<std::string>& overrides,
+                                        Refinement refinement) {
   const LoadedScenario scenario = load_scenario(scene, overrides);
+  const auto distance = point_distance(scenario);
   const Cases once({scene}, overrides, std::vector<Axis>{});
-  std::vector<Cases> finer = {finer_cases(level_sweep(scenario, kStepPath, 2, 2.0), once)};
-  if (const auto distance = point_distance(scenario)) {
-    finer.push_back(finer_cases(level_sweep(scenario, distance->path, 2, 2.0), once));
+  std::vector<Cases> finer;
+  if (refinement == Refinement::resolution) {
+    finer.push_back(finer_cases(level_sweep(scenario, kStepPath, 2, 2.0), once));
+    if (distance) finer.push_back(finer_cases(level_sweep(scenario, distance->path, 2, 2.0), once));
+  } else if (distance) {
     finer.emplace_back(std::vector{scene}, overrides, std::vector<Axis>{{.path = "record.inside", .values = {"true"}}});
   }
-  const std::vector<Result> runs = run_all(finer, {threads, ""});
-  MetricErrors found{{}, runs.size()};
+  return finer;
+}
+
+MetricValues metric_changes(const ScenarioText& scene, const std::vector<std::string>& overrides,
+                            const MetricValues& metrics, Refinement refinement, unsigned threads, std::size_t& runs) {
+  const std::vector<Result> refined = run_all(refined_cases(scene, overrides, refinement), {threads, ""});
+  runs += refined.size();
+  MetricValues changes;
   for (const auto& [name, value] : metrics) {
-    double largest = 0.0;
-    for (const Result& run : runs) {
+    double& largest = changes[name] = 0.0;
+    for (const Result& run : refined) {
       const double moved = number_of(run.metrics, name).value_or(std::numeric_limits<double>::infinity());
       largest = std::max(largest, std::abs(moved - value));
     }
-    if (std::isfinite(largest)) found.errors[name] = largest;
   }
+  return changes;
+}
+
+MetricErrors metric_errors(const ScenarioText& scene, const std::vector<std::string>& overrides,
+                           const MetricValues& metrics, unsigned threads) {
+  MetricErrors found;
+  const auto changes = [&](Refinement refinement) {
+    return metric_changes(scene, overrides, metrics, refinement, threads, found.runs);
+  };
+  found.errors = changes(Refinement::resolution);
+  const bool has_depth =
+      std::ranges::any_of(metrics, [](const auto& entry) { return depends_on_sampled_depth(entry.first); });
+  if (has_depth)
+    for (const auto& [name, change] : changes(Refinement::depth))
+      found.errors[name] = std::max(found.errors[name], change);
+  std::erase_if(found.errors, [](const auto& entry) { return !std::isfinite(entry.second); });
   return found;
 }
 

@@ -4,6 +4,7 @@
 #include <functional>
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "scenarios/scene/load_scenario.hpp"
@@ -18,6 +19,23 @@ struct MetricErrors {
   MetricValues errors = {};  ///< error estimates of the metrics; metrics that a refined run lacks are missing
   std::size_t runs = 0;      ///< number of refined runs, one to three
 };
+
+/// Refinements of a run that estimate the errors of its metrics.
+enum class Refinement {
+  resolution,  ///< two runs: half the time step, and half the point spacing
+  depth        ///< one run with the depth evaluated at every step: ten times as expensive as the scene's own run
+};
+
+/// Returns true if evaluating the depth at every step can change the metric: the two depths of the tool inside the
+/// environment. All other metrics are equal in both runs.
+inline bool depends_on_sampled_depth(std::string_view metric) {
+  return metric == "inside_max_m" || metric == "inside_settled_m";
+}
+
+/// Returns the largest change of each value in `metrics` by a refinement; infinite for a metric that the refined run
+/// lacks. Uses up to `threads` threads. Adds the number of runs to `runs`: none if the scene has no points to refine.
+MetricValues metric_changes(const ScenarioText& scene, const std::vector<std::string>& overrides,
+                            const MetricValues& metrics, Refinement refinement, unsigned threads, std::size_t& runs);
 
 /// Returns the error estimates of metrics of one scene: the largest change of each value in `metrics` if the time step
 /// is halved, if the point spacing is halved, and if the depth is evaluated at every step. Uses up to `threads`

@@ -1,6 +1,7 @@
 #include "scenarios/analysis/stability/limit_theory.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <iterator>
 #include <limits>
@@ -118,48 +119,21 @@ TheoreticalLimit inequality_limit(const LimitQuestion& question) {
 }
 
 std::optional<double> contact_limit(const LimitQuestion& question, double stable, const ContactState& near) {
-  std::optional<LinearContact> known;  // the last contact that was found, at `known_rendering`
-  RenderingConfig known_rendering;
-  // Returns true if the loop at a value of the field is stable; empty if there is no loop in contact.
-  const auto is_stable_at = [&](double value) -> std::optional<bool> {
-    const CheckedScenario scenario = checked(question.at(value));
-    const auto at_rest = linear_contact(scenario, make_shell(scenario.scenario(), scenario.files()), near);
-    const RenderingConfig& rendering = scenario.scenario().rendering;
-    std::optional<LinearContact> contact;
-    // A surface too soft to hold the tool has no equilibrium, nor has a force that jumps. The contact is then the last
-    // contact that was found, with this K and B.
-    if (at_rest && at_rest->is_equilibrium)
-      contact = at_rest->contact;
-    else if (known && question.path == kStiffnessPath)
-      contact = scaled(*known, known_rendering, rendering);
-    if (!contact) return std::nullopt;
-    known = contact;
-    known_rendering = rendering;
-    const std::vector<Eigen::MatrixXd> loop = contact_loop(scenario.scenario(), *contact);
-    if (loop.empty()) return std::nullopt;
-    return is_stable_loop(loop);
-  };
-  const std::optional<bool> first = is_stable_at(stable);
-  if (!first) return std::nullopt;
+  constexpr double kStep = 1.0 / (4 * kScanIntervals);
   IntervalSearchOptions options = question.search;
   options.current = stable;
   options.resolution = kContactResolution;
-  const double start = *options.current_parameter();
-  const auto holds = [&](double t) { return is_stable_at(options.value_at(t)).value_or(false); };
-  // Walk from the run's value towards the limit: up while the loop is stable, otherwise down to a stable value.
-  constexpr double kStep = 1.0 / (4 * kScanIntervals);
-  const double direction = *first ? kStep : -kStep;
-  double last = start;
-  while (true) {
-    const double next = std::clamp(last + direction, 0.0, 1.0);
-    if (next == last) return *first ? std::numeric_limits<double>::infinity() : 0.0;
-    if (holds(next) != *first) {
-      EvaluatedParameters evaluated = {{std::min(last, next), true}, {std::max(last, next), false}};
-      options.current.reset();
-      return options.value_at(*find_stable_interval(options, evaluated, holds, false).stable);
-    }
-    last = next;
-  }
+  ContactLoops loops(near, question.path == kStiffnessPath, /*at_any_pose=*/false);
+  LimitWalk walk{.start = *options.current_parameter()};
+  walk.next = [](double t, bool up) { return std::clamp(up ? t + kStep : t - kStep, 0.0, 1.0); };
+  walk.is_resolved = [&](double a, double b) { return !options.needs_bisection(a, b); };
+  const auto limit = limit_along(walk, [&](double t) {
+    const CheckedScenario scenario = checked(question.at(options.value_at(t)));
+    return loops.is_stable(scenario.scenario(), scenario.files(), make_shell(scenario.scenario(), scenario.files()));
+  });
+  if (!limit) return std::nullopt;
+  if (std::isinf(*limit)) return std::max(*limit, 0.0);
+  return options.value_at(*limit);
 }
 
 WallLimits wall_limits(const LimitQuestion& question) {

@@ -27,6 +27,27 @@ std::string measured_cause(const LimitQuestion& question, const FieldLimit& limi
   return run + " shows no growth in its duration";
 }
 
+/// Counts the stable runs beyond the unstable run next to the simulated limit, if there are any: then a value beyond
+/// the limit may be stable.
+std::string stable_beyond(const LimitQuestion& question, const FieldLimit& limit) {
+  const auto is_beyond = [&](const JudgedValue& run) {
+    const double next = limit.end.beyond->value;
+    return question.search.smallest ? run.value < next : run.value > next;
+  };
+  const auto is_stable_beyond = [&](const JudgedValue& run) {
+    return is_beyond(run) && question.rule.holds(run.verdict);
+  };
+  const auto stable = std::ranges::count_if(limit.runs, is_stable_beyond);
+  if (stable == 0) return "";
+  return fmt::format("; {} of {} runs farther beyond are stable", stable, std::ranges::count_if(limit.runs, is_beyond));
+}
+
+/// Names the unstable run next to the simulated limit.
+std::string next_run(const LimitQuestion& question, const FieldLimit& limit) {
+  const auto& [value, verdict] = *limit.end.beyond;
+  return fmt::format("the run at {} is {}{}", number(value), run_verdict_name(verdict), stable_beyond(question, limit));
+}
+
 /// Returns the reason why there is no linear limit within the range.
 std::string without_linear(const FieldLimit& limit) {
   if (!limit.no_linear.empty()) return fmt::format("there is no linear limit: {}", limit.no_linear);
@@ -55,7 +76,7 @@ QuotedLimit quoted_limit(const LimitQuestion& question, const FieldLimit& limit)
       return {{},
               fmt::format("every run up to {}, the end of the range, is stable; {}", number(*value),
                           without_linear(limit))};
-    return {value, fmt::format("simulated limit; {}", without_linear(limit))};
+    return {value, fmt::format("simulated limit: {}; {}", next_run(question, limit), without_linear(limit))};
   }
   // The linear limit is nearer than the stable runs, or agrees with their limit within the resolution.
   const double resolution = question.search.range.logarithmic
@@ -63,10 +84,11 @@ QuotedLimit quoted_limit(const LimitQuestion& question, const FieldLimit& limit)
                                 : question.search.resolution * (question.search.range.to - question.search.range.from);
   const bool agree =
       beyond && std::abs(*value - *linear) <= 2.0 * std::max(resolution, question.search.whole ? 1.0 : 0.0);
-  if (agree) return {is_first(*value, *linear) ? *value : *linear, name + "; the runs agree"};
+  if (agree)
+    return {is_first(*value, *linear) ? *value : *linear, name + "; the runs agree" + stable_beyond(question, limit)};
   if (is_first(*value, *linear) && beyond)
-    return {value, fmt::format("simulated limit; it is reached before the {}, {}: beyond it runs are {}", name,
-                               number(*linear), run_verdict_name(beyond->verdict))};
+    return {value, fmt::format("simulated limit: {}; it is reached before the {}, {}", next_run(question, limit), name,
+                               number(*linear))};
   if (is_first(*value, *linear))
     return {{},
             fmt::format("every run up to {}, the end of the range, is stable; the {} is {}", number(*value), name,

@@ -63,32 +63,34 @@ std::optional<std::string> confirmed(Trials& trials, const TuneLimits& limits, c
     Relaxation relaxation{limits, ""};
     for (const auto& [name, ratio] : violated)
       if (!relax(trials, trial, name, factor, relaxation)) return std::nullopt;
+    trials.set_aim(relaxation.text);
     if (is_feasible(relaxation.limits)) return relaxation.text;
     if (relaxation.limits.allow_vibration && violated.size() == 1) break;  // a factor changes nothing
   }
   return std::nullopt;
 }
 
-/// A trial that violates a single limit, or only low-vibration rules, and by how much.
-struct Candidate {
-  double excess;
-  const TuneTrial* trial;
-};
-
-/// Returns, for each limit, the trials that violate only this limit, the smallest excess first. All rules of low
+/// Returns the limit that a trial violates, if it violates a single limit; otherwise an empty text. All rules of low
 /// vibration count as one limit.
-std::map<std::string, std::vector<Candidate>> candidates(const Trials& trials) {
-  std::map<std::string, std::vector<Candidate>> all;
-  for (const auto& [key, trial] : trials.all()) {
-    if (!trial.limits_alone) continue;
-    std::vector<std::string> names;
-    for (const auto& [name, ratio] : trials.violated_limits(trial)) {
-      const std::string limit = trials.is_rule(name) ? kRules : name;
-      if (std::ranges::count(names, limit) == 0) names.push_back(limit);
-    }
-    if (names.size() == 1) all[names[0]].push_back({trials.excess(trial), &trial});
+std::string single_limit(const Trials& trials, const TuneTrial& trial) {
+  std::string single;
+  if (!trial.limits_alone) return single;
+  for (const auto& [name, ratio] : trials.violated_limits(trial)) {
+    const std::string limit = trials.is_rule(name) ? kRules : name;
+    if (!single.empty() && single != limit) return "";
+    single = limit;
   }
-  for (auto& [name, found] : all) std::ranges::stable_sort(found, {}, &Candidate::excess);
+  return single;
+}
+
+/// Returns, for each limit, up to `count` trials that violate only this limit, the smallest excess first.
+std::map<std::string, std::vector<const TuneTrial*>> candidates(Trials& trials, std::size_t count) {
+  std::map<std::string, std::vector<const TuneTrial*>> all;
+  for (const auto& [key, trial] : trials.all())
+    if (const std::string limit = single_limit(trials, trial); !limit.empty()) all[limit].push_back(&trial);
+  for (auto& [name, found] : all)
+    found = trials.smallest_excess(std::move(found), count, /*one_per_setting=*/false,
+                                   [&](const TuneTrial& trial) { return single_limit(trials, trial) == name; });
   return all;
 }
 
@@ -106,15 +108,15 @@ std::string relaxations(Trials& trials, const TuneTrial& nearest, const IsFeasib
   const TuneLimits limits = trials.limits();
   // Complete the nearest trials of each limit before the searches with other limits begin.
   std::vector<std::pair<const TuneTrial*, MetricValues>> chosen;
-  for (const auto& [name, found] : candidates(trials)) {
-    for (std::size_t i = 0; i < std::min(kMaxCompleted, found.size()); ++i) {
-      const TuneTrial& trial = trials.completed(*found[i].trial);
+  for (const auto& [name, found] : candidates(trials, kMaxCompleted)) {
+    for (const TuneTrial* candidate : found) {
+      const TuneTrial& trial = trials.evaluated(*candidate, Need::all);
       if (!trial.limits_alone || !violates_only(trials, trial, name)) continue;
       chosen.emplace_back(&trial, trials.violated_limits(trial));
       break;
     }
   }
-  const TuneTrial& all = trials.completed(nearest);
+  const TuneTrial& all = trials.evaluated(nearest, Need::all);
   const MetricValues of_nearest = all.limits_alone ? trials.violated_limits(all) : MetricValues();
   std::vector<std::string> texts;
   for (const auto& [trial, violated] : chosen)
@@ -168,6 +170,8 @@ std::string remedy(const TuneQuestion& question, const TuneFailure& failure) {
   const bool margin_helps = failure.binding == "margin" && !contact_fails && !failure.unstable_at_K;
   if (margin_helps) text += std::string(text.empty() ? "" : "; ") + "a smaller --margin";
   if (!text.empty()) return text;
+  if (failure.binding == "friction")
+    return R"(rendering.friction {"type": "dry"}, a smaller rendering.friction.mu_f_s_per_m, or a shorter time step)";
   if (failure.binding == "no_force") return "check the device: its encoder, or its force resolution, hides the contact";
   if (contact_fails)
     return "no option of tune changes this: change the hand or the start of the scene (\"hapbench run\" explains the "
@@ -181,7 +185,8 @@ void explain(Trials& trials, const IsFeasible& is_feasible, TunedLaw& law) {
   // A trial that violates limits in the scene's own run may also fail in another variant: then no limit is responsible.
   constexpr std::size_t kMaxCompleted = 8;
   std::vector<const TuneTrial*> nearest = trials.nearest(kMaxCompleted);
-  std::erase_if(nearest, [&](const TuneTrial* trial) { return trials.completed(*trial).failure.has_value(); });
+  std::erase_if(nearest,
+                [&](const TuneTrial* trial) { return trials.evaluated(*trial, Need::all).failure.has_value(); });
   if (!nearest.empty()) {
     const TuneTrial trial = *nearest[0];
     law.binding = trial.binding;
@@ -189,6 +194,9 @@ void explain(Trials& trials, const IsFeasible& is_feasible, TunedLaw& law) {
     law.relax = relaxations(trials, trial, is_feasible);
     return;
   }
+  // No limit is responsible. Find the failures of all trials near the limits.
+  for (const auto& [key, trial] : trials.all())
+    if (trial.limits_alone) trials.evaluated(trial, Need::excess);
   if (const TuneFailure* failure = binding_failure(trials)) {
     law.binding = failure->binding;
     law.why = failure->why;

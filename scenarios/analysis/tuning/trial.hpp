@@ -62,8 +62,9 @@ struct TuneTrial {
   std::string algorithm = {};
   double stiffness = 0.0;  ///< K [N/m]
   /// Violated constraint; empty if the trial is feasible. "settled": not settled at K. "margin": not settled at G K.
-  /// "no_force": no force is rendered. "runs": the maximum number of runs is reached. "range": K is at the end of the
-  /// range. Otherwise the name of the metric whose limit is violated.
+  /// "no_force": no force is rendered. "friction": explicit integration of friction is unstable in the run. "runs": the
+  /// maximum number of runs is reached. "range": K is at the end of the range. Otherwise the name of the metric whose
+  /// limit is violated.
   std::string binding = {};
   std::string why = {};       ///< reason of the violation, for the user
   bool too_soft = false;      ///< true if a larger K may keep the constraint
@@ -73,15 +74,18 @@ struct TuneTrial {
   /// Worst value of each limited metric over the evaluated variants, and the low-vibration numbers of the scene itself.
   MetricValues worst = {};
   std::map<std::string, std::string> worst_text = {};  ///< the values in `worst` as text for the user
-  /// Error estimates of `metrics` (metric_errors); empty unless all limits are kept, or nearly, without errors.
+  /// Error estimates of `metrics` by the refinements that were made; empty unless all limits are kept, or nearly,
+  /// without errors.
   MetricValues error = {};
 
-  // How far the trial was evaluated. A trial is evaluated further only while it keeps the limits.
-  std::size_t judged = 0;    ///< number of variants whose motion was judged, the scene itself first
-  bool is_measured = false;  ///< true if the limits were measured in the scene's own run
-  bool is_complete = false;  ///< true if the limits were measured in all variants
-  bool has_error = false;    ///< true if `error` was computed
-  std::size_t runs = 0;      ///< number of simulations of the trial
+  // How far the trial was evaluated. A trial is evaluated further only while a question needs it (Trials::Need).
+  std::size_t judged = 0;     ///< number of variants whose motion was judged, the scene itself first
+  bool is_measured = false;   ///< true if the limits were measured in the scene's own run
+  bool is_complete = false;   ///< true if the limits were measured in all variants
+  bool is_refined = false;    ///< true if `error` has the changes by Refinement::resolution
+  bool has_error = false;     ///< true if `error` has the changes by all refinements
+  double depth_within = 0.0;  ///< largest change of inside_max_m by Refinement::depth [m]: tolerance of the search
+  std::size_t runs = 0;       ///< number of simulations of the trial
   /// The variant whose motion fails and how it fails; empty if no motion fails. The failure does not depend on limits.
   std::optional<TuneFailure> failure = {};
   /// Largest eigenvalue of the mean stiffness tensor S at the end of the scene's run, in units of K.

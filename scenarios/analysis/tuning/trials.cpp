@@ -114,6 +114,15 @@ void Trials::begin_search(TuneLimits limits) {
   search_runs_ = 0;
 }
 
+void Trials::begin_purpose(std::string purpose) {
+  purpose_ = std::move(purpose);
+  report_runs();
+}
+
+void Trials::report_runs() const {
+  if (question_.on_runs) question_.on_runs(runs_, aim_.empty() ? purpose_ : purpose_ + ", to confirm: " + aim_);
+}
+
 void Trials::recall_all() {
   for (auto& [key, trial] : all_) {
     requested_.insert(&trial);
@@ -142,6 +151,25 @@ const TuneTrial& Trials::trial_at(const TuneSetting& setting, double stiffness) 
   return mutable_trial(setting, stiffness);
 }
 
+bool Trials::is_too_soft(const TuneSetting& setting, double K) {
+  const TuneTrial& trial = trial_at(setting, K);
+  return !trial.feasible() && evaluated(trial, Need::softness).too_soft;
+}
+
+const TuneTrial& Trials::evaluated(const TuneTrial& trial, Need need) {
+  TuneTrial& own = mutable_trial(trial.setting, trial.stiffness);
+  judge(own, need);
+  return own;
+}
+
+const TuneTrial& Trials::with_errors(const TuneTrial& trial) {
+  TuneTrial& own = mutable_trial(trial.setting, trial.stiffness);
+  refine(own, Refinement::resolution);
+  refine(own, Refinement::depth);
+  judge(own);
+  return own;
+}
+
 void Trials::evaluate_and_measure(const TuneSetting& setting, double stiffness) {
   TuneTrial& trial = mutable_trial(setting, stiffness);
   if (trial.settled) measure_scene(trial);
@@ -163,24 +191,52 @@ std::vector<double> Trials::feasible_stiffnesses(const TuneSetting& setting) con
   return stiffnesses;
 }
 
-std::vector<const TuneTrial*> Trials::nearest(std::size_t count) const {
-  std::map<TuneSetting, const TuneTrial*> best;
-  for (const auto& [key, trial] : all_) {
-    if (!requested_.contains(&trial) || !trial.limits_alone) continue;
-    const auto entry = best.try_emplace(trial.setting, &trial).first;
-    if (excess(trial) < excess(*entry->second)) entry->second = &trial;
-  }
+std::vector<const TuneTrial*> Trials::nearest(std::size_t count) {
   std::vector<const TuneTrial*> trials;
-  for (const auto& [setting, trial] : best) trials.push_back(trial);
-  std::ranges::stable_sort(trials, {}, [this](const TuneTrial* trial) { return excess(*trial); });
-  if (trials.size() > count) trials.resize(count);
+  for (const auto& [key, trial] : all_)
+    if (requested_.contains(&trial) && trial.limits_alone) trials.push_back(&trial);
+  const auto violates_limits_alone = [](const TuneTrial& trial) { return trial.limits_alone; };
+  return smallest_excess(std::move(trials), count, /*one_per_setting=*/true, violates_limits_alone);
+}
+
+std::vector<const TuneTrial*> Trials::smallest_excess(std::vector<const TuneTrial*> trials, std::size_t count,
+                                                      bool one_per_setting,
+                                                      const std::function<bool(const TuneTrial&)>& counts) {
+  struct Ranked {
+    double excess;
+    std::size_t order;  ///< of the trial in `trials`
+    const TuneTrial* trial;
+  };
+  const auto before = [](const Ranked& a, const Ranked& b) {
+    return std::pair(a.excess, a.order) < std::pair(b.excess, b.order);
+  };
+  // Without further evaluation, excess() is a lower bound. Evaluate trials in the order of their bounds, until no other
+  // trial can be among the first.
+  std::vector<Ranked> bounds, exact;
+  for (const TuneTrial* trial : trials) bounds.push_back({excess(*trial), bounds.size(), trial});
+  std::ranges::sort(bounds, before);
+  for (const Ranked& bound : bounds) {
+    if (exact.size() >= count && bound.excess > exact[count - 1].excess) break;
+    const TuneTrial& trial = evaluated(*bound.trial, Need::excess);
+    if (!counts(trial)) continue;
+    const Ranked ranked{excess(trial), bound.order, &trial};
+    const auto of_setting = std::ranges::find_if(
+        exact, [&](const Ranked& other) { return one_per_setting && other.trial->setting == trial.setting; });
+    if (of_setting != exact.end() && before(*of_setting, ranked)) continue;
+    if (of_setting != exact.end()) exact.erase(of_setting);
+    exact.insert(std::ranges::upper_bound(exact, ranked, before), ranked);
+  }
+  trials.clear();
+  for (const Ranked& ranked : exact)
+    if (trials.size() < count) trials.push_back(ranked.trial);
   return trials;
 }
 
-const TuneTrial& Trials::completed(const TuneTrial& trial) {
-  TuneTrial& own = mutable_trial(trial.setting, trial.stiffness);
-  judge(own, /*in_full=*/true);
-  return own;
+bool Trials::is_nearer(const TuneTrial& trial, const TuneTrial& other) {
+  const double best = excess(other);
+  if (!trial.limits_alone || !(excess(trial) < best)) return false;
+  const TuneTrial& exact = evaluated(trial, Need::excess);
+  return exact.limits_alone && excess(exact) < best;
 }
 
 std::optional<Failing> Trials::first_failing(const TuneTrial& trial, std::size_t count,
@@ -210,7 +266,7 @@ void Trials::in_parallel(TuneTrial* trial, std::size_t count, const std::functio
     search_runs_ += count;
   }
   for_each_job(count, {question_.threads, ""}, job);
-  if (question_.on_runs) question_.on_runs(runs_);
+  report_runs();
 }
 
 MetricValues Trials::metrics_of(const Result& run) const {
@@ -225,8 +281,8 @@ MetricValues Trials::metrics_of(const Result& run) const {
 
 // ---- Evaluation of the constraints, the cheapest first
 
-/// Evaluates a trial as far as its limits require, and writes the violated constraint.
-void Trials::judge(TuneTrial& trial, bool in_full) {
+/// Evaluates a trial as far as `need` requires, and writes the violated constraint.
+void Trials::judge(TuneTrial& trial, Need need) {
   trial.binding.clear();
   trial.why.clear();
   trial.too_soft = trial.limits_alone = false;
@@ -234,7 +290,7 @@ void Trials::judge(TuneTrial& trial, bool in_full) {
     trial.fail("runs", fmt::format("the search ended after {} runs", search_runs_));
     return;
   }
-  evaluate(trial, in_full);
+  evaluate(trial, need);
   if (trial.failure) {
     trial.fail(trial.failure->binding, trial.failure->why);
     trial.too_soft = trial.failure->too_soft;
@@ -245,22 +301,53 @@ void Trials::judge(TuneTrial& trial, bool in_full) {
   if (const Refutation* refuted = refutation_of(trial)) trial.fail(refuted->constraint, refuted->reason);
 }
 
-/// Runs the trial until a motion fails, or a limit is violated unless `in_full`.
-void Trials::evaluate(TuneTrial& trial, bool in_full) {
-  constexpr double kNear = 1.5;  // factor beyond a limit from which errors are estimated, so that a search can approach
-  // The scene itself: its loop, its motion, its metrics.
+/// Runs the scene itself: its loop, its motion, its metrics.
+void Trials::evaluate_motion(TuneTrial& trial) {
   if (trial.judged == 0 && !trial.failure) {
     if (springs_lambda_) trial.failure = loop_failure(trial, 0, {});
     if (!trial.failure) judge_motion(trial, 0, 1);
   }
-  if (trial.failure) return;
-  measure_scene(trial);
-  if (trial.failure || (!in_full && excess(trial) > kNear)) return;
+  if (!trial.failure) measure_scene(trial);
+}
+
+/// Runs the trial until a motion fails, or until nothing more can change what `need` asks for. A trial far from the
+/// limits is not evaluated further than the scene itself, except for Need::all.
+void Trials::evaluate(TuneTrial& trial, Need need) {
+  constexpr double kNear = 1.5;  // factor beyond a limit from which errors are estimated, so that a search can approach
+  const auto is_far = [&] { return need != Need::all && excess(trial) > kNear; };
+  const auto is_decided = [&] { return need == Need::feasibility && violates_limits(trial); };
+  evaluate_motion(trial);
+  if (trial.failure || is_far() || is_decided()) return;
   // The other variants.
   if (trial.judged < variants_.size()) judge_motion(trial, 1, variants_.size());
   if (trial.failure) return;
   measure_variants(trial);
-  if (in_full || excess(trial) <= kNear) estimate_error(trial);
+  if (question_.limits.empty() || is_far() || is_decided()) return;
+  // The errors: a limit on another metric than a depth decides that a larger K does not help.
+  const bool is_stiff = violates_limits(trial) && !violates_only_depths(trial);
+  if (need == Need::softness && is_stiff) return;
+  refine(trial, Refinement::resolution);
+  if (needs_depth(trial, need)) refine(trial, Refinement::depth);
+}
+
+/// Returns true if Refinement::depth may change what `need` asks for, by the tolerance of the search for the deepest
+/// point. The median of a few depths has no such tolerance.
+bool Trials::needs_depth(const TuneTrial& trial, Need need) const {
+  const MetricValues violated = violated_limits(trial);
+  if (need <= Need::softness && !violated.empty()) return false;
+  for (const auto& [name, bound] : limits_.metrics) {
+    const auto value = value_in(trial.worst, name);
+    if (!depends_on_sampled_depth(name) || !value) continue;
+    if (name != "inside_max_m") return true;
+    const double largest = *value + trial.depth_within, smallest = *value - trial.depth_within;
+    double factor = 1.0;  // largest factor beyond the bound
+    if (bound.max && largest > *bound.max) factor = ratio_beyond(largest, *bound.max);
+    if (bound.min && smallest < *bound.min) factor = std::max(factor, ratio_beyond(*bound.min, smallest));
+    // Where another limit is violated by a larger factor, this factor does not count.
+    const bool counts = need != Need::excess || !violated.contains(name) || factor > excess(trial);
+    if (factor > 1.0 && counts) return true;
+  }
+  return false;
 }
 
 /// Returns the first hand with which the loop in contact is unstable at a stiffness between K and `most` [N/m]; empty
@@ -361,6 +448,8 @@ void Trials::measure_scene(TuneTrial& trial) {
     const CheckedScenario scene = checked(load(trial.setting, trial.stiffness));
     const Result run = run_with_shell(scene, shell_);
     trial.metrics = metrics_of(run);
+    if (const Metric* depth = find_metric(run.metrics, "inside_max_m"))
+      trial.depth_within = depth->tolerance().value_or(kInfinite);
     for (const Diagnosed& number : low_vibration_numbers(scene.loaded(), run)) {
       trial.worst[number.rule] = number.value;
       trial.worst_text[number.rule] = number.says;
@@ -374,6 +463,10 @@ void Trials::measure_scene(TuneTrial& trial) {
           "no_force", fmt::format("no force is rendered: the largest force of the law is {:.3g} N", largest)};
       trial.failure->too_soft = true;
     }
+    // A run beyond the limit of explicit friction is a numerical artefact: its metrics mean nothing.
+    if (const double steps = number_of(run.metrics, "explicit_friction_rows_beyond").value_or(0.0); steps > 0.0)
+      trial.failure = TuneFailure{
+          "friction", fmt::format("explicit integration of friction is unstable in {:g} steps of the run", steps)};
   });
   for (const auto& [name, bound] : question_.limits) note_worst(trial, name, bound, {&trial.metrics, 1}, variants_);
 }
@@ -395,16 +488,27 @@ void Trials::measure_variants(TuneTrial& trial) {
   }
 }
 
-/// Estimates the errors of the user's metrics.
-void Trials::estimate_error(TuneTrial& trial) {
-  if (trial.has_error || question_.limits.empty()) return;
-  trial.has_error = true;
-  MetricErrors found =
-      metric_errors(question_.scenario, overrides(trial.setting, trial.stiffness), trial.metrics, question_.threads);
-  trial.error = std::move(found.errors);
-  runs_ += found.runs;
-  search_runs_ += found.runs;
-  trial.runs += found.runs;
+/// Adds the changes of the trial's metrics by a refinement to their errors. A metric that a refined run lacks has no
+/// error.
+void Trials::refine(TuneTrial& trial, Refinement refinement) {
+  bool& is_done = refinement == Refinement::depth ? trial.has_error : trial.is_refined;
+  if (is_done) return;
+  is_done = true;
+  std::size_t runs = 0;
+  const MetricValues changes = metric_changes(question_.scenario, overrides(trial.setting, trial.stiffness),
+                                              trial.metrics, refinement, question_.threads, runs);
+  for (const auto& [name, change] : changes) {
+    const auto known = value_in(trial.error, name);
+    if (refinement == Refinement::depth && !known) continue;  // the finer resolution lacks it
+    if (std::isfinite(change))
+      trial.error[name] = std::max(change, known.value_or(0.0));
+    else
+      trial.error.erase(name);
+  }
+  runs_ += runs;
+  search_runs_ += runs;
+  trial.runs += runs;
+  report_runs();
 }
 
 /// Fails the trial at the first violated limit. Precondition: the metrics of the scene were measured.
@@ -416,11 +520,8 @@ void Trials::judge_limits(TuneTrial& trial) const {
   auto first = std::ranges::find_if(violated, [this](const auto& entry) { return !is_rule(entry.first); });
   if (first == violated.end()) first = violated.begin();
   const std::string& name = first->first;
-  const auto is_depth = [](const auto& entry) {
-    return entry.first.starts_with("inside") || entry.first.starts_with("depth");
-  };
   const auto limit = limits_.metrics.find(name);
-  trial.too_soft = limit != limits_.metrics.end() && limit->second.max && std::ranges::all_of(violated, is_depth);
+  trial.too_soft = limit != limits_.metrics.end() && limit->second.max && violates_only_depths(trial);
   const double error = value_in(trial.error, name).value_or(0.0);
   trial.fail(name, trial.worst_text.at(name) + (error > 0.0 ? fmt::format(" +- {:.2g}", error) : ""));
 }
@@ -442,6 +543,12 @@ MetricValues Trials::violated_limits(const TuneTrial& trial) const {
     if (value && *value > threshold) violated[rule] = ratio_beyond(*value, threshold);
   }
   return violated;
+}
+
+bool Trials::violates_only_depths(const TuneTrial& trial) const {
+  return std::ranges::all_of(violated_limits(trial), [](const auto& entry) {
+    return entry.first.starts_with("inside") || entry.first.starts_with("depth");
+  });
 }
 
 double Trials::excess(const TuneTrial& trial) const {

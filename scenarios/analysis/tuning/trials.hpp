@@ -30,6 +30,15 @@ struct Failing {
   std::string why;  ///< reason, for the user
 };
 
+/// The part of a trial's evaluation that a question needs. Each part includes the parts before it. A violated limit is
+/// known from the scene's own run; the other variants and the errors of metrics can only add failures.
+enum class Need {
+  feasibility,  ///< whether the trial keeps all constraints
+  softness,     ///< also whether a larger K may help (TuneTrial::too_soft)
+  excess,       ///< also the factor by which limits are violated, with the errors of the limited metrics
+  all           ///< also all variants and these errors for a trial far from the limits
+};
+
 /// The limits of a search.
 struct TuneLimits {
   std::map<std::string, MetricBound> metrics = {};  ///< limits of the user
@@ -45,6 +54,8 @@ struct TuneLimits {
 ///   errors;
 /// - a search sees only the trials that it requested itself, and what it costs does not depend on earlier searches: it
 ///   gives the same result in a new program;
+/// - a trial is evaluated only as far as a question needs it (Need). The answers are the answers of a complete
+///   evaluation, except that TuneTrial::binding and `why` of an infeasible trial may lack a later failure or the error;
 /// - runs() counts every simulation.
 class Trials {
  public:
@@ -80,6 +91,12 @@ class Trials {
   const TuneTrial& trial_at(const TuneSetting& setting, double stiffness);
   /// Returns true if a setting is feasible at K [N/m].
   bool feasible(const TuneSetting& setting, double K) { return trial_at(setting, K).feasible(); }
+  /// Returns true if a setting at K [N/m] is infeasible and a larger K may keep its constraints.
+  bool is_too_soft(const TuneSetting& setting, double K);
+  /// Evaluates a trial further and returns it.
+  const TuneTrial& evaluated(const TuneTrial& trial, Need need);
+  /// Estimates the errors of all metrics of a trial that are still missing, and returns the trial.
+  const TuneTrial& with_errors(const TuneTrial& trial);
   /// Evaluates a trial, and measures its metrics if the run of the scene itself is settled.
   void evaluate_and_measure(const TuneSetting& setting, double stiffness);
   /// Returns all trials of all searches, by setting and K.
@@ -90,10 +107,14 @@ class Trials {
   std::vector<double> feasible_stiffnesses(const TuneSetting& setting) const;
   /// Returns up to `count` trials of this search that violate only limits, at most one for each setting, the smallest
   /// excess() first.
-  std::vector<const TuneTrial*> nearest(std::size_t count) const;
-  /// Evaluates a trial that violates limits as if it kept them: its motion in all variants, its metrics and their
-  /// errors.
-  const TuneTrial& completed(const TuneTrial& trial);
+  std::vector<const TuneTrial*> nearest(std::size_t count);
+  /// Returns the first `count` of `trials` by excess(), smallest first, evaluated as far as Need::excess. Leaves out
+  /// trials that fail `counts` after this evaluation, and with `one_per_setting` all but the first trial of a setting.
+  std::vector<const TuneTrial*> smallest_excess(std::vector<const TuneTrial*> trials, std::size_t count,
+                                                bool one_per_setting,
+                                                const std::function<bool(const TuneTrial&)>& counts);
+  /// Returns true if a trial violates only limits, by a smaller excess() than `other`.
+  bool is_nearer(const TuneTrial& trial, const TuneTrial& other);
   /// Returns the loops of a scenario in a contact (contact_loops()), with its own stiffness and damping. In a scene of
   /// springs in permanent contact, the loops on their stiffest direction. Empty without contact.
   std::vector<NamedLoop> loops_in_contact(const Scenario& scenario, const ContactOfTrial& contact,
@@ -111,7 +132,8 @@ class Trials {
   MetricValues violated_limits(const TuneTrial& trial) const;
   /// Returns true for the name of a low-vibration rule.
   bool is_rule(const std::string& name) const { return rules_.contains(name); }
-  /// Returns the largest factor of violated_limits(); 1 if no limit is violated.
+  /// Returns the largest factor of violated_limits(); 1 if no limit is violated. A lower bound unless the trial was
+  /// evaluated as far as Need::excess.
   double excess(const TuneTrial& trial) const;
 
   // ---- Verification
@@ -132,6 +154,10 @@ class Trials {
   std::size_t runs() const { return runs_; }
   /// Adds simulations that were made outside of this class.
   void count_runs(std::size_t count) { runs_ += count; }
+  /// Sets what the next runs are made for (TuneQuestion::on_runs).
+  void begin_purpose(std::string purpose);
+  /// Sets the relaxation that the next searches are to confirm; empty: none.
+  void set_aim(std::string aim) { aim_ = std::move(aim); }
 
  private:
   struct Refutation {
@@ -152,10 +178,15 @@ class Trials {
   void judge_motion(TuneTrial& trial, std::size_t first, std::size_t last);
   void measure_scene(TuneTrial& trial);
   void measure_variants(TuneTrial& trial);
-  void estimate_error(TuneTrial& trial);
+  void refine(TuneTrial& trial, Refinement refinement);
+  bool needs_depth(const TuneTrial& trial, Need need) const;
+  bool violates_limits(const TuneTrial& trial) const { return !violated_limits(trial).empty(); }
+  bool violates_only_depths(const TuneTrial& trial) const;
+  void report_runs() const;
   void judge_limits(TuneTrial& trial) const;
-  void evaluate(TuneTrial& trial, bool in_full);
-  void judge(TuneTrial& trial, bool in_full = false);
+  void evaluate_motion(TuneTrial& trial);
+  void evaluate(TuneTrial& trial, Need need);
+  void judge(TuneTrial& trial, Need need = Need::feasibility);
   const Refutation* refutation_of(const TuneTrial& trial) const;
   TuneTrial& mutable_trial(const TuneSetting& setting, double stiffness);
 
@@ -175,6 +206,7 @@ class Trials {
   std::vector<Refutation> refutations_;
   bool exact_refutations_ = false;
   std::size_t runs_ = 0, search_runs_ = 0;
+  std::string purpose_, aim_;
 };
 
 }  // namespace hapbench

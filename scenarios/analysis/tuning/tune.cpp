@@ -28,10 +28,15 @@ std::optional<TuneTrial> verified_choice(Trials& trials, bool any, TunedLaw& law
   constexpr int kMaxVerifications = 60;
   TuneSearch search(trials);
   for (int i = 0; i < kMaxVerifications; ++i) {
+    trials.begin_purpose("search");
     const std::optional<TuneTrial> choice = any ? search.first_feasible() : search.best();
     // A choice that fails its verification refutes trials of similar settings. If no choice is left, every refutation
     // is restricted to its own setting, and the search is repeated.
     if (!choice && trials.restrict_refutations()) continue;
+    // The search does not evaluate the depth at every step where its tolerance decides; the choice keeps its limits
+    // with all errors.
+    if (choice && !trials.evaluated(*choice, Need::excess).feasible()) continue;
+    trials.begin_purpose("verification");
     if (choice && !is_verified(trials, *choice, law)) continue;
     if (choice) {
       law.binding = search.beyond().binding;
@@ -53,6 +58,7 @@ void explain_or_find(Trials& trials, TunedLaw& law) {
   };
   const bool was_exhausted = trials.is_exhausted();
   explain(trials, is_feasible, law);
+  trials.set_aim("");
   trials.begin_search(limits);
   trials.recall_all();
   if (trials.stiffest_feasible() != nullptr) law.choice = verified_choice(trials, /*any=*/false, law);
@@ -78,14 +84,10 @@ TunedLaw tuned_law(const TuneQuestion& question, const std::string& algorithm) {
   if (!law.choice) explain_or_find(trials, law);
   if (law.choice) {
     law.overrides = trials.overrides(law.choice->setting, law.choice->stiffness);
-    law.error = law.choice->error;
-    if (!law.choice->has_error) {
-      MetricErrors found = metric_errors(question.scenario, law.overrides, law.choice->metrics, question.threads);
-      law.error = std::move(found.errors);
-      trials.count_runs(found.runs);
-    }
+    trials.begin_purpose("margins");
     law.margins = margins_of(trials, *law.choice);
     evaluate_along_stiffness(trials, *law.choice);
+    law.error = trials.with_errors(*law.choice).error;
   }
   for (const auto& [key, trial] : trials.all()) law.trials.push_back(trial);
   law.runs = trials.runs();

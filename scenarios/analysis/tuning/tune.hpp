@@ -41,7 +41,7 @@ struct TunedLaw {
 ///   even if its metrics are off by their errors.
 /// - unless TuneQuestion::allow_vibration, the run of the scene itself has low vibration (low_vibration_numbers in
 ///   diagnosis.hpp).
-/// - the run of the scene itself renders a force.
+/// - the run of the scene itself renders a force, and explicit integration of friction is stable in all its steps.
 /// - every variant is settled at G K.
 /// - the loop in contact has stable eigenvalues from K to G K (contact_loops(); with every hand of
 ///   typical_hands() if a hand holds an impedance device).

@@ -29,9 +29,10 @@ struct TuneQuestion {
   Range damping_ratio = {0.01, 10.0, true};       ///< zeta of rendering.mass_kg, also on impedance devices
   /// Virtual mass of an admittance device [kg]; empty: half to twice the scene's virtual mass.
   std::optional<Range> mass = {};
-  bool filters = false;                                ///< true: velocity filters of impedance devices are searched too
-  unsigned threads = 1;                                ///< number of parallel runs; does not change the result
-  std::function<void(std::size_t runs)> on_runs = {};  ///< called repeatedly with the number of runs so far
+  bool filters = false;  ///< true: velocity filters of impedance devices are searched too
+  unsigned threads = 1;  ///< number of parallel runs; does not change the result
+  /// Called repeatedly with the number of runs so far, and what they are made for, such as "search".
+  std::function<void(std::size_t runs, const std::string& purpose)> on_runs = {};
 };
 
 /// The ranges that are searched.

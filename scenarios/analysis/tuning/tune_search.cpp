@@ -1,5 +1,7 @@
 #include "scenarios/analysis/tuning/tune_search.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -55,6 +57,8 @@ std::optional<TuneTrial> TuneSearch::best() {
     for (const TuneSetting& setting : settings_)
       if (setting.mass == best_->setting.mass) improve({setting.damping_ratio, setting.mass, filter});
   refine();
+  // The trial beyond the best is named with the limit that it violates, and with the error of this metric.
+  if (beyond_.stiffness > 0.0) beyond_ = trials_.evaluated(beyond_, Need::excess);
   return best_;
 }
 
@@ -72,10 +76,12 @@ void TuneSearch::search_settings() {
   if (const TuneTrial* known = trials_.stiffest_feasible()) improve(TuneTrial(*known).setting);
   for (const TuneSetting& setting : settings_) improve(setting);
   if (best_) return;
+  trials_.begin_purpose("search in finer steps");
   for (const TuneSetting& setting : settings_) scan_finely(setting);
   for (const char* filter : filters_)
     for (const TuneSetting& setting : settings_)
       if (!best_) improve({setting.damping_ratio, setting.mass, filter});
+  if (!best_) trials_.begin_purpose("search near the bounds");
   if (!best_)
     for (const TuneTrial* start : trials_.nearest(kStarts))
       if (!best_) approach(*start);
@@ -127,6 +133,7 @@ bool TuneSearch::improve(const TuneSetting& setting) {
   // If rounding makes this stiffness differ from the stiffness of a known feasible trial, use the largest feasible
   // stiffness.
   if (!best_->feasible()) best_ = trials_.trial_at(setting, trials_.feasible_stiffnesses(setting).back());
+  trials_.begin_purpose(fmt::format("search above K = {:.3g} N/m", best_->stiffness));
   if (interval.beyond) {
     beyond_ = trials_.trial_at(setting, options.value_at(*interval.beyond));
   } else {
@@ -145,7 +152,7 @@ void TuneSearch::add_known(const TuneSetting& setting, const IntervalSearchOptio
 }
 
 bool TuneSearch::is_too_soft(const TuneSetting& setting, const IntervalSearchOptions& options, double t) {
-  return trials_.trial_at(setting, options.value_at(t)).too_soft;
+  return trials_.is_too_soft(setting, options.value_at(t));
 }
 
 /// Searches between two neighbouring values of the scan, of which the lower is too soft and the upper too stiff.
@@ -193,7 +200,7 @@ void TuneSearch::approach(const TuneTrial& start) {
     const double K = std::clamp(neighbour.stiffness, range.from, range.to);
     const TuneTrial& next = trials_.trial_at(neighbour.setting, K);
     if (next.feasible()) best_ = next;
-    if (!best_ && !(next.limits_alone && trials_.excess(next) < trials_.excess(*at))) return false;
+    if (!best_ && !trials_.is_nearer(next, *at)) return false;
     at = &next;
     return true;
   };

@@ -46,9 +46,8 @@ Columns<TunedLaw> choice_columns() {
        "stiffness is K lambda_max",
        of_choice(&TuneTrial::lambda_max)},
       {"binding", "",
-       "binding constraint, the first constraint that a larger K violates: settled, margin, no_force, a bounded "
-       "metric, a "
-       "rule of low vibration, or range (the end of the search range)",
+       "binding constraint, the first constraint that a larger K violates: settled, margin, no_force, friction, a "
+       "bounded metric, a rule of low vibration, or range (the end of the search range)",
        &Row::binding},
       {"why", "", "explanation of the binding constraint", &Row::why},
       {"relax", "",
@@ -126,9 +125,9 @@ Columns<TuneTrial> trial_columns() {
        of_setting(&TuneSetting::filter)},
       {"feasible", "", "true if the trial keeps all constraints", &Row::feasible},
       {"binding", "",
-       "first violated constraint: settled (at K), margin (at stiffnesses up to G K), no_force (no force is "
-       "rendered), a "
-       "bounded metric, a rule of low vibration, or runs (the largest number of runs was reached)",
+       "first violated constraint that the search found: settled (at K), margin (at stiffnesses up to G K), no_force "
+       "(no force is rendered), friction (explicit integration of friction is unstable), a bounded metric, a rule of "
+       "low vibration, or runs (the largest number of runs was reached)",
        &Row::binding},
       {"why", "", "explanation of the violated constraint", &Row::why}};
   for (const char* name : {kTuneMetrics[0], kTuneMetrics[1], kTuneMetrics[2]}) {

@@ -64,12 +64,11 @@ std::string recommendation_text(const Tuning& tuning, const Layout& layout) {
        fmt::format("by {} full-length runs between K and {:g} K, all settled: at most {:.0f} % of this interval may be "
                    "unstable (95 % confidence); {} runs in total",
                    best->verified, tuning.question.margin, 100.0 * may_fail_share(kVerificationSamples), tuning.runs));
-  std::vector<std::string> findings;
-  for (const Diagnosed& found : tuning.findings) findings.push_back(finding_text(found));
-  line("diagnosis", findings.empty() ? "\"hapbench run\" reports no problem at K"
-                                     : fmt::format("\"hapbench run\" reports at K: {} (\"hapbench describe "
-                                                   "diagnosis\" explains the rules)",
-                                                   fmt::join(findings, ", ")));
+  line("diagnosis", tuning.findings.empty() ? "\"hapbench run\" reports no problem at K"
+                                            : "\"hapbench run\" reports at K, beside the requirements of tune:");
+  for (const Diagnosed& found : tuning.findings)
+    line("", fmt::format("{} (rule {}). tune does not require this rule; try: {}", found.says, finding_text(found),
+                         found.attempt));
   line("metrics at K",
        "+-: change with half the time step, half the point spacing, and the depth evaluated at every step");
   for (const auto& [name, value] : best->choice->metrics)

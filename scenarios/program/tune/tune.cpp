@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <atomic>
 #include <filesystem>
+#include <mutex>
 
 #include "scenarios/analysis/stability/compared_devices.hpp"
 #include "scenarios/analysis/tuning/trials.hpp"
@@ -31,13 +32,21 @@ namespace {
 
 /// Tunes one law after the other, and ranks the laws. Shows the current law and the number of runs meanwhile.
 void tune_laws(const std::vector<std::string>& algorithms, bool quiet, Tuning& tuning, const ProgramContext& context) {
-  std::atomic<std::size_t> law = 0, runs = 0;
+  std::atomic<std::size_t> law = 0;
+  std::mutex mutex;  // protects the progress within a law
+  std::size_t runs = 0;
+  std::string purpose;
   const auto now = [&] {
     const std::size_t i = std::min(law.load(), algorithms.size() - 1);
-    return fmt::format("tune: {} ({} of {}), {} runs", algorithms[i], i + 1, algorithms.size(), runs.load());
+    const std::lock_guard lock(mutex);
+    return fmt::format("tune: {} ({} of {}), {} runs, {}", algorithms[i], i + 1, algorithms.size(), runs, purpose);
   };
   const WaitNotice notice(now, !quiet);
-  tuning.question.on_runs = [&](std::size_t count) { runs = count; };
+  tuning.question.on_runs = [&](std::size_t count, const std::string& what) {
+    const std::lock_guard lock(mutex);
+    runs = count;
+    purpose = what;
+  };
   for (law = 0; law < algorithms.size(); ++law) {
     tuning.runs += tuning.laws.emplace_back(tuned_law(tuning.question, algorithms[law])).runs;
     if (context.progress != nullptr) (*context.progress)("tune", law + 1, algorithms.size());

@@ -190,5 +190,48 @@ TEST(Tune, RecommendsNoStiffnessThatRendersNothing) {
   }
 }
 
+/// The answers are those of a complete evaluation. The bounds lie within the metrics of the stiffnesses that are
+/// tried, so that trials violate none, each and both of them.
+TEST(Tune, EvaluatesATrialOnlyAsFarAsAnAnswerNeedsIt) {
+  TuneQuestion asked = question("tap_wall", {"time.duration_s=0.6"});
+  asked.threads = 2;
+  asked.families = {};
+  asked.limits["inside_max_m"].max = 9e-4;
+  asked.limits["force_rms_above_30Hz_N"].max = 0.1;
+  const std::string law = "shaped_stiffness";  // must outlive the trials
+  Trials needed(asked, law), complete(asked, law);
+  std::size_t feasible = 0, soft = 0;
+  for (const double zeta : {0.3, 0.6}) {
+    for (const double K : {2.5e3, 3e3, 4e3, 6e3, 1.2e4, 2.5e4, 5e4}) {
+      const TuneSetting setting{zeta, std::nullopt, ""};
+      const TuneTrial& trial = complete.evaluated(complete.trial_at(setting, K), Need::excess);
+      EXPECT_EQ(needed.feasible(setting, K), trial.feasible()) << zeta << ", " << K;
+      EXPECT_EQ(needed.is_too_soft(setting, K), !trial.feasible() && trial.too_soft) << zeta << ", " << K;
+      feasible += trial.feasible();
+      soft += !trial.feasible() && trial.too_soft;
+    }
+  }
+  EXPECT_LT(needed.runs(), complete.runs());
+  EXPECT_GT(feasible, 0u);
+  EXPECT_GT(soft, 0u);
+  // The order by excess is that of complete trials.
+  const std::vector<const TuneTrial*> nearest = needed.nearest(2), known = complete.nearest(2);
+  ASSERT_EQ(nearest.size(), known.size());
+  for (std::size_t i = 0; i < nearest.size(); ++i) {
+    EXPECT_EQ(nearest[i]->stiffness, known[i]->stiffness);
+    EXPECT_EQ(needed.excess(*nearest[i]), complete.excess(*known[i]));
+  }
+}
+
+/// With 340 s/m, explicit integration of friction is unstable above 1.2 N. The hand presses with up to 2 N, and with
+/// less at the end of the run, where the linear loop is stable.
+TEST(Tune, RecommendsNoRunThatIsAnArtefactOfFriction) {
+  TuneQuestion asked = question("poke_plane", {"rendering.friction.mu_f_s_per_m=340"});
+  const std::string law = "shaped_stiffness";  // must outlive the trials
+  Trials trials(asked, law);
+  const TuneTrial& trial = trials.trial_at({}, 20000.0);
+  EXPECT_EQ(trial.binding, "friction") << trial.why;
+}
+
 }  // namespace
 }  // namespace hapbench::tune_test
