@@ -19,6 +19,7 @@ UNITS = {
 }
 # A name such as x_mm also has a unit. Short ones such as x_m or x_cm may mean something else.
 _ENDINGS = "ms msec us usec ns nsec mm um mN kN deg".split()
+_UNCLEAR_ENDINGS = ("cm", "in", "inch", "nm")
 _BRACKETED = re.compile(r"\s*([\[(])\s*([^\[\]()]*?)\s*[\])]\s*$")
 ABSENT = "\x01absent"  # begins the names of columns that a reader has added; no message names them
 SI = {"time": "s", "position": "m", "force": "N", "angle": "rad"}
@@ -134,8 +135,11 @@ class Names:
         return None, False
 
     def unknown(self, quantity, words):
-        word = (words or [""])[0]
-        self.fail(quantity, f"got {quoted(word)}{nearest(word, list(filter(None, self.own())))}")
+        word, own = (words or [""])[0], list(filter(None, self.own()))
+        near = nearest(word, own)
+        if len(own) == 1 and word in own[0]:
+            near = "; allowed between columns: commas, semicolons, tabs or blanks"
+        self.fail(quantity, f"got {quoted(word)}{near}")
 
     def indices(self, names):
         """The columns of all these names, or None. Names without units, as units come behind components."""
@@ -205,4 +209,18 @@ def scale_of(names, quantity, columns, given, notes):
         notes.append(
             f"column {title} says {unit.text}, a scale of {factor:g}; --scale {quantity}={given:g} was used"
         )
+    if unit is None and given is None and quantity == "position":
+        notes += unclear_endings(names, columns)
     return given if given is not None else factor if factor is not None else 1.0
+
+
+def unclear_endings(names, columns):
+    """A note about names such as x_cm, whose ending is a unit or something else, such as the centre of mass."""
+    for column in columns:
+        ending = names.names[column].rpartition("_")[2]
+        if ending in _UNCLEAR_ENDINGS and names.names[column] != ending:
+            factor = UNITS["position"][ending]
+            return [
+                f"column {names.title(column)} is read as m; if its name says {ending}, --scale position={factor:g}"
+            ]
+    return []

@@ -167,7 +167,7 @@ class Recording:
 
 
 _TIME_OF_DAY = re.compile(
-    rb"(?:(\d{4}-\d\d-\d\d)[T ])?(\d\d?):(\d\d):(\d\d)(?:[.,](\d{1,9}))?\s*(Z|[+-]\d\d:?\d\d)?"
+    rb"(?:(\d{4}-\d\d-\d\d|\d{4}/\d\d/\d\d)[T ])?(\d\d?):(\d\d):(\d\d)(?:[.,](\d{1,9}))?\s*(Z|[+-]\d\d:?\d\d)?"
 )
 
 
@@ -180,7 +180,7 @@ def _nanoseconds(cell):
     days = 0
     if day:
         try:
-            days = date.fromisoformat(day.decode()).toordinal()
+            days = date.fromisoformat(day.decode().replace("/", "-")).toordinal()
         except ValueError:
             return None
     total = ((24 * days + int(hours)) * 60 + int(minutes)) * 60 + int(seconds)

@@ -1,5 +1,6 @@
 """Samples of a recording in SI units and the scenario's frame, and what is wrong with its rows."""
 import math
+import re
 from dataclasses import dataclass
 
 import numpy as np
@@ -25,8 +26,15 @@ LETTERS = {
     ("qx", "qy", "qz", "qw"): ("x", "y", "z", "w"),
 }
 PARTS = list(dict.fromkeys(sum(ORIENTATIONS.values(), ())))  # of orientations
+_NAMED_AS = {
+    "force": re.compile(r"f_?[xyz]|.*force.*"),
+    "position": re.compile(r"p?_?[xyz]|.*pos(ition)?([^a-z].*|)"),
+}
+_EXPONENT_OF_FORTRAN = re.compile(rb"[+-]?(\d+\.?\d*|\.\d+)[dD][+-]?\d+")
+TIMES_OF_DAY = '"05:59:00.002" or "2026-11-28T05:59:00.002Z"'
 LATEST = 1e11  # [s]; later times are in other units
 SINCE_1970 = (9e8, 4e9)  # 1998 to 2096 [s]
+LENGTHS = {1e-3: "millimetres", 1e-6: "micrometres"}
 DEGREE = math.pi / 180.0
 DOWN = np.array([0.0, 0.0, -1.0])  # the tool's axis in its own frame
 
@@ -76,6 +84,7 @@ class Columns:
         self._options, self.notes, self.scales = options, [], {}
         self.names = names = Names(recording)
         self.time = [] if options.sample_rate_Hz else self._group("time", ("time",))
+        self.time += self._nanoseconds()
         self.position = self._group("position", ("px", "py", "pz"))
         if not self.position:
             names.fail("position", "is missing")
@@ -89,6 +98,7 @@ class Columns:
         self._refuse_unused()
         self._refuse_shared()
         self._note_lone_order()
+        self._note_other_quantity()
 
     def used(self):
         """By quantity: its components, and number, name and unit of the column of each."""
@@ -102,7 +112,7 @@ class Columns:
                 for component, column in zip(components, columns)
             ]
             for quantity, components, columns in (
-                ("time", ("time",), self.time),
+                ("time", ("s", "ns") if len(self.time) > 1 else ("time",), self.time),
                 ("position", ("x", "y", "z"), self.position),
                 ("orientation", ORIENTATIONS[self.kind], self.orientation),
                 ("force", ("x", "y", "z"), self.force),
@@ -115,6 +125,15 @@ class Columns:
             given = self._options.scale.get(quantity)
             self.scales[quantity] = scale_of(self.names, quantity, columns, given, self.notes)
         return self.scales[quantity]
+
+    def _nanoseconds(self):
+        """The column of nanoseconds that belongs to a column of whole seconds, as those of ROS: secs and nsecs."""
+        name = self.names.names[self.time[0]] if self.time else ""
+        found = re.fullmatch(r"(|.*[._ /])(secs?)", name)
+        for ending in ("nsecs", "nsec", "nanosec", "nanosecs") if found else ():
+            if self.names.names.count(found[1] + ending) == 1:
+                return [self.names.names.index(found[1] + ending)]
+        return []
 
     def _group(self, group, parts):
         """The columns of a group: by the name of its first component, by number, or each by itself."""
@@ -278,6 +297,18 @@ class Columns:
                     f"{', '.join(map(self.names.title, columns))}, as --columns says; their names say otherwise"
                 )
 
+    def _note_other_quantity(self):
+        """Positions in columns that are named as forces, and the reverse."""
+        for group, columns, other in (
+            ("position", self.position, "force"),
+            ("force", self.force, "position"),
+        ):
+            bare = [self.names.bare[column].lower() for column in columns]
+            if bare and all(map(_NAMED_AS[other].fullmatch, bare)):
+                self.notes.append(
+                    f"the columns of {group} are {', '.join(map(self.names.title, columns))}, which are named as {other}"
+                )
+
     def _quaternion(self):
         """Columns of a quaternion, w first; of another orientation none."""
         if self.kind == "quat_xyzw":
@@ -297,12 +328,14 @@ class Rows:
     def __init__(self, recording, columns, options):
         self.problems, self.unit_deviation, self._recording = recording.problems(), 0.0, recording
         self.jumps = {}  # by row: speed [m/s]
-        self.notes, self.origin = columns.notes, 0.0
+        self.notes, self.origin, self._time = columns.notes, 0.0, columns.time[:1]
         frame = np.array(options.frame).T
         if columns.time:
             scale = columns.scale("time", columns.time)
             origin, values = recording.clock(columns.time[0], scale)
-            self._refuse_columns(columns.time, values[:, np.newaxis])
+            self._refuse_columns(columns.time[:1], values[:, np.newaxis])
+            if len(columns.time) > 1:
+                origin, values = self._with_nanoseconds(columns.time[1], origin, values, scale)
             self.origin, self.time = scale * origin, scale * values
         else:
             is_sample = [i not in self.problems for i in range(len(recording.rows))]
@@ -336,6 +369,14 @@ class Rows:
             ~fits,
             lambda row: "too large a number; allowed: positions below 1e6 m, forces below 1e9 N, times below 1e12 s",
         )
+
+    def _with_nanoseconds(self, column, origin, seconds, scale):
+        """(origin, times less the origin) of a clock in two columns: whole seconds and nanoseconds."""
+        nanoseconds = self._recording.column(column)
+        self._refuse_columns([column], nanoseconds[:, np.newaxis])
+        finite = seconds[np.isfinite(seconds)]
+        first = float(finite[0]) if len(finite) else 0.0
+        return origin + first, (seconds - first) + 1e-9 / scale * nanoseconds
 
     def _note_unlikely_angles(self, scale):
         largest = np.nanmax(np.abs(self.orientation[:, 3]), initial=0.0)
@@ -389,9 +430,20 @@ class Rows:
                 np.isnan(numbers),
                 lambda row: (
                     f"column {column + 1}{' ' if name else ''}{name}: got "
-                    f"{self._recording.shown(column, row)}; allowed: a finite number"
+                    f"{self._recording.shown(column, row)}; allowed: a finite number{self._cause(column, row)}"
                 ),
             )
+
+    def _cause(self, column, row):
+        """The likely cause of a cell that is no number, with the correction, or nothing."""
+        cell = b"" if self._recording.is_binary else self._recording.rows[row][column]
+        if _EXPONENT_OF_FORTRAN.fullmatch(cell):
+            return "; write an exponent as in 1e-3"
+        return (
+            f" or a time of day, such as {TIMES_OF_DAY}"
+            if b":" in cell and [column] == self._time
+            else ""
+        )
 
     def _refuse(self, wrong, problem):
         for row in np.flatnonzero(wrong).tolist():
@@ -408,6 +460,12 @@ class Rows:
                 ~((lengths > 1e-12) & (lengths < 1e12)),
                 lambda row: f"got an axis of length {lengths[row]:g}; allowed: 1e-12 ... 1e12",
             )
+            usable = np.delete(lengths, list(self.problems))
+            if np.abs(usable - 1.0).max(initial=0.0) > UNIT_TOLERANCE:
+                self.notes.append(
+                    f"the axes have lengths of {usable.min():.4g} ... {usable.max():.4g}, and only their directions "
+                    "are used: are they rotation vectors or Euler angles, which are not read?"
+                )
             return
         if self.kind == "matrix":
             m = values.reshape(-1, 3, 3)
@@ -514,7 +572,13 @@ def require_likely_clock(rows, file, scale, longest):
         else f"times of up to {latest:.4g} s; allowed: {LATEST:g} s"
     )
     unit = likely_unit(abs(median), speed, latest)
-    fail(f"got {got}; are times in other units? (--scale time={unit * scale:g})", file)
+    # Whole numbers without a gap may count rows.
+    counts = (
+        ", or numbers of rows? (--set sample_rate_Hz=... instead of --columns time=...)"
+        if np.all(np.abs(steps / scale - 1.0) < 1e-9)
+        else ""
+    )
+    fail(f"got {got}; are times in other units? (--scale time={unit * scale:g}){counts}", file)
 
 
 def likely_unit(interval, speed, latest=0.0):
@@ -570,9 +634,10 @@ def _with_hints(rows, count):
     if len(jumps) < 3 or 3 * len(jumps) <= count:
         return rows.problems
     speed = float(np.median([rows.jumps[row] for row in jumps]))
+    unit = next((one for one in LENGTHS if speed * one < 5.0), None)
     hint = (
-        "(is the scale right? --scale position=0.001 is for millimetres, --scale time=... for another clock)"
-        if speed * 1e-3 < 5.0
+        f"(is the scale right? --scale position={unit:g} is for {LENGTHS[unit]}, --scale time=... for another clock)"
+        if unit
         else "(is the scale right? --scale time=... or position=...)"
     )
     return {

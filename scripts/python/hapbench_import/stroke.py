@@ -17,6 +17,10 @@ LONG_INTERVALS = 10.0  # median intervals from which on one is a gap
 USUAL_RATES = (1.0, 1e5)  # of recordings [Hz]
 LONGEST, SHORTEST = 3.0, 1e-5  # of a hand's stroke, which is millimetres to decimetres long [m]
 FASTEST = 5.0  # of a hand [m/s]
+DAYS = (
+    (3e4, 7e4),
+    (7e5, 8e5),
+)  # times that may be days: since 1900, of the years 1982 to 2091; since the year 0
 MOST_GAPS = 5  # that are told each
 MOST_NOT_READ = 12  # columns that the table names
 
@@ -407,6 +411,11 @@ def _clock_warnings(found):
     rate, speed = found["rate_Hz"], found["speed_p99_m_per_s"]
     scale = found["scales"].get("time", 1.0)
     what = f"{rate:.4g} samples per second and a speed of {speed:.3g} m/s"
+    if rate > USUAL_RATES[1] and any(low < found["first_time_s"] < high for low, high in DAYS):
+        return [
+            f"{what} are unusual: are the times days, as those of spreadsheets and MATLAB? (with --scale time=86400 "
+            f"the rate is {rate / 86400:.4g} Hz)"
+        ]
     if rate < USUAL_RATES[0] or (rate < 20.0 and 0.0 < speed < 2e-3):
         factor = likely_unit(1.0 / rate, speed)
     elif rate > USUAL_RATES[1] or speed > FASTEST:
