@@ -1,10 +1,13 @@
 """Layouts of recordings of other programs: columns, texts, units, clocks and held rows."""
 from datetime import datetime, timedelta
+from types import SimpleNamespace
 
 import numpy as np
 from scipy.spatial.transform import Rotation
 
 from recordings import Given, moved, table
+
+from hapbench_identify.log import read_log
 
 
 class Layouts(Given):
@@ -298,6 +301,49 @@ class Layouts(Given):
         self.assertIn(
             "; write an exponent as in 1e-3 (100 rows", self.refusal(fortran, "time=t,position=x")
         )
+
+    def test_a_log_of_a_device_is_read_by_the_same_rules(self):
+        force = np.sin(20 * self.TIME)
+        seconds = 1764288000 + np.floor(self.TIME)
+        nanoseconds = np.round(self.TIME % 1 * 1e9)
+        columns = (self.TIME, force, self.PLACES[:, 0])
+
+        def read(data, *asked):
+            options = SimpleNamespace(
+                columns=list(asked),
+                scale=[],
+                decimal=None,
+                skip_bad_rows=False,
+                log=self.write(data),
+            )
+            return read_log(options)
+
+        names = "time_s,force_N,position_m"
+        for data, asked, said in (
+            (table(names, *columns).encode("utf-16-be"), (), "the text is UTF-16"),
+            ("Time,Command,Encoder\n" + table(names, *columns), (), "those of line 2"),
+            (
+                table(f"stamp.secs,stamp.nsecs,{names[7:]}", seconds, nanoseconds, *columns[1:]),
+                ("time=stamp.secs",),
+                "",
+            ),
+            (
+                table("time_s,force_N,x_cm", *columns),
+                ("position=x_cm",),
+                "is read as m; if its name says cm",
+            ),
+            (
+                table("time_s,position_m,force_N", *columns),
+                ("force=2", "position=3"),
+                "the column of force is 2 position_m, which is named as position",
+            ),
+        ):
+            log = read(data, *asked)
+            np.testing.assert_allclose(log.time - log.time[0], self.TIME, atol=1e-9)
+            np.testing.assert_allclose(log.force, force, atol=1e-8)
+            np.testing.assert_allclose(log.position, self.PLACES[:, 0], atol=1e-9)
+            self.assertIn(said, "".join(log.warnings))
+            self.assertEqual(bool(said), bool(log.warnings))
 
     def test_names_against_quantities_and_lengths_of_axes(self):
         force = np.column_stack([0.1 + 0 * self.TIME, 0 * self.TIME, 0.5 + 0 * self.TIME])

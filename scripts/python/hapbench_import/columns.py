@@ -21,6 +21,11 @@ UNITS = {
 _ENDINGS = "ms msec us usec ns nsec mm um mN kN deg".split()
 _UNCLEAR_ENDINGS = ("cm", "in", "inch", "nm")
 _BRACKETED = re.compile(r"\s*([\[(])\s*([^\[\]()]*?)\s*[\])]\s*$")
+# Names, in lower case and without units, that say what a column holds.
+NAMED_AS = {
+    "force": re.compile(r"f_?[xyz]|.*force.*"),
+    "position": re.compile(r"p?_?[xyz]|.*pos(ition)?([^a-z].*|)"),
+}
 ABSENT = "\x01absent"  # begins the names of columns that a reader has added; no message names them
 SI = {"time": "s", "position": "m", "force": "N", "angle": "rad"}
 
@@ -145,6 +150,15 @@ class Names:
         """The columns of all these names, or None. Names without units, as units come behind components."""
         found = [self.bare.index(name) if self.bare.count(name) == 1 else None for name in names]
         return None if None in found or len(set(found)) < len(found) else found
+
+    def nanoseconds(self, time):
+        """The column of nanoseconds that belongs to a column of whole seconds, as those of ROS: secs and nsecs; in a
+        list, which is empty without it. `time`: the column of times in a list."""
+        found = re.fullmatch(r"(|.*[._ /])secs?", self.names[time[0]]) if time else None
+        for ending in ("nsecs", "nsec", "nanosec", "nanosecs") if found else ():
+            if self.names.count(found[1] + ending) == 1:
+                return [self.names.index(found[1] + ending)]
+        return []
 
     def components(self, column, tokens, numbers=True):
         """The columns of all components, of which `column` is one, as their names say; None if they do not.

@@ -94,12 +94,16 @@ class Recording:
             values = np.array([finite_number(cell) for cell in cells])
         return np.where(np.isfinite(values), values, math.nan)
 
-    def clock(self, column, scale=1.0):
-        """(origin, numbers less the origin) of a column of times. The origin is 0, except for whole numbers that a
+    def clock(self, column, nanoseconds=None, scale=1.0):
+        """(origin, numbers less the origin) of a column of times, to which a column of nanoseconds may belong. The origin is 0, except for whole numbers that a
         double does not hold, such as nanoseconds since 1970. Times of day, with or without a date (ISO 8601), become
         seconds since the first; `scale`, the seconds per unit of other numbers, must be 1 for them.
         """
         values = self.column(column)
+        if nanoseconds is not None:
+            finite = values[np.isfinite(values)]
+            first = float(finite[0]) if len(finite) else 0.0
+            return first, (values - first) + 1e-9 / scale * self.column(nanoseconds)
         if not self.is_binary and not np.isfinite(values).any():
             nanoseconds = [
                 _nanoseconds(row[column]) if len(row) > column else None for row in self.rows

@@ -7,7 +7,7 @@ import numpy as np
 from hapbench_command import MOST_FAULTS, Faults, fail
 from scipy.spatial.transform import Rotation
 
-from .columns import Names, scale_of
+from .columns import NAMED_AS, Names, scale_of
 from .holds import hold_of
 from .options import ORIENTATIONS
 
@@ -26,10 +26,6 @@ LETTERS = {
     ("qx", "qy", "qz", "qw"): ("x", "y", "z", "w"),
 }
 PARTS = list(dict.fromkeys(sum(ORIENTATIONS.values(), ())))  # of orientations
-_NAMED_AS = {
-    "force": re.compile(r"f_?[xyz]|.*force.*"),
-    "position": re.compile(r"p?_?[xyz]|.*pos(ition)?([^a-z].*|)"),
-}
 _EXPONENT_OF_FORTRAN = re.compile(rb"[+-]?(\d+\.?\d*|\.\d+)[dD][+-]?\d+")
 TIMES_OF_DAY = '"05:59:00.002" or "2026-11-28T05:59:00.002Z"'
 LATEST = 1e11  # [s]; later times are in other units
@@ -84,7 +80,7 @@ class Columns:
         self._options, self.notes, self.scales = options, [], {}
         self.names = names = Names(recording)
         self.time = [] if options.sample_rate_Hz else self._group("time", ("time",))
-        self.time += self._nanoseconds()
+        self.time += self.names.nanoseconds(self.time)
         self.position = self._group("position", ("px", "py", "pz"))
         if not self.position:
             names.fail("position", "is missing")
@@ -125,15 +121,6 @@ class Columns:
             given = self._options.scale.get(quantity)
             self.scales[quantity] = scale_of(self.names, quantity, columns, given, self.notes)
         return self.scales[quantity]
-
-    def _nanoseconds(self):
-        """The column of nanoseconds that belongs to a column of whole seconds, as those of ROS: secs and nsecs."""
-        name = self.names.names[self.time[0]] if self.time else ""
-        found = re.fullmatch(r"(|.*[._ /])(secs?)", name)
-        for ending in ("nsecs", "nsec", "nanosec", "nanosecs") if found else ():
-            if self.names.names.count(found[1] + ending) == 1:
-                return [self.names.names.index(found[1] + ending)]
-        return []
 
     def _group(self, group, parts):
         """The columns of a group: by the name of its first component, by number, or each by itself."""
@@ -304,7 +291,7 @@ class Columns:
             ("force", self.force, "position"),
         ):
             bare = [self.names.bare[column].lower() for column in columns]
-            if bare and all(map(_NAMED_AS[other].fullmatch, bare)):
+            if bare and all(map(NAMED_AS[other].fullmatch, bare)):
                 self.notes.append(
                     f"the columns of {group} are {', '.join(map(self.names.title, columns))}, which are named as {other}"
                 )
@@ -332,10 +319,8 @@ class Rows:
         frame = np.array(options.frame).T
         if columns.time:
             scale = columns.scale("time", columns.time)
-            origin, values = recording.clock(columns.time[0], scale)
+            origin, values = recording.clock(*columns.time, scale=scale)
             self._refuse_columns(columns.time[:1], values[:, np.newaxis])
-            if len(columns.time) > 1:
-                origin, values = self._with_nanoseconds(columns.time[1], origin, values, scale)
             self.origin, self.time = scale * origin, scale * values
         else:
             is_sample = [i not in self.problems for i in range(len(recording.rows))]
@@ -369,14 +354,6 @@ class Rows:
             ~fits,
             lambda row: "too large a number; allowed: positions below 1e6 m, forces below 1e9 N, times below 1e12 s",
         )
-
-    def _with_nanoseconds(self, column, origin, seconds, scale):
-        """(origin, times less the origin) of a clock in two columns: whole seconds and nanoseconds."""
-        nanoseconds = self._recording.column(column)
-        self._refuse_columns([column], nanoseconds[:, np.newaxis])
-        finite = seconds[np.isfinite(seconds)]
-        first = float(finite[0]) if len(finite) else 0.0
-        return origin + first, (seconds - first) + 1e-9 / scale * nanoseconds
 
     def _note_unlikely_angles(self, scale):
         largest = np.nanmax(np.abs(self.orientation[:, 3]), initial=0.0)
