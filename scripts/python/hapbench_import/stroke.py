@@ -8,8 +8,9 @@ from scipy.spatial.transform import Rotation, Slerp
 
 from hapbench_command import MOST_FAULTS, Faults, fail
 
+from .clock import likely_unit
 from .columns import scale_text
-from .samples import DOWN, Samples, likely_unit, read_samples
+from .samples import DOWN, Samples, read_samples
 
 STIFFNESS = 20000.0  # default of rendering.stiffness_N_per_m [N/m]
 MOST_SAMPLES = 1e7
