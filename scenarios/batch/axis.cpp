@@ -112,7 +112,11 @@ Axis read_axis(const std::string& text, bool sampled) {
   const std::string_view values = std::string_view(text).substr(equals + 1);
   if (std::ranges::any_of(values, [](unsigned char c) { return c < 0x20 || c == 0x7f; }))
     refuse_axis("has control characters", "numbers, names and JSON");
-  if (!begins_json(values) && values.find(',') == values.npos && values.find(':') != values.npos) {
+  const bool has_colon = !begins_json(values) && values.find(':') != values.npos;
+  if (has_colon && values.find(',') != values.npos &&
+      values.find_first_not_of("0123456789.,:+-eE") == values.npos)  // not a list of names with colons
+    refuse_axis("got a range with commas", "decimal points, such as path=1.5:2.5:3, or values separated by commas");
+  if (has_colon && values.find(',') == values.npos) {
     read_range(values, sampled, axis);
     return axis;
   }

@@ -12,6 +12,7 @@
 
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/input/text_file.hpp"
+#include "scenarios/input/text_lines.hpp"
 
 namespace hapbench {
 namespace {
@@ -54,6 +55,18 @@ std::string cause_of_syntax_error(std::string_view text, std::size_t byte) {
        {std::pair("True", "true"), {"False", "false"}, {"None", "null"}, {"nan", "null"}, {"NaN", "null"}})
     if (token.starts_with(word)) return fmt::format("; write {}", correction);
   return "";
+}
+
+/// Returns the position of a byte (from 1) of the text, as an editor shows it: "line 2, column 5". Columns count
+/// characters.
+std::string position_of(std::string_view text, std::size_t byte) {
+  const std::string_view before = text.substr(0, byte > 0 ? byte - 1 : 0);
+  LineReader lines(before);
+  std::string_view last;
+  while (const auto line = lines.next()) last = *line;
+  const bool is_at_start = lines.line() == 0 || lines.has_line_end();
+  return fmt::format("line {}, column {}", lines.line() + (is_at_start ? 1 : 0),
+                     is_at_start ? 1 : count_characters(last) + 1);
 }
 
 /// Callback for the parser's events. Rejects input that the parser accepts, such as duplicate keys, and tracks
@@ -132,8 +145,10 @@ Json parse_json(const std::string& text) {
     // Take the description out of a message such as
     // "[json.exception.parse_error.101] parse error at line 2, column 5: syntax error while ...; last read: '...'"
     const std::string message = error.what();
-    const std::size_t start = message.find("] ") + 2;
-    refuse_syntax(message.substr(start, message.find("; last read") - start) + cause_of_syntax_error(text, error.byte));
+    const std::size_t start = message.find(": ", message.find("] ")) + 2;
+    refuse_syntax(fmt::format("parse error at {}: {}{}", position_of(text, error.byte),
+                              message.substr(start, message.find("; last read") - start),
+                              cause_of_syntax_error(text, error.byte)));
   } catch (const Json::out_of_range& error) {
     guard.refuse_here(fmt::format("got {}; allowed: finite numbers", number_in(error.what())));
   }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 
 #include "scenarios/input/input_error.hpp"
 #include "sim/mesh/polygon.hpp"
@@ -39,6 +40,78 @@ struct Reported {
   }
 };
 
+/// Returns 1 if two faces have the same corners in the same cyclic order, -1 if one is the reverse of the other, and 0
+/// otherwise.
+int winding_between(std::span<const std::uint32_t> a, std::span<const std::uint32_t> b) {
+  const std::size_t n = a.size();
+  if (b.size() != n) return 0;
+  for (std::size_t start = 0; start < n; ++start) {
+    bool is_same = true, is_reverse = true;
+    for (std::size_t k = 0; k < n && (is_same || is_reverse); ++k) {
+      is_same = is_same && a[k] == b[(start + k) % n];
+      is_reverse = is_reverse && a[k] == b[(start + n - k) % n];
+    }
+    if (is_same || is_reverse) return is_same ? 1 : -1;
+  }
+  return 0;
+}
+
+/// Finds polygons with the same corners as an earlier polygon. Both are divided into the same triangles, so that
+/// mesh_from_triangles() recognises the copy.
+class RepeatedPolygons {
+ public:
+  explicit RepeatedPolygons(const MeshFaces& faces) : faces_(faces) {
+    // Only faces whose hash occurs twice may be copies.
+    for (std::size_t f = 0; f < faces.ends.size(); ++f)
+      if (faces.face(f).size() > 3) hashes_.push_back(hash_of(f));
+    std::ranges::sort(hashes_);
+    std::vector<std::uint64_t> repeated;
+    for (std::size_t i = 1; i < hashes_.size(); ++i)
+      if (hashes_[i] == hashes_[i - 1]) repeated.push_back(hashes_[i]);
+    hashes_ = std::move(repeated);
+  }
+
+  /// Appends the triangles of an earlier copy of polygon `f`, and returns true if there is one.
+  bool append_copy(std::size_t f, std::vector<TriangleCorners>& triangles) {
+    if (hashes_.empty()) return false;
+    const std::uint64_t hash = hash_of(f);
+    if (!std::ranges::binary_search(hashes_, hash)) return false;
+    for (const auto& [face, begin, end] : earlier_[hash]) {
+      const int winding = winding_between(faces_.face(face), faces_.face(f));
+      for (std::size_t t = begin; t < end && winding != 0; ++t) {
+        const auto [a, b, c] = triangles[t];
+        triangles.push_back(winding > 0 ? TriangleCorners{a, b, c} : TriangleCorners{a, c, b});
+      }
+      if (winding != 0) return true;
+    }
+    return false;
+  }
+  /// Notes the triangles of polygon `f`.
+  void add(std::size_t f, std::size_t begin, std::size_t end) {
+    if (hashes_.empty()) return;
+    const std::uint64_t hash = hash_of(f);
+    if (std::ranges::binary_search(hashes_, hash)) earlier_[hash].push_back({f, begin, end});
+  }
+
+ private:
+  struct Divided {
+    std::size_t face, begin, end;  ///< the face, and the range of its triangles
+  };
+  /// Returns a hash of the corners that does not depend on their order.
+  std::uint64_t hash_of(std::size_t f) const {
+    std::uint64_t sum = 0;
+    for (const std::uint64_t corner : faces_.face(f)) {
+      const std::uint64_t mixed = (corner + 1) * 0x9E3779B97F4A7C15U;
+      sum += mixed ^ (mixed >> 29U);
+    }
+    return sum;
+  }
+
+  const MeshFaces& faces_;
+  std::vector<std::uint64_t> hashes_;  ///< hashes that several polygons have, sorted
+  std::map<std::uint64_t, std::vector<Divided>> earlier_;
+};
+
 }  // namespace
 
 void MeshFaces::fail_at_vertex(std::size_t vertex, const std::string& problem, const fs::path& file) const {
@@ -72,6 +145,7 @@ std::vector<TriangleCorners> triangles_of(MeshFaces& faces, const fs::path& file
   triangles.reserve(faces.corners.size() - 2 * faces.ends.size());
   PolygonDivider divider;
   std::vector<Vec3> polygon;
+  RepeatedPolygons copies(faces);
   Reported uneven, repeated;
   for (std::size_t f = 0; f < faces.ends.size(); ++f) {
     const auto corners = faces.face(f);
@@ -79,6 +153,8 @@ std::vector<TriangleCorners> triangles_of(MeshFaces& faces, const fs::path& file
       triangles.push_back({corners[0], corners[1], corners[2]});
       continue;
     }
+    if (copies.append_copy(f, triangles)) continue;
+    const std::size_t begin = triangles.size();
     polygon.clear();
     for (const std::uint32_t corner : corners) polygon.push_back(faces.vertices[corner]);
     try {
@@ -89,6 +165,7 @@ std::vector<TriangleCorners> triangles_of(MeshFaces& faces, const fs::path& file
     } catch (const PolygonError& error) {
       faces.fail_at_face(f, error.what(), file);
     }
+    copies.add(f, begin, triangles.size());
   }
   if (uneven.count > 0) {
     faces.warnings.push_back(fmt::format(

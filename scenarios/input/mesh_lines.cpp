@@ -9,10 +9,22 @@
 
 namespace hapbench {
 
+/// Returns the line without its comment, which begins with '#'. The '#' of a number that is not finite, such as
+/// "1.#QNAN" or "-1.#IND", begins no comment.
+static std::string_view without_comment(std::string_view line) {
+  const auto is_in_number = [line](std::size_t at) {
+    return at > 0 && line[at - 1] == '.' && line.substr(at + 1).find_first_of("IQS") == 0;
+  };
+  std::size_t at = line.find('#');
+  while (at != std::string_view::npos && is_in_number(at)) at = line.find('#', at + 1);
+  return line.substr(0, at);
+}
+
 bool MeshLines::next() {
   while (const auto line = lines_.next()) {
-    split_at_blanks(line->substr(0, line->find('#')), words_);
+    split_at_blanks(without_comment(*line), words_);
     first_line_ = lines_.line();
+    joined_token_ = {};
     if (continuation_ == Continuation::backslash && !words_.empty() && words_.back().ends_with('\\')) continue_line();
     if (!words_.empty()) return true;
   }
@@ -26,9 +38,10 @@ void MeshLines::continue_line() {
     if (words_.back().empty()) words_.pop_back();
     const auto line = lines_.next();
     if (!line) fail("the file ends after a line that is continued with a backslash; allowed: a complete file");
-    const Words more = words_of(line->substr(0, line->find('#')));
+    const Words more = words_of(without_comment(*line));
     words_.insert(words_.end(), more.begin(), more.end());
     if (more.empty()) return;
+    joined_token_ = more.front();
   }
 }
 
@@ -38,7 +51,7 @@ double MeshLines::number(std::size_t word) const {
   const auto value = finite_number(text);
   if (!value && has_decimal_comma(text))
     fail("got " + quoted_token(text) + " with a decimal comma; allowed: a number with a decimal point");
-  if (!value) fail("got " + quoted_token(text) + "; allowed: a finite number");
+  if (!value) fail("got " + quoted_token(text) + "; allowed: a finite number" + cause_of_exponent(text));
   return *value;
 }
 

@@ -29,6 +29,8 @@ class MeshLines {
   const Words& words() const { return words_; }
   /// Returns the number of the current line, from 1. A continued line has the number of its first line.
   std::size_t line() const { return first_line_; }
+  /// Returns the first token of the last line that a backslash joined to the current line; empty without such a line.
+  std::string_view joined_token() const { return joined_token_; }
   /// Returns true if the current line is the last line and has no line end, as if the file was cut within it.
   bool may_be_cut() const { return !lines_.has_line_end(); }
 
@@ -54,6 +56,7 @@ class MeshLines {
   const std::filesystem::path& file_;
   Continuation continuation_;
   std::size_t first_line_ = 0;
+  std::string_view joined_token_;
   Words words_;  ///< tokens of the current line
 };
 

@@ -30,13 +30,6 @@ std::string_view comment_text(std::string_view line) {
   return line.substr(std::min(line.find_first_not_of("#% \t"), line.size()));
 }
 
-/// Names of a header, and the separator with which it has the largest number of expected names.
-struct HeaderNames {
-  Words names;
-  char separator = ',';
-  std::size_t expected = 0;  ///< number of expected names
-};
-
 HeaderNames names_in(std::string_view line, std::span<const std::string_view> expected) {
   HeaderNames best;
   const auto is_expected = [expected](std::string_view name) {
@@ -94,7 +87,8 @@ char separator_in(std::string_view header) {
 
 bool is_comment(std::string_view line) {
   const std::string_view text = trimmed(line);
-  return text.starts_with('#') || text.starts_with('%');
+  const bool names_separator = text.size() <= 5 && text.starts_with("sep=");
+  return text.starts_with('#') || text.starts_with('%') || names_separator;
 }
 
 bool has_decimal_comma(std::string_view cell) {
@@ -104,6 +98,14 @@ bool has_decimal_comma(std::string_view cell) {
   std::string number(cell);
   number[comma] = '.';
   return finite_number(number).has_value();
+}
+
+std::string cause_of_exponent(std::string_view cell) {
+  std::string number = lower_case(cell);
+  const std::size_t at = number.find('d');
+  if (at == std::string::npos) return "";
+  number[at] = 'e';
+  return finite_number(number.starts_with('+') ? number.substr(1) : number) ? "; write an exponent as in 1e-3" : "";
 }
 
 std::string cause_of_cell_count(std::string_view row, char separator, std::size_t cells, std::size_t columns) {
@@ -163,8 +165,40 @@ void CsvReader::find_header(std::span<const std::string_view> expected) {
     header_line_ = lines_.line();
     if (!comment) break;
   }
+  if (header.expected == 0 && has_comments_) skip_lines_above_header(expected, header);
   columns_ = std::move(header.names);
   separator_ = header.separator;
+}
+
+void CsvReader::skip_lines_above_header(std::span<const std::string_view> expected, HeaderNames& header) {
+  constexpr int kMaxLines = 20;
+  if (header.names.empty() || finite_number(header.names[0]) || has_decimal_comma(header.names[0])) return;
+  LineReader lines = lines_;
+  std::size_t above = 1;
+  for (int i = 0; i < kMaxLines; ++i) {
+    const auto line = lines.next();
+    if (!line) return;
+    if (trimmed(*line).empty() || is_comment(*line)) continue;
+    HeaderNames found = names_in(*line, expected);
+    if (finite_number(found.names[0]) || has_decimal_comma(found.names[0])) return;
+    // A title may hold one of the names by chance.
+    if (found.expected >= std::min<std::size_t>(2, expected.size())) {
+      first_line_above_ = header_line_;
+      lines_above_ = above;
+      header = std::move(found);
+      header_line_ = lines.line();
+      lines_ = lines;
+      return;
+    }
+    ++above;
+  }
+}
+
+std::optional<std::string> CsvReader::note_of_lines_above() const {
+  if (lines_above_ == 0) return std::nullopt;
+  return fmt::format("line {}: {} above the header {} not used", first_line_above_,
+                     lines_above_ == 1 ? "1 line" : fmt::format("{} lines", lines_above_),
+                     lines_above_ == 1 ? "is" : "are");
 }
 
 void CsvReader::split(std::string_view row) {
@@ -326,8 +360,11 @@ std::string cell_problem(const CsvReader& csv, std::size_t cell) {
     cause = "; remove the row, or replace the missing value";
   else if (text.find(',') != std::string_view::npos)
     cause = "; write numbers with a decimal point, without decimal commas and separators of thousands";
-  else if (lower.find_first_of('d') != std::string::npos && lower.find_first_of("0123456789") == 0)
-    cause = "; write an exponent as in 1e-3";
+  else
+    cause = cause_of_exponent(text);
+  const auto has_digit = [](std::string_view word) { return word.find_first_of("0123456789") != std::string::npos; };
+  if (cause.empty() && std::ranges::none_of(csv.cells(), has_digit))
+    cause = "; remove the line if it holds names or units";
   return fmt::format("column {} {}: got {}; allowed: a finite number{}", cell + 1, quoted_token(csv.columns()[cell]),
                      quoted_token(text), cause);
 }
@@ -411,6 +448,7 @@ NumberTable parse_number_table(std::string_view text, const std::filesystem::pat
   NumberTable table;
   table.columns = taken.cells.size();
   table.chosen = taken.chosen;
+  if (auto note = csv.note_of_lines_above()) table.notes.push_back(std::move(*note));
   if (auto note = unused_columns(csv, taken)) table.notes.push_back(std::move(*note));
   // Parse the rows; again if they have decimal commas, because a point is then no decimal point.
   if (const auto line = RowParser(csv, taken, false).read(table, file, max_rows)) {

@@ -24,7 +24,8 @@ void split_cells(std::string_view row, char separator, Words& cells);
 /// Returns the separator that the words of a header most likely have: ';', else a tab, else ',', else white space.
 char separator_in(std::string_view header);
 
-/// Returns true if a line is a comment, which begins with '#' or '%'.
+/// Returns true if a line is a comment, which begins with '#' or '%', or names the separator for a spreadsheet
+/// ("sep=;").
 bool is_comment(std::string_view line);
 
 /// Returns the likely cause of a row with a wrong number of cells, beginning with "; ". Empty if the cause is not
@@ -33,6 +34,9 @@ std::string cause_of_cell_count(std::string_view row, char separator, std::size_
 
 /// Returns true for a number whose decimal separator is a comma, such as "0,002" or "-1,5e-3".
 bool has_decimal_comma(std::string_view cell);
+
+/// Returns "; write an exponent as in 1e-3" for a number such as "1.5D-03", as Fortran writes it; otherwise empty.
+std::string cause_of_exponent(std::string_view cell);
 
 /// The first fault of a table, and the number of rows with faults. A table with a fault in every row gives one message.
 class RowFaults {
@@ -49,11 +53,19 @@ class RowFaults {
   std::string problem_, entry_;
 };
 
+/// Names of a header, and the separator with which it has the largest number of expected names.
+struct HeaderNames {
+  Words names;
+  char separator = ',';
+  std::size_t expected = 0;  ///< number of expected names
+};
+
 /// Reads a table row by row.
 ///
 /// Separators are commas, semicolons, tabs or white space, the same in all rows. Cells may have double quotes. Blank
-/// lines and comments (lines that begin with '#' or '%') are skipped. The header is the first other line, or a
-/// comment before it that has an expected name. A separator at the end of the header or of a row is ignored.
+/// lines and comments (is_comment()) are skipped. The header is the first other line, or a comment before it that has
+/// an expected name. If neither has an expected name, it is the first of the next lines that has two, before a line
+/// that begins with a number. A separator at the end of the header or of a row is ignored.
 class CsvReader {
  public:
   /// Reads the header. `expected`: names of columns, by which the reader finds the header and its separator; without
@@ -64,6 +76,8 @@ class CsvReader {
   const Words& columns() const { return columns_; }
   std::size_t header_line() const { return header_line_; }  ///< line number of the header, from 1; 0 without header
   char separator() const { return separator_; }
+  /// Returns a note about lines above the header that are no comments, such as a title; nothing if there are none.
+  std::optional<std::string> note_of_lines_above() const;
 
   /// Advances to the next row and returns true, or returns false at the end of the text.
   /// Throws InputError if the number of cells differs from the number of columns.
@@ -81,6 +95,8 @@ class CsvReader {
 
  private:
   void find_header(std::span<const std::string_view> expected);
+  /// Replaces `header`, a line without expected names, by a header in one of the next lines, if there is one.
+  void skip_lines_above_header(std::span<const std::string_view> expected, HeaderNames& header);
   void split(std::string_view row);
   /// Finds the separator of the rows, which may differ from the separator of the header.
   void find_separator_of_rows(std::string_view row);
@@ -91,7 +107,7 @@ class CsvReader {
   char separator_ = ',';
   bool has_comments_ = false;  ///< comments are skipped
   bool is_first_row_ = true;
-  std::size_t header_line_ = 0;
+  std::size_t header_line_ = 0, first_line_above_ = 0, lines_above_ = 0;
   Words columns_, cells_;
 };
 

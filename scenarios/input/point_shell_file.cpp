@@ -12,6 +12,7 @@
 #include "scenarios/input/number_table.hpp"
 #include "scenarios/input/read_ply.hpp"
 #include "scenarios/input/size_limits.hpp"
+#include "scenarios/input/text_lines.hpp"
 
 namespace hapbench {
 namespace {
@@ -91,7 +92,7 @@ std::string ply_text(const std::vector<SurfacePoint>& points) {
 }  // namespace
 
 std::string shell_extension(const std::filesystem::path& file) {
-  const std::string extension = file.extension().string();
+  const std::string extension = lower_case(file.extension().string());
   if (extension != ".csv" && extension != ".ply") fail_in_file(file, "has another extension; allowed: .csv or .ply");
   return extension;
 }

@@ -18,13 +18,13 @@ namespace fs = std::filesystem;
 
 /// Statements that describe no surface, such as names, materials, normals and display; and parts of free-form shapes,
 /// which kOtherShapes reports.
-constexpr std::array<std::string_view, 33> kWithoutShape = {
-    "vt",  "vn",    "g",        "o",        "s",    "mg",         "mtllib",    "usemtl", "usemap", "maplib", "bevel",
-    "lod", "trace", "c_interp", "d_interp", "end",  "shadow_obj", "trace_obj", "ctech",  "stech",  "call",   "vp",
-    "deg", "parm",  "cstype",   "bmat",     "step", "trim",       "hole",      "scrv",   "sp",     "con",    "csh"};
-/// Statements with shapes other than polygons.
-constexpr std::array<std::string_view, 10> kOtherShapes = {"p",   "l",   "curv", "curv2", "surf",
-                                                           "bzp", "bsp", "cdc",  "cdp",   "res"};
+constexpr std::array<std::string_view, 31> kWithoutShape = {
+    "vt",   "vn",     "g",        "o",        "s",    "mg",         "mtllib",    "usemtl", "usemap", "maplib", "bevel",
+    "lod",  "trace",  "c_interp", "d_interp", "end",  "shadow_obj", "trace_obj", "ctech",  "stech",  "vp",     "deg",
+    "parm", "cstype", "bmat",     "step",     "trim", "hole",       "scrv",      "sp",     "con"};
+/// Statements with shapes other than polygons, and statements that include another file.
+constexpr std::array<std::string_view, 12> kOtherShapes = {"p",   "l",   "curv", "curv2", "surf", "bzp",
+                                                           "bsp", "cdc", "cdp",  "res",   "call", "csh"};
 
 /// Counts statements that are ignored, to report each kind once.
 class IgnoredStatements {
@@ -107,6 +107,13 @@ MeshFaces read_obj(std::string_view text, const fs::path& file) {
       read_face(lines, faces);
       faces.unfinished_line = lines.may_be_cut() ? lines.line() : 0;
     } else {
+      // The name of a folder, such as "mtllib C:\\models\\", would swallow the next line.
+      if (lines.joined_token() == "v" || lines.joined_token() == "f") {
+        lines.fail(
+            fmt::format("got {} with a backslash at its end, which joins the next line, {}, to it; allowed: a name "
+                        "without a backslash at its end",
+                        quoted_token(words[0]), quoted_token(lines.joined_token())));
+      }
       ignored.add(words[0], lines.line());
     }
   }

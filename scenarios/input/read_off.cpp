@@ -29,22 +29,42 @@ std::string_view keyword_of(std::string_view word) {
   return found == kKinds.end() ? "" : *found;
 }
 
+/// Returns true for the keyword of a file whose vertices have four coordinates (4OFF) or any number of them (nOFF). The
+/// format tells "nOFF" from "NOFF", vertices with normals, by the small letter.
+bool has_other_dimension(std::string_view word) {
+  const std::size_t at = word.find("OFF");
+  return at != std::string_view::npos && word.substr(0, at).find_first_of("4n") != std::string_view::npos &&
+         word.substr(0, at).find_first_not_of("STCN4n") == std::string_view::npos;
+}
+
 /// Counts of the entries, as the header declares them.
 struct Counts {
   std::size_t vertices, faces;
+  bool has_edges;  ///< false: the number of edges may follow in a line of its own
 };
 
-/// Reads the counts, which are in the line of the keyword or in the next line. The keyword has `length` letters.
+/// Reads the counts, which follow the keyword in the same line or in the next lines. The keyword has `length` letters.
 Counts read_counts(std::size_t length, MeshLines& lines) {
+  std::size_t word = length > 0 ? 1 : 0;  // index of the next token in the line
+  const auto next_count = [&](const char* what) {
+    while (word >= lines.words().size()) {
+      if (!lines.next())
+        lines.fail("the file ends before its counts of vertices, faces and edges; allowed: a complete file");
+      word = 0;
+    }
+    return lines.count(word++, what);
+  };
   const std::string_view first = lines.words()[0];
-  if (first.size() > length && length > 0) {
-    const auto vertices = whole_number(first.substr(length));
-    return {*vertices, lines.count(1, "faces")};
-  }
-  const std::size_t word = length > 0 && lines.words().size() > 1 ? 1 : 0;
-  if (length > 0 && word == 0 && !lines.next())
-    lines.fail("the file ends before its counts of vertices, faces and edges; allowed: a complete file");
-  return {lines.count(word, "vertices"), lines.count(word + 1, "faces")};
+  const bool is_glued = length > 0 && first.size() > length;
+  const std::size_t vertices = is_glued ? whole_number(first.substr(length)).value() : next_count("vertices");
+  const std::size_t faces = next_count("faces");
+  const std::size_t left = lines.words().size() - word;
+  if (left > 3)
+    lines.fail(
+        fmt::format("got {} values after the counts of vertices and faces; allowed: the number of edges, and then "
+                    "each vertex and each face in a line of its own",
+                    left));
+  return {vertices, faces, left > 0};
 }
 
 /// Parses the part of the file after the header. Ignores tokens after the position of a vertex or the corners of a
@@ -52,7 +72,10 @@ Counts read_counts(std::size_t length, MeshLines& lines) {
 MeshFaces read_entries(const Counts& counts, MeshLines& lines) {
   MeshFaces faces;
   for (std::size_t i = 0; i < counts.vertices; ++i) {
-    if (!lines.next()) lines.fail_at_end(i, counts.vertices, "vertices");
+    const bool has_line = lines.next();
+    const bool is_edges = has_line && i == 0 && !counts.has_edges && lines.words().size() == 1 &&
+                          whole_number(lines.words()[0]).has_value();
+    if (!has_line || (is_edges && !lines.next())) lines.fail_at_end(i, counts.vertices, "vertices");
     faces.add_vertex(lines.position(0), lines.line());
   }
   for (std::size_t i = 0; i < counts.faces; ++i) {
@@ -84,6 +107,11 @@ MeshFaces read_off(std::string_view text, const fs::path& file) {
   const bool has_counts = header.size() == 3 && std::ranges::all_of(header, [](std::string_view word) {
                             return whole_number(word).has_value();
                           });
+  if (has_other_dimension(header[0]))
+    lines.fail(
+        fmt::format("got {}, whose vertices do not have three coordinates; allowed: OFF, perhaps with ST, C or N "
+                    "before it",
+                    quoted_token(header[0])));
   if (keyword.empty() && !has_counts) refuse();
   if (header.size() > 1 && lower_case(header[1]) == "binary")
     lines.fail("is a binary OFF file; allowed: a text, or binary PLY or STL");

@@ -90,23 +90,24 @@ class PlyHeader {
     if (!format_) fail("allowed: a header with \"format\"");
     // Drop the elements after the last element that is needed.
     const std::string_view name = wanted == Wanted::points ? "vertex" : "face";
-    const auto last = std::ranges::find(elements_, name, &Element::name);
-    if (last == elements_.end()) {
+    if (std::ranges::find(elements_, name, &Element::name) == elements_.end()) {
       const bool has_strips = std::ranges::find(elements_, "tristrips", &Element::name) != elements_.end();
       fail(fmt::format("has no {}; allowed: \"element {} COUNT\"{}", name, name,
                        has_strips ? " (triangle strips are not read: export the mesh with faces)" : ""));
     }
-    has_more_elements_ = last + 1 != elements_.end();
-    elements_.erase(last + 1, elements_.end());
+    const auto is_needed = [name](const Element& element) { return element.is_vertex() || element.name == name; };
+    const auto end = std::find_if(elements_.rbegin(), elements_.rend(), is_needed).base();
+    has_more_elements_ = end != elements_.end();
+    elements_.erase(end, elements_.end());
     // Check the properties.
     check_vertices();
-    if (wanted == Wanted::faces && elements_.back().count(kCorners) != 1) {
-      fail_in_line(file_, elements_.back().line,
-                   "allowed for a face: one \"property list COUNT INDEX vertex_indices\"");
-    }
+    const auto needed = std::ranges::find(elements_, name, &Element::name);
+    if (wanted == Wanted::faces && needed->count(kCorners) != 1)
+      fail_in_line(file_, needed->line, "allowed for a face: one \"property list COUNT INDEX vertex_indices\"");
   }
 
-  /// Returns the elements up to the vertices (for points) or the faces (for a surface). Later elements are not read.
+  /// Returns the elements up to the vertices (for points), or up to both vertices and faces (for a surface). Later
+  /// elements are not read.
   const std::vector<Element>& elements() const { return elements_; }
   /// Returns true if the file has elements after elements().
   bool has_more_elements() const { return has_more_elements_; }
@@ -130,11 +131,13 @@ class PlyHeader {
     } else if (first == "element") {
       const auto entries = words.size() == 3 ? whole_number(words[2]) : std::nullopt;
       if (!entries) fail("allowed: \"element NAME COUNT\"");
+      if (std::ranges::find(elements_, words[1], &Element::name) != elements_.end())
+        fail(fmt::format("the element {} is declared twice; allowed: once", quoted_token(words[1])));
       elements_.push_back({words[1], lines_.line(), *entries});
     } else if (first == "property") {
       if (elements_.empty()) fail("got a property before an element; allowed: after one");
       elements_.back().properties.push_back(property(words));
-    } else if (first != "comment" && first != "obj_info") {
+    } else if (!first.empty() && first != "comment" && first != "obj_info") {
       fail(fmt::format("got {}; allowed: format, comment, obj_info, element, property, end_header",
                        quoted_token(first)));
     }
@@ -179,7 +182,7 @@ class PlyHeader {
                          fmt::join(kVertexProperties.begin(), kVertexProperties.begin() + numbers_, ", ")));
       }
     }
-    if (std::ranges::none_of(elements_, &Element::is_vertex)) fail("allowed before the faces: vertices");
+    if (std::ranges::none_of(elements_, &Element::is_vertex)) fail("has no vertex; allowed: \"element vertex COUNT\"");
   }
 
   [[noreturn]] void fail(const std::string& problem) const { fail_in_line(file_, lines_.line(), problem); }

@@ -21,8 +21,50 @@ namespace fs = std::filesystem;
 // Sizes in a binary file [bytes]: the name, the name with the number of triangles, and one triangle.
 constexpr std::size_t kName = 80, kHeader = 84, kTriangle = 50;
 
-/// Keywords of a text, without "vertex", which read_loop() reads.
-constexpr std::array<std::string_view, 6> kKeywords = {"solid", "facet", "outer", "endloop", "endfacet", "endsolid"};
+/// Keywords of a text.
+constexpr std::array<std::string_view, 7> kKeywords = {"solid",   "facet",    "outer",   "vertex",
+                                                       "endloop", "endfacet", "endsolid"};
+
+/// Reads the keywords of a text one by one, in lower case. Line ends separate tokens as blanks do.
+class StlKeywords {
+ public:
+  StlKeywords(std::string_view text, const fs::path& file) : lines_(LineReader(text), file) {}
+
+  /// Advances to the next keyword. Ignores other tokens in its line: normals, colours and names. Returns false at the
+  /// end of the text.
+  bool next() {
+    const bool is_name = keyword_ == "solid" || keyword_ == "endsolid";  // a name may hold keywords
+    do {
+      ++word_;
+    } while (word_ < lines_.words().size() && (is_name || !is_keyword(lines_.words()[word_])));
+    if (word_ >= lines_.words().size()) {
+      word_ = 0;
+      if (!lines_.next()) return false;
+      if (!is_keyword(lines_.words()[0])) {
+        lines_.fail(
+            fmt::format("got {}; allowed: solid, facet, outer loop, three times vertex, endloop, endfacet, endsolid",
+                        quoted_token(lines_.words()[0])));
+      }
+    }
+    keyword_ = lower_case(lines_.words()[word_]);
+    return true;
+  }
+  const std::string& keyword() const { return keyword_; }
+  /// Returns the three coordinates after "vertex".
+  Vec3 position() const { return lines_.position(word_ + 1); }
+  const MeshLines& lines() const { return lines_; }
+
+ private:
+  static bool is_keyword(std::string_view word) {
+    // Most tokens are numbers, which no letter begins.
+    const bool has_letter = ('a' <= word[0] && word[0] <= 'z') || ('A' <= word[0] && word[0] <= 'Z');
+    return has_letter && std::ranges::find(kKeywords, lower_case(word)) != kKeywords.end();
+  }
+
+  MeshLines lines_;
+  std::size_t word_ = 0;  ///< index of the keyword in the line
+  std::string keyword_;
+};
 
 /// Appends a vertex that belongs to the current triangle only. `line` is 0 in a binary file.
 void add_corner(const Vec3& corner, std::size_t line, MeshFaces& faces) {
@@ -31,37 +73,36 @@ void add_corner(const Vec3& corner, std::size_t line, MeshFaces& faces) {
 }
 
 /// Reads the three vertices after "outer loop".
-void read_loop(MeshLines& lines, MeshFaces& faces) {
-  const std::size_t first_line = lines.line();
+void read_loop(StlKeywords& keywords, MeshFaces& faces) {
+  const std::size_t first_line = keywords.lines().line();
   for (int corner = 0; corner < 3; ++corner) {
-    if (!lines.next()) {
-      lines.fail(
+    if (!keywords.next()) {
+      keywords.lines().fail(
           fmt::format("the file is cut short: it ends within triangle {}; allowed: a complete file, up to "
                       "\"endsolid\"",
                       faces.ends.size()));
     }
-    if (lower_case(lines.words()[0]) != "vertex") lines.fail("allowed after \"outer loop\": three vertices");
-    add_corner(lines.position(1), lines.line(), faces);
+    if (keywords.keyword() != "vertex") keywords.lines().fail("allowed after \"outer loop\": three vertices");
+    add_corner(keywords.position(), keywords.lines().line(), faces);
   }
   faces.end_face(first_line);
 }
 
 MeshFaces read_stl_text(std::string_view text, const fs::path& file) {
   MeshFaces faces{.vertices = {}, .face_name = "triangle"};
-  MeshLines lines{LineReader(text), file};
+  StlKeywords keywords(text, file);
   std::string last;
-  while (lines.next()) {
-    std::string first = lower_case(lines.words()[0]);
-    if (std::ranges::find(kKeywords, first) == kKeywords.end()) {
-      lines.fail(
-          fmt::format("got {}; allowed: solid, facet, outer loop, three times vertex, endloop, endfacet, endsolid",
-                      quoted_token(lines.words()[0])));
-    }
-    if (first == "outer") read_loop(lines, faces);
-    last = std::move(first);
+  while (keywords.next()) {
+    const std::string& keyword = keywords.keyword();
+    if (keyword == "vertex")
+      keywords.lines().fail("got \"vertex\"; allowed: three times vertex after each \"outer loop\"");
+    if (last == "facet" && keyword != "outer")
+      keywords.lines().fail(fmt::format("got {} after \"facet\"; allowed: \"outer loop\" and three vertices", keyword));
+    last = keyword;
+    if (last == "outer") read_loop(keywords, faces);
   }
   if (last != "endsolid") {
-    lines.fail(
+    keywords.lines().fail(
         fmt::format("the file is cut short: it ends after {} triangles and \"{}\", without \"endsolid\"; "
                     "allowed: a complete file (if this file is complete, append \"endsolid\")",
                     faces.ends.size(), last));

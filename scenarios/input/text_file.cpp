@@ -20,11 +20,16 @@ static void refuse_other_encodings(const std::string& text) {
   const auto begins = [&text](std::string_view bytes) { return text.starts_with(bytes); };
   const auto is_ascii = [&text](std::size_t i) { return i < text.size() && text[i] > 0; };
   const auto is_zero = [&text](std::size_t i) { return i < text.size() && text[i] == 0; };
+  // Without the mark, two characters and their zero bytes show the encoding.
+  const auto is_ascii_pair = [&](std::size_t i) { return is_ascii(i) && is_ascii(i + 2); };
+  const auto is_zero_pair = [&](std::size_t i) { return is_zero(i) && is_zero(i + 2); };
+  const bool has_no_mark = (is_ascii_pair(0) && is_zero_pair(1)) || (is_zero_pair(0) && is_ascii_pair(1));
   const bool little = begins("\xFF\xFE") && ((is_ascii(2) && is_zero(3)) || (is_zero(2) && is_zero(3)));
   const bool big = begins("\xFE\xFF") && is_zero(2) && is_ascii(3);
-  if (little || big) throw InputError("is a text in UTF-16 or UTF-32; allowed: UTF-8 (save the file in this encoding)");
-  if (begins("\x1F\x8B") || begins("PK\x03\x04"))
-    throw InputError("is compressed; allowed: the unpacked file (gzip -d, unzip)");
+  if (little || big || has_no_mark)
+    throw InputError("is a text in UTF-16 or UTF-32; allowed: UTF-8 (save the file in this encoding)");
+  for (const std::string_view start : {"\x1F\x8B", "PK\x03\x04", "BZh91AY&SY", "\xFD\x37zXZ", "\x28\xB5\x2F\xFD"})
+    if (begins(start)) throw InputError("is compressed; allowed: the unpacked file (gzip -d, unzip, bzip2 -d, xz -d)");
 }
 
 std::string read_text_file(const std::filesystem::path& file, std::uintmax_t largest) {

@@ -176,10 +176,9 @@ LoopLog read_loop_log(const fs::path& file) {
   const Words names = parts_of(header, ',');
   LoopLog log;
   bool has_setup = false, has_header = false;
-  std::size_t number = 0;
-  for (std::string_view line : parts_of(text, '\n')) {
-    ++number;
-    line = trimmed(line);
+  LineReader lines(text);
+  while (const auto next = lines.next()) {
+    const std::string_view line = trimmed(*next);
     if (line.empty()) continue;
     try {
       if (!has_setup) {
@@ -206,7 +205,7 @@ LoopLog read_loop_log(const fs::path& file) {
         log.outputs.push_back(out);
       }
     } catch (const InputError& error) {
-      fail_in_line(file, number, error.what());
+      fail_in_line(file, lines.line(), error.what());
     }
   }
   if (log.inputs.empty()) fail_in_file(file, "has no calls; allowed: a log with a row for every call");

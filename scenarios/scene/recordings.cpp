@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <span>
@@ -63,6 +64,30 @@ std::string quaternion_problem(const Eigen::Quaterniond& q) {
   return fmt::format("got a quaternion qw,qx,qy,qz of norm {}; allowed: 1 within {}", norm, kMaxNormError);
 }
 
+/// Axes whose length is not 1.
+struct OtherLengths {
+  std::size_t count = 0, first_line = 0;
+  double smallest = 0.0, largest = 0.0;
+
+  void add(double length, std::size_t line) {
+    if (std::abs(length - 1.0) <= kMaxNormError) return;
+    if (count++ == 0) {
+      first_line = line;
+      smallest = largest = length;
+    }
+    smallest = std::min(smallest, length);
+    largest = std::max(largest, length);
+  }
+  /// Adds a note if there are such axes.
+  void note(std::vector<std::string>& notes) const {
+    if (count == 0) return;
+    notes.push_back(
+        fmt::format("line {}: axes were divided by their lengths, which are not 1: {}, of length {:.4g} ... "
+                    "{:.4g}; are they directions?",
+                    first_line, count, smallest, largest));
+  }
+};
+
 constexpr std::size_t kMaxContacts = 20'000'000;      ///< maximum number of contacts of a recording
 constexpr std::size_t kMaxContactsPerTime = 100'000;  ///< maximum number of contacts with the same time
 /// Allowed deviation of a gradient's norm from 1. Three decimals in the file suffice.
@@ -89,6 +114,7 @@ Stroke parse_stroke(std::string_view text, const std::filesystem::path& file, st
   samples.reserve(table.rows());
   std::vector<ReferenceForce::Sample> forces;
   if (has_force) forces.reserve(table.rows());
+  OtherLengths other_lengths;
   for (std::size_t i = 0; i < table.rows(); ++i) {
     const auto row = table.row(i);
     RecordedMotion::Sample sample{row[0], {row[1], row[2], row[3]}};
@@ -96,6 +122,7 @@ Stroke parse_stroke(std::string_view text, const std::filesystem::path& file, st
     if (has_axis) {
       const Vec3 axis(row[4], row[5], row[6]);
       problem = axis_problem(axis);
+      if (problem.empty()) other_lengths.add(axis.norm(), table.line_of(i));
       sample.axis = axis.normalized();
     } else {
       const Eigen::Quaterniond turn(row[4], row[5], row[6], row[7]);
@@ -112,6 +139,7 @@ Stroke parse_stroke(std::string_view text, const std::filesystem::path& file, st
     if (has_force) forces.push_back({row[0], {row[pose], row[pose + 1], row[pose + 2]}});
   }
   faults.throw_if_any();
+  if (notes != nullptr) other_lengths.note(*notes);
   Stroke stroke{RecordedMotion(std::move(samples)), {}};
   if (has_force) stroke.force.emplace(std::move(forces));
   return stroke;

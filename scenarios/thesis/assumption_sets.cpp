@@ -95,13 +95,15 @@ std::vector<AssumptionSet> read_assumption_sets(const fs::path& file, const Assu
   const std::string text = read_named_file(file);
   const std::vector<std::string> ids = names_of(assumptions.all(), &Assumption::id);
   CsvReader csv(LineReader(text), file, Words(ids.begin(), ids.end()));
+  if (const auto note = csv.note_of_lines_above())
+    fail_in_file(file, *note + "; allowed: comments, which begin with #");
   std::vector<std::size_t> assumption_of_column;  // index of the assumption of each column
   for (const std::string_view column : csv.columns()) {
     const std::string id(column);
     require_valid_name(file.string() + ": got the column", id, ids, "hapbench describe assumptions");
     const auto index = static_cast<std::size_t>(std::find(ids.begin(), ids.end(), id) - ids.begin());
     if (std::ranges::find(assumption_of_column, index) != assumption_of_column.end())
-      fail_in_file(file, fmt::format("got the column \"{}\" twice; allowed: each once", id));
+      fail_in_line(file, csv.header_line(), fmt::format("got the column \"{}\" twice; allowed: each once", id));
     assumption_of_column.push_back(index);
   }
   std::vector<AssumptionSet> sets;

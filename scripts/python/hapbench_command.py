@@ -298,6 +298,12 @@ def answer(options, text, data):
         print(json.dumps(data, indent=2, ensure_ascii=False) if options.json else text)
 
 
+def file_word(file):
+    """A file name as a word of a command: no option, even if it begins with "-"."""
+    name = str(file)
+    return f"./{name}" if name.startswith("-") else name
+
+
 def shell_line(*words):
     return " ".join(map(shlex.quote, map(str, words)))
 

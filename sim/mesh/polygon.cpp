@@ -35,7 +35,8 @@ const DividedPolygon& PolygonDivider::divide(std::span<const Vec3> corners) {
     throw PolygonError("is not planar: a corner is off its plane by " + percent(divided_.unevenness) +
                        " of its diameter; allowed: " + percent(kMaxUnevenness) + ", or triangles");
   }
-  if (!has_plane || is_fan_valid()) {
+  const Fan fan = has_plane ? this->fan() : Fan::good;
+  if (fan == Fan::good || (fan == Fan::has_flat_triangles && corners.size() > kMaxPolygonCorners)) {
     for (std::uint32_t k = 2; k < corners.size(); ++k) divided_.triangles.push_back({0, k - 1, k});
     return divided_;
   }
@@ -93,26 +94,33 @@ bool PolygonDivider::project(std::span<const Vec3> corners) {
   return true;
 }
 
-/// Returns true if the polygon is star-shaped from its first corner: the directions to the other corners turn
-/// counter-clockwise only, and by less than a full turn in sum.
-bool PolygonDivider::is_fan_valid() const {
+/// Judges the fan by the directions from the first corner to the other corners. They must turn counter-clockwise only,
+/// and by less than a full turn in sum.
+PolygonDivider::Fan PolygonDivider::fan() const {
   const Point &first = points_[0], *start = nullptr, *last = nullptr;
-  bool is_past_half = false;
+  bool is_past_half = false, has_flat = false;
   for (std::size_t i = 1; i < points_.size(); ++i) {
     const Point& p = points_[i];
-    if (is_same_position(first, p)) continue;
+    if (is_same_position(first, p)) {
+      has_flat = true;
+      continue;
+    }
     if (last != nullptr) {
       const double turn = doubled_area(first, *last, p), from_start = doubled_area(first, *start, p);
       const double dot = (last->x - first.x) * (p.x - first.x) + (last->y - first.y) * (p.y - first.y);
-      if (turn < -rounding_ || (turn <= 0.0 && dot < 0.0)) return false;
+      if (turn < -rounding_ || (turn <= 0.0 && dot < 0.0)) return Fan::invalid;
       if (from_start < -rounding_) is_past_half = true;
-      if (is_past_half && from_start > rounding_) return false;
+      if (is_past_half && from_start > rounding_) return Fan::invalid;
+      // A triangle is flat if its height over the longest side does not count.
+      const double longest =
+          std::max({squared_distance(first, *last), squared_distance(first, p), squared_distance(*last, p)});
+      if (turn <= rounding_ * std::sqrt(longest)) has_flat = true;
     } else {
       start = &p;
     }
     last = &p;
   }
-  return true;
+  return has_flat ? Fan::has_flat_triangles : Fan::good;
 }
 
 void PolygonDivider::drop_repeated_corners() {
@@ -185,14 +193,23 @@ double PolygonDivider::ear_quality(std::size_t i) const {
   if (is_same_position(a, c)) return kSpike;
   const double area = doubled_area(a, b, c);
   if (area <= kFlat) return 0.0;
-  // A corner inside the triangle blocks the ear. Only reflex corners and corners on a line need a test.
-  for (std::size_t j = 0; j < points_.size(); ++j) {
-    const Point& p = points_[j];
-    if (doubled_area(a, b, p) < 0.0 || doubled_area(b, c, p) < 0.0 || doubled_area(c, a, p) < 0.0) continue;
-    if (is_same_position(p, a) || is_same_position(p, b) || is_same_position(p, c)) continue;
-    if (doubled_area_at(j) <= kFlat) return 0.0;
-  }
+  for (std::size_t j = 0; j < points_.size(); ++j)
+    if (blocks(j, a, b, c)) return 0.0;
   return area / (squared_distance(a, b) + squared_distance(b, c) + squared_distance(c, a));
+}
+
+bool PolygonDivider::blocks(std::size_t j, const Point& a, const Point& b, const Point& c) const {
+  const Point& p = points_[j];
+  if (doubled_area(a, b, p) < 0.0 || doubled_area(b, c, p) < 0.0) return false;
+  const double inside = doubled_area(c, a, p);
+  if (inside >= 0.0) {
+    // Only reflex corners and corners on a line need a test.
+    if (is_same_position(p, a) || is_same_position(p, b) || is_same_position(p, c)) return false;
+    return doubled_area_at(j) <= kFlat;
+  }
+  // A corner on the new edge, except for rounding, would remain with a flat triangle.
+  const double length2 = squared_distance(c, a), along = (p.x - c.x) * (a.x - c.x) + (p.y - c.y) * (a.y - c.y);
+  return -inside <= rounding_ * std::sqrt(length2) && along > 0.0 && along < length2;
 }
 
 std::size_t PolygonDivider::flattest_corner() const {

@@ -35,10 +35,11 @@ struct DividedPolygon {
 /// The plane of a polygon passes through the mean of its corners and is normal to its area vector. The polygon is
 /// divided in its projection onto this plane:
 ///
-/// - as a fan around its first corner, if no triangle of the fan is reversed. This includes all convex polygons, and
-/// polygons without area.
-/// - by ear clipping otherwise, the best-shaped ear first. O(n^2). A boundary that touches itself is allowed, such as
-/// the bridge between an outline and a hole.
+/// - as a fan around its first corner, if no triangle of the fan is reversed or flat. This includes all convex polygons
+/// without corners on a line, and polygons without area.
+/// - by ear clipping otherwise, the best-shaped ear first. O(n^2). A flat triangle would make an edge of the polygon
+/// the edge of three triangles, because the neighbour of the polygon has the same corners on this edge. A boundary that
+/// touches itself is allowed, such as the bridge between an outline and a hole.
 ///
 /// Differences below the rounding error of single precision do not count. Throws PolygonError if the polygon crosses
 /// itself, is not planar (kMaxUnevenness), or has too many corners (kMaxPolygonCorners). Preconditions: at least 3
@@ -63,13 +64,17 @@ class PolygonDivider {
 
   /// Sets `points_`, `rounding_` and the unevenness. Returns false if all corners are on a line.
   bool project(std::span<const Vec3> corners);
-  bool is_fan_valid() const;
+  /// Fan around the first corner: covers the polygon once, does so with triangles without area, or not at all.
+  enum class Fan { good, has_flat_triangles, invalid };
+  Fan fan() const;
   void drop_repeated_corners();
   void refuse_crossings() const;
   bool turns_once() const;
   void clip_ears();
   /// Returns the shape quality of the ear at remaining corner `i`; 0 if there is no ear.
   double ear_quality(std::size_t i) const;
+  /// Returns true if remaining corner `j` forbids to clip the ear a, b, c: it is in the ear, or on its new edge c, a.
+  bool blocks(std::size_t j, const Point& a, const Point& b, const Point& c) const;
   /// Returns the remaining corner to clip if there is no ear because of rounding.
   std::size_t flattest_corner() const;
   void clip(std::size_t i);

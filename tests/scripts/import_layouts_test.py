@@ -1,10 +1,13 @@
 """Recordings of other programs: columns, texts, units, clocks and held rows."""
 from datetime import datetime, timedelta
+from types import SimpleNamespace
 
 import numpy as np
 from scipy.spatial.transform import Rotation
 
 from recordings import Given, moved, table
+
+from hapbench_identify.log import read_log
 
 
 class Layouts(Given):
@@ -167,6 +170,219 @@ class Layouts(Given):
         bare = comma.partition("\n")[2]
         self.assert_places(bare, "time=1,position=2")
         self.assertEqual(self.assert_places(comma, decimal="comma")[0], "")
+
+    def test_headers_of_several_lines_are_read(self):
+        rows = self.PLAIN.partition("\n")[2]
+        tabs = rows.replace(",", "\t")
+        below = "the names of columns are those of line"
+        for data, columns, said in (
+            ("Time,Tip,Tip,Tip\n" + self.PLAIN, "time=t,position=x", f"{below} 2"),
+            (",Tip,Tip,Tip\n,pos,pos,pos\n" + self.PLAIN, "time=t,position=x", f"{below} 3"),
+            (
+                "Version,1.23,Rate,500\n\n,Body,Body,Body\n,Tip,Tip,Tip\nTime (Seconds),X,Y,Z\n"
+                + rows,
+                "time=Time,position=X",
+                f"lines 3 ... 5 are the header: {below} 5",
+            ),
+            (
+                "LabVIEW Measurement\t\nWriter_Version\t2\n***End_of_Header***\t\n\nChannels\t3\t\t\t\n"
+                f"***End_of_Header***\t\t\t\t\nX_Value\tx\ty\tz\tComment\n{tabs}",
+                "time=X_Value,position=x",
+                "column 5 Comment has no value in 100 lines, the first: line 8",
+            ),
+            (
+                "t;x;y;z;Comment\n" + rows.replace(",", ";").replace("\n", ";begin\n", 1),
+                "time=t,position=x",
+                "has no value in 99 lines, the first: line 3",
+            ),
+            ('"t" "x" "y" "z"\n' + rows.replace(",", " "), "time=t,position=x", ""),
+            (self.PLAIN.replace("\n0.1,", "\n,,,\n0.1,"), "time=t,position=x", ""),
+        ):
+            warned, _ = self.assert_places(data, columns)
+            self.assertIn(said, warned)
+            self.assertEqual(bool(said), bool(warned), warned)
+        # Groups and components of which neither names a column alone are joined.
+        named = "Tip,Tip,Tip,Hand,Hand,Hand\nx,y,z,x,y,z\n"
+        data = (
+            "Time,"
+            + named.replace("\n", "\n,", 1)
+            + "\n".join(f"{row},1,1,1" for row in rows.splitlines())
+        )
+        warned, found = self.assert_places(data, "time=Time,position=Tip")
+        self.assertIn('join them, as in "Hand.z"', warned)
+        self.assertEqual(self.columns(found, "position"), [2, 3, 4])
+        # Units that are not known are asked for.
+        self.assertIn(
+            'the unit "counts" is unknown: --scale position=...',
+            self.refusal("t,x,y,z\ns,counts,counts,counts\n" + rows, "time=t,position=x"),
+        )
+        # Below a header are numbers, or it is one line.
+        self.assertIn(
+            'line 2: column 1 t: got "a"; allowed: a finite number',
+            self.refusal("t,x,y,z\na,b,c,d\ne,f,g,h\n", "time=t,position=x"),
+        )
+        self.assertIn(
+            'line 2: column 1 t: got "NA"',
+            self.refusal("t,x,y,z\nNA,NA,NA,NA\n" + rows, "time=t,position=x"),
+        )
+
+    def test_what_is_no_text_is_named(self):
+        wide = self.PLAIN.encode("utf-16-le")
+        for data, said in (
+            (wide, "the text is UTF-16; it was read as such"),
+            (self.PLAIN.encode("utf-16-be"), "the text is UTF-16"),
+            (self.PLAIN.encode("utf-32"), "the text is UTF-32"),
+            (("# 3 µm\n" + self.PLAIN).encode("cp1252"), "not UTF-8; it was read as Windows-1252"),
+            (self.PLAIN.encode() + b"\0\0\0", "3 bytes after the text ignored (zero)"),
+            (self.PLAIN.encode() + b"\x1a", "1 byte after the text ignored (Ctrl-Z"),
+        ):
+            self.assertIn(said, self.assert_places(data)[0])
+        units = table("t [µs],x [µm],y [µm],z [µm]", 1e6 * self.TIME, 1e6 * self.PLACES)
+        self.assert_places(units.encode("cp1252"))
+        for data, said in (
+            (
+                b"\x1f\x8b\x08",
+                "rec.csv: is compressed (gzip), not a text; allowed: a text, such as CSV",
+            ),
+            (b"PK\x03\x04", "a workbook .xlsx"),
+            (b"\x89HDF\r\n", "an HDF5 file"),
+            (b"#ROSBAG V2.0\n", "a ROS bag"),
+            (
+                self.PLAIN.encode() + b"\0\1\2" + self.PLAIN.encode(),
+                "line 102: has a zero byte: it is no text",
+            ),
+            (
+                self.PLAIN.replace(",", "|"),
+                'got "t"; allowed between columns: commas, semicolons, tabs or blanks',
+            ),
+        ):
+            self.assertIn(said, self.refusal(data, "time=t,position=x"))
+
+    def test_clocks_in_two_columns_counters_and_days(self):
+        log = "header.stamp.secs,header.stamp.nsecs,x,y,z\n" + "".join(
+            f"{1764288000 + (2 * i) // 1000},{(2 * i) % 1000 * 10**6},{','.join(map(repr, row))}\n"
+            for i, row in enumerate(self.PLACES.tolist())
+        )
+        for names in (
+            "stamp_sec,stamp_nanosec",
+            "sec,nsec",
+            "header.stamp.secs,header.stamp.nsecs",
+        ):
+            stroke, found = self.report(
+                log.replace("header.stamp.secs,header.stamp.nsecs", names, 1),
+                f"time={names.partition(',')[0]},position=x",
+            )
+            np.testing.assert_allclose(stroke.time, self.TIME, atol=1e-9)
+            self.assertEqual(self.columns(found, "time"), [1, 2])
+            self.assertEqual(found["warnings"], [])
+        rows = table("t,x,y,z", np.arange(100), self.PLACES)
+        self.assertIn(
+            "or numbers of rows? (--set sample_rate_Hz=", self.refusal(rows, "time=t,position=x")
+        )
+        days = table("t,x,y,z", 46354.25 + self.TIME / 86400, self.PLACES, number="%.17g")
+        _, found = self.report(days, "time=t,position=x")
+        self.assertIn(
+            "are the times days, as those of spreadsheets and MATLAB? (with --scale time=86400",
+            found["warnings"][0],
+        )
+        of_day = "t,x,y,z\n" + "".join(
+            f"2026/11/28 05:59:{0.002 * i:06.3f},{','.join(map(repr, row))}\n"
+            for i, row in enumerate(self.PLACES.tolist())
+        )
+        self.assertIn("are read as seconds since the first", self.assert_places(of_day)[0])
+        self.assertIn(
+            'allowed: a finite number or a time of day, such as "05:59:00.002"',
+            self.refusal(of_day.replace("2026/11/28", "28.11.2026"), "time=t,position=x"),
+        )
+        fortran = (
+            table("t,x,y,z", self.TIME, self.PLACES, number="%.9e")
+            .replace("e-", "D-")
+            .replace("e+", "D+")
+        )
+        self.assertIn(
+            "; write an exponent as in 1e-3 (100 rows", self.refusal(fortran, "time=t,position=x")
+        )
+
+    def test_a_log_of_a_device_is_read_by_the_same_rules(self):
+        force = np.sin(20 * self.TIME)
+        seconds = 1764288000 + np.floor(self.TIME)
+        nanoseconds = np.round(self.TIME % 1 * 1e9)
+        columns = (self.TIME, force, self.PLACES[:, 0])
+
+        def read(data, *asked):
+            options = SimpleNamespace(
+                columns=list(asked),
+                scale=[],
+                decimal=None,
+                skip_bad_rows=False,
+                log=self.write(data),
+            )
+            return read_log(options)
+
+        names = "time_s,force_N,position_m"
+        for data, asked, said in (
+            (table(names, *columns).encode("utf-16-be"), (), "the text is UTF-16"),
+            ("Time,Command,Encoder\n" + table(names, *columns), (), "those of line 2"),
+            (
+                table(f"stamp.secs,stamp.nsecs,{names[7:]}", seconds, nanoseconds, *columns[1:]),
+                ("time=stamp.secs",),
+                "",
+            ),
+            (
+                table("time_s,force_N,x_cm", *columns),
+                ("position=x_cm",),
+                "is read as m; if its name says cm",
+            ),
+            (
+                table("time_s,position_m,force_N", *columns),
+                ("force=2", "position=3"),
+                "the column of force is 2 position_m, which is named as position",
+            ),
+        ):
+            log = read(data, *asked)
+            np.testing.assert_allclose(log.time - log.time[0], self.TIME, atol=1e-9)
+            np.testing.assert_allclose(log.force, force, atol=1e-8)
+            np.testing.assert_allclose(log.position, self.PLACES[:, 0], atol=1e-9)
+            self.assertIn(said, "".join(log.warnings))
+            self.assertEqual(bool(said), bool(log.warnings))
+
+    def test_names_against_quantities_and_lengths_of_axes(self):
+        force = np.column_stack([0.1 + 0 * self.TIME, 0 * self.TIME, 0.5 + 0 * self.TIME])
+        _, found = self.report(
+            table("t,fx,fy,fz,x,y,z", self.TIME, 1e-3 * force, self.PLACES),
+            "time=1,position=2,force=5",
+        )
+        self.assertIn(
+            "columns of position are 2 fx, 3 fy, 4 fz, which are named as force",
+            found["warnings"][0],
+        )
+        self.assertIn(
+            "columns of force are 5 x, 6 y, 7 z, which are named as position", found["warnings"][1]
+        )
+        warned, _ = self.assert_places(
+            table("t,fx,fy,fz,x,y,z", self.TIME, force, self.PLACES), "time=1,position=5,force=2"
+        )
+        self.assertEqual(warned, "")
+        for vectors, said in (
+            (np.degrees(self.TURNS.as_euler("xyz")), "Euler angles"),
+            (self.TURNS.as_rotvec(), "the axes have lengths of 0.9"),
+        ):
+            _, found = self.report(
+                table("t,x,y,z,a,b,c", self.TIME, self.PLACES, vectors),
+                "time=t,position=x,orientation=5",
+                orientation="axis",
+            )
+            self.assertIn(said, found["warnings"][0])
+        self.assertIn(
+            "column 2 x_cm is read as m; if its name says cm, --scale position=0.01",
+            self.report(table("t,x_cm,y_cm,z_cm", self.TIME, self.PLACES), "time=t,position=x_cm")[
+                1
+            ]["warnings"],
+        )
+        self.assertIn(
+            "--scale position=1e-06 is for micrometres",
+            self.refusal(table("t,x,y,z", self.TIME, 1e6 * self.PLACES), "time=t,position=x"),
+        )
 
     def test_commas_that_are_not_clear_are_refused(self):
         between = (

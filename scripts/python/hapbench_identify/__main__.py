@@ -11,6 +11,7 @@ from hapbench_command import (
     answer,
     exit_status,
     fail,
+    file_word,
     finite_number,
     leave,
     refuse_source,
@@ -139,7 +140,7 @@ def run(options):
         "play these forces on the device, log time_s,force_N,position_m, then "
         f"{shell_line('hapbench', 'import', 'device', 'LOG.csv')}"
         if options.design
-        else shell_line("hapbench", "limit", "tap_wall", "--device", out)
+        else shell_line("hapbench", "limit", "tap_wall", "--device", file_word(out))
     )
     read = "" if kind else f"{log_text(data)}\n"
     answer(

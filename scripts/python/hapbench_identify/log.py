@@ -5,7 +5,7 @@ from types import SimpleNamespace
 
 import numpy as np
 from hapbench_command import MOST_FAULTS, Faults, fail, finite_number, quoted, require_name
-from hapbench_import.columns import Names, scale_of
+from hapbench_import.columns import NAMED_AS, Names, scale_of
 from hapbench_import.holds import hold_of
 from hapbench_import.recording import open_recording
 
@@ -50,6 +50,11 @@ def read_log(options):
     found = {name: _index(names, name, word) for name, word in columns.items()}
     if len(set(found.values())) < len(found):
         fail(f"columns: got one column for two of {', '.join(NAMES)}", recording.file)
+    for name, other in (("force", "position"), ("position", "force")):
+        if NAMED_AS[other].fullmatch(names.bare[found[name]].lower()):
+            notes.append(
+                f"the column of {name} is {names.title(found[name])}, which is named as {other}"
+            )
     scales = {
         name: scale_of(names, name, [column], scale.get(name), notes)
         for name, column in found.items()
@@ -57,7 +62,8 @@ def read_log(options):
     force, position = (
         scales[name] * recording.column(found[name]) for name in ("force", "position")
     )
-    time = scales["time"] * recording.clock(found["time"], scales["time"])[1]
+    clock = [found["time"], *names.nanoseconds([found["time"]])]
+    time = scales["time"] * recording.clock(*clock, scale=scales["time"])[1]
     bad = _bad_rows(recording, time, force, position)
     faults = recording.faults(bad)
     if faults and not options.skip_bad_rows:
@@ -79,8 +85,11 @@ def read_log(options):
         )
     log.warnings[:0] = notes + recording.notes
     log.columns = {
-        name: [{"component": name, "column": column + 1, "name": names.names[column]}]
-        for name, column in found.items()
+        name: [
+            {"component": name, "column": column + 1, "name": names.names[column]}
+            for column in (clock if name == "time" else [found[name]])
+        ]
+        for name in found
     }
     log.columns_not_read, log.scales = names.others(log.columns), scales
     return log

@@ -7,6 +7,7 @@ from hapbench_command import (
     answer,
     exit_status,
     fail,
+    file_word,
     leave,
     refuse_source,
     shell_line,
@@ -148,8 +149,8 @@ def run(options):
     write(Path(out), stroke_text(stroke))
     scenario = f"{Path(out).stem}.json"
     next_line = (
-        f"{shell_line('hapbench', 'new', 'stroke', '--from', out, '--out', scenario)} && "
-        f"{shell_line('hapbench', 'run', scenario)}"
+        f"{shell_line('hapbench', 'new', 'stroke', '--from', file_word(out), '--out', file_word(scenario))} && "
+        f"{shell_line('hapbench', 'run', file_word(scenario))}"
     )
     table = table_text(["of the stroke", ""], table_of(found), options.wide)
     answer(

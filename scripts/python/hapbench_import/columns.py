@@ -20,7 +20,13 @@ UNITS = {
 }
 # Endings that are units, as in x_mm. Short endings such as in x_m or x_cm may have another meaning.
 _ENDINGS = "ms msec us usec ns nsec mm um mN kN deg".split()
+_UNCLEAR_ENDINGS = ("cm", "in", "inch", "nm")
 _BRACKETED = re.compile(r"\s*([\[(])\s*([^\[\]()]*?)\s*[\])]\s*$")
+# Patterns of names, in lower case and without units, that state the quantity of a column.
+NAMED_AS = {
+    "force": re.compile(r"f_?[xyz]|.*force.*"),
+    "position": re.compile(r"p?_?[xyz]|.*pos(ition)?([^a-z].*|)"),
+}
 # Prefix of the names of columns that a reader has added; messages do not name these columns.
 ABSENT = "\x01absent"
 SI = {"time": "s", "position": "m", "force": "N", "angle": "rad"}
@@ -138,14 +144,26 @@ class Names:
         return None, False
 
     def unknown(self, quantity, words):
-        word = (words or [""])[0]
-        self.fail(quantity, f"got {quoted(word)}{nearest(word, list(filter(None, self.own())))}")
+        word, own = (words or [""])[0], list(filter(None, self.own()))
+        near = nearest(word, own)
+        if len(own) == 1 and word in own[0]:
+            near = "; allowed between columns: commas, semicolons, tabs or blanks"
+        self.fail(quantity, f"got {quoted(word)}{near}")
 
     def indices(self, names):
         """Returns the columns of all these names, or None. Compares names without units, because units follow
         components."""
         found = [self.bare.index(name) if self.bare.count(name) == 1 else None for name in names]
         return None if None in found or len(set(found)) < len(found) else found
+
+    def nanoseconds(self, time):
+        """The column of nanoseconds that belongs to a column of whole seconds, as those of ROS: secs and nsecs; in a
+        list, which is empty without it. `time`: the column of times in a list."""
+        found = re.fullmatch(r"(|.*[._ /])secs?", self.names[time[0]]) if time else None
+        for ending in ("nsecs", "nsec", "nanosec", "nanosecs") if found else ():
+            if self.names.count(found[1] + ending) == 1:
+                return [self.names.index(found[1] + ending)]
+        return []
 
     def components(self, column, tokens, numbers=True):
         """Returns the columns of all components if the names show them and `column` is one of them, else None. With
@@ -211,4 +229,18 @@ def scale_of(names, quantity, columns, given, notes):
         notes.append(
             f"column {title} says {unit.text}, a scale of {factor:g}; --scale {quantity}={given:g} was used"
         )
+    if unit is None and given is None and quantity == "position":
+        notes += unclear_endings(names, columns)
     return given if given is not None else factor if factor is not None else 1.0
+
+
+def unclear_endings(names, columns):
+    """A note about names such as x_cm, whose ending is a unit or something else, such as the centre of mass."""
+    for column in columns:
+        ending = names.names[column].rpartition("_")[2]
+        if ending in _UNCLEAR_ENDINGS and names.names[column] != ending:
+            factor = UNITS["position"][ending]
+            return [
+                f"column {names.title(column)} is read as m; if its name says {ending}, --scale position={factor:g}"
+            ]
+    return []

@@ -1,5 +1,5 @@
 """The columns of a recording that the options name, for each quantity and its components."""
-from .columns import Names, scale_of
+from .columns import NAMED_AS, Names, scale_of
 from .options import ORIENTATIONS
 
 # Names of the components of a group of columns.
@@ -33,6 +33,7 @@ class Columns:
         self._options, self.notes, self.scales = options, [], {}
         self.names = names = Names(recording)
         self.time = [] if options.sample_rate_Hz else self._group("time", ("time",))
+        self.time += self.names.nanoseconds(self.time)
         self.position = self._group("position", ("px", "py", "pz"))
         if not self.position:
             names.fail("position", "is missing")
@@ -46,6 +47,7 @@ class Columns:
         self._refuse_unused()
         self._refuse_shared()
         self._note_lone_order()
+        self._note_other_quantity()
 
     def used(self):
         """Returns for each quantity its components, and number, name and unit of the column of each component."""
@@ -59,7 +61,7 @@ class Columns:
                 for component, column in zip(components, columns)
             ]
             for quantity, components, columns in (
-                ("time", ("time",), self.time),
+                ("time", ("s", "ns") if len(self.time) > 1 else ("time",), self.time),
                 ("position", ("x", "y", "z"), self.position),
                 ("orientation", ORIENTATIONS[self.kind], self.orientation),
                 ("force", ("x", "y", "z"), self.force),
@@ -236,6 +238,18 @@ class Columns:
                 self.notes.append(
                     f"the columns of {group} are read as {', '.join(parts)} from "
                     f"{', '.join(map(self.names.title, columns))}, as --columns says; their names say otherwise"
+                )
+
+    def _note_other_quantity(self):
+        """Positions in columns that are named as forces, and the reverse."""
+        for group, columns, other in (
+            ("position", self.position, "force"),
+            ("force", self.force, "position"),
+        ):
+            bare = [self.names.bare[column].lower() for column in columns]
+            if bare and all(map(NAMED_AS[other].fullmatch, bare)):
+                self.notes.append(
+                    f"the columns of {group} are {', '.join(map(self.names.title, columns))}, which are named as {other}"
                 )
 
     def _quaternion(self):

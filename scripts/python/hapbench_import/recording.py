@@ -96,11 +96,16 @@ class Recording:
             values = np.array([finite_number(cell) for cell in cells])
         return np.where(np.isfinite(values), values, math.nan)
 
-    def clock(self, column, scale=1.0):
-        """Returns (origin, numbers minus the origin) for a column of times. The origin is 0, except for integers that
-        are too large for a double, such as nanoseconds since 1970. Times of day, with or without a date (ISO 8601), are
-        converted to seconds since the first; `scale`, the seconds per unit, must be 1 for them."""
+    def clock(self, column, nanoseconds=None, scale=1.0):
+        """Returns (origin, numbers minus the origin) for a column of times, to which a column of nanoseconds may belong.
+        The origin is 0, except for integers that are too large for a double, such as nanoseconds since 1970. Times of
+        day, with or without a date (ISO 8601), are converted to seconds since the first; `scale`, the seconds per unit,
+        must be 1 for them."""
         values = self.column(column)
+        if nanoseconds is not None:
+            finite = values[np.isfinite(values)]
+            first = float(finite[0]) if len(finite) else 0.0
+            return first, (values - first) + 1e-9 / scale * self.column(nanoseconds)
         if not self.is_binary and not np.isfinite(values).any():
             nanoseconds = [
                 _nanoseconds(row[column]) if len(row) > column else None for row in self.rows
@@ -171,7 +176,7 @@ class Recording:
 
 
 _TIME_OF_DAY = re.compile(
-    rb"(?:(\d{4}-\d\d-\d\d)[T ])?(\d\d?):(\d\d):(\d\d)(?:[.,](\d{1,9}))?\s*(Z|[+-]\d\d:?\d\d)?"
+    rb"(?:(\d{4}-\d\d-\d\d|\d{4}/\d\d/\d\d)[T ])?(\d\d?):(\d\d):(\d\d)(?:[.,](\d{1,9}))?\s*(Z|[+-]\d\d:?\d\d)?"
 )
 
 
@@ -184,7 +189,7 @@ def _nanoseconds(cell):
     days = 0
     if day:
         try:
-            days = date.fromisoformat(day.decode()).toordinal()
+            days = date.fromisoformat(day.decode().replace("/", "-")).toordinal()
         except ValueError:
             return None
     total = ((24 * days + int(hours)) * 60 + int(minutes)) * 60 + int(seconds)

@@ -1,11 +1,13 @@
 """Samples of a recording in SI units and the scenario's frame, and the problems of its rows."""
 import math
+import re
 from dataclasses import dataclass
 
 import numpy as np
 from hapbench_command import MOST_FAULTS, Faults, fail
 from scipy.spatial.transform import Rotation
 
+from .clock import require_likely_clock
 from .component_columns import Columns
 from .holds import hold_of
 
@@ -15,8 +17,9 @@ LEAST_JUMP = (
     # [m]; a smaller jump may be caused by a clock with jitter that wrote two samples almost at once
     1e-3
 )
-LATEST = 1e11  # [s]; later times have other units
-SINCE_1970 = (9e8, 4e9)  # plausible seconds since 1970: 1998 to 2096 [s]
+_EXPONENT_OF_FORTRAN = re.compile(rb"[+-]?(\d+\.?\d*|\.\d+)[dD][+-]?\d+")
+TIMES_OF_DAY = '"05:59:00.002" or "2026-11-28T05:59:00.002Z"'
+LENGTHS = {1e-3: "millimetres", 1e-6: "micrometres"}  # unit of length [m]: its name
 DEGREE = math.pi / 180.0
 DOWN = np.array([0.0, 0.0, -1.0])  # axis of the tool in the tool frame
 
@@ -55,12 +58,12 @@ class Rows:
     def __init__(self, recording, columns, options):
         self.problems, self.unit_deviation, self._recording = recording.problems(), 0.0, recording
         self.jumps = {}  # speed by row [m/s]
-        self.notes, self.origin = columns.notes, 0.0
+        self.notes, self.origin, self._time = columns.notes, 0.0, columns.time[:1]
         frame = np.array(options.frame).T
         if columns.time:
             scale = columns.scale("time", columns.time)
-            origin, values = recording.clock(columns.time[0], scale)
-            self._refuse_columns(columns.time, values[:, np.newaxis])
+            origin, values = recording.clock(*columns.time, scale=scale)
+            self._refuse_columns(columns.time[:1], values[:, np.newaxis])
             self.origin, self.time = scale * origin, scale * values
         else:
             is_sample = [i not in self.problems for i in range(len(recording.rows))]
@@ -147,9 +150,20 @@ class Rows:
                 np.isnan(numbers),
                 lambda row: (
                     f"column {column + 1}{' ' if name else ''}{name}: got "
-                    f"{self._recording.shown(column, row)}; allowed: a finite number"
+                    f"{self._recording.shown(column, row)}; allowed: a finite number{self._cause(column, row)}"
                 ),
             )
+
+    def _cause(self, column, row):
+        """The likely cause of a cell that is no number, with the correction, or nothing."""
+        cell = b"" if self._recording.is_binary else self._recording.rows[row][column]
+        if _EXPONENT_OF_FORTRAN.fullmatch(cell):
+            return "; write an exponent as in 1e-3"
+        return (
+            f" or a time of day, such as {TIMES_OF_DAY}"
+            if b":" in cell and [column] == self._time
+            else ""
+        )
 
     def _refuse(self, wrong, problem):
         for row in np.flatnonzero(wrong).tolist():
@@ -166,6 +180,12 @@ class Rows:
                 ~((lengths > 1e-12) & (lengths < 1e12)),
                 lambda row: f"got an axis of length {lengths[row]:g}; allowed: 1e-12 ... 1e12",
             )
+            usable = np.delete(lengths, list(self.problems))
+            if np.abs(usable - 1.0).max(initial=0.0) > UNIT_TOLERANCE:
+                self.notes.append(
+                    f"the axes have lengths of {usable.min():.4g} ... {usable.max():.4g}, and only their directions "
+                    "are used: are they rotation vectors or Euler angles, which are not read?"
+                )
             return
         if self.kind == "matrix":
             m = values.reshape(-1, 3, 3)
@@ -248,48 +268,6 @@ def read_samples(recording, options):
     )
 
 
-def require_likely_clock(rows, file, scale, longest):
-    """Refuses a clock whose unit is probably not the second: the median interval is too long, or the times are far in
-    the future. Names the scale that makes the times plausible."""
-    usable = np.isfinite(rows.time)
-    usable[list(rows.clock_problems)] = False
-    time, place = rows.time[usable], rows.recorded[usable]
-    steps = np.diff(time)
-    if not len(steps):
-        return
-    median = float(np.sort(steps)[len(steps) // 2])
-    latest = rows.origin + float(time.max())
-    if not median > longest and latest < LATEST:
-        return
-    with np.errstate(over="ignore", invalid="ignore"):
-        ways = np.linalg.norm(np.diff(place, axis=0), axis=1)
-    moved = ways[np.isfinite(ways) & (ways > 0.0)]
-    speed = float(np.median(moved)) / median if len(moved) and median > 0.0 else 0.0
-    got = (
-        f"a median interval of {median:.4g} s; allowed: {longest:g} s (--set max_gap=...)"
-        if median > longest
-        else f"times of up to {latest:.4g} s; allowed: {LATEST:g} s"
-    )
-    unit = likely_unit(abs(median), speed, latest)
-    fail(f"got {got}; are times in other units? (--scale time={unit * scale:g})", file)
-
-
-def likely_unit(interval, speed, latest=0.0):
-    """Returns 1e-3, 1e-6 or 1e-9: the unit with which the latest time is a plausible time since 1970; else the unit
-    with which an interval [s] is closest to 2 ms and a speed [m/s] closest to 5 cm/s."""
-    units = (1e-3, 1e-6, 1e-9)
-    for unit in units:
-        if SINCE_1970[0] < latest * unit < SINCE_1970[1]:
-            return unit
-
-    def unlikely(unit):
-        of_speed = abs(math.log10(speed / unit / 0.05)) if speed > 0.0 else 0.0
-        of_interval = abs(math.log10(interval * unit / 2e-3)) if interval > 0.0 else 0.0
-        return of_interval + min(of_speed, 3.0)
-
-    return min(units, key=unlikely)
-
-
 def _held_rows(rows, options, notes):
     """Returns the Hold of the rows without problems, or None; its `fresh` has an entry for each row."""
     usable = np.array([row not in rows.problems for row in range(len(rows.time))], bool)
@@ -327,9 +305,10 @@ def _with_hints(rows, count):
     if len(jumps) < 3 or 3 * len(jumps) <= count:
         return rows.problems
     speed = float(np.median([rows.jumps[row] for row in jumps]))
+    unit = next((one for one in LENGTHS if speed * one < 5.0), None)
     hint = (
-        "(is the scale right? --scale position=0.001 is for millimetres, --scale time=... for another clock)"
-        if speed * 1e-3 < 5.0
+        f"(is the scale right? --scale position={unit:g} is for {LENGTHS[unit]}, --scale time=... for another clock)"
+        if unit
         else "(is the scale right? --scale time=... or position=...)"
     )
     return {

@@ -7,8 +7,9 @@ from scipy.spatial.transform import Rotation, Slerp
 
 from hapbench_command import MOST_FAULTS, Faults, fail
 
+from .clock import likely_unit
 from .columns import scale_text
-from .samples import DOWN, Samples, likely_unit, read_samples
+from .samples import DOWN, Samples, read_samples
 
 STIFFNESS = 20000.0  # default of rendering.stiffness_N_per_m [N/m]
 MOST_SAMPLES = 1e7
@@ -16,6 +17,8 @@ LONG_INTERVALS = 10.0  # in median intervals; a longer interval is a gap
 USUAL_RATES = (1.0, 1e5)  # usual rates of recordings [Hz]
 LONGEST, SHORTEST = 3.0, 1e-5  # largest and smallest plausible length of a hand's stroke [m]
 FASTEST = 5.0  # largest plausible speed of a hand [m/s]
+# Ranges of times that may be days: days since 1900 of the years 1982 to 2091, and days since the year 0.
+DAYS = ((3e4, 7e4), (7e5, 8e5))
 MOST_GAPS = 5  # largest number of gaps that are listed one by one
 MOST_NOT_READ = 12  # largest number of unread columns that the table names
 
@@ -432,6 +435,11 @@ def _clock_warnings(found):
     rate, speed = found["rate_Hz"], found["speed_p99_m_per_s"]
     scale = found["scales"].get("time", 1.0)
     what = f"{rate:.4g} samples per second and a speed of {speed:.3g} m/s"
+    if rate > USUAL_RATES[1] and any(low < found["first_time_s"] < high for low, high in DAYS):
+        return [
+            f"{what} are unusual: are the times days, as those of spreadsheets and MATLAB? (with --scale time=86400 "
+            f"the rate is {rate / 86400:.4g} Hz)"
+        ]
     if rate < USUAL_RATES[0] or (rate < 20.0 and 0.0 < speed < 2e-3):
         factor = likely_unit(1.0 / rate, speed)
     elif rate > USUAL_RATES[1] or speed > FASTEST:

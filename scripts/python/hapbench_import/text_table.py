@@ -1,22 +1,44 @@
 """Text files of numbers: lines, separators, decimal commas and names of columns. Used by `import stroke` and `import
 device`."""
+import codecs
 import csv
 import math
 import re
 from contextlib import suppress
 from dataclasses import dataclass, field
 
-from hapbench_command import fail, finite_number
+from hapbench_command import fail, finite_number, quoted
 
 from .columns import UNITS
 
 MOST_COLUMNS = 1000
+MOST_ABOVE = 40  # largest number of lines above a header
+MOST_HEADERS = 8  # largest number of lines of a header
 SAMPLED = 20  # number of lines from which the separator is determined
 SEPARATORS = (b",", b";", b"\t", None)  # None stands for blanks
 _BLANK = b" \t\r"
 _COMMA_NUMBER = re.compile(rb"[+-]?(\d+,\d*|,\d+)([eE][+-]?\d+)?")
 _THOUSANDS = re.compile(rb"[+-]?[1-9]\d{0,2}(,\d{3})+(\.\d*)?")
 _WHOLE = re.compile(rb"[+-]?\d+([eE][+-]?\d+)?")
+MISSING = {"", "-", "NA", "N/A", "#N/A", "na", "null", "NULL", "None"}  # values, not names
+# How files that are no texts begin.
+PACKED = {
+    b"\x1f\x8b": "compressed (gzip)",
+    b"PK\x03\x04": "compressed (a zip file, or a workbook .xlsx)",
+    b"BZh": "compressed (bzip2)",
+    b"\xfd7zXZ\0": "compressed (xz)",
+    b"\x28\xb5\x2f\xfd": "compressed (zstd)",
+    b"\xd0\xcf\x11\xe0": "a workbook (.xls)",
+    b"MATLAB 5.0 MAT-file": "a MAT-file",
+    b"\x89HDF": "an HDF5 file (or a MAT-file of version 7.3)",
+    b"#ROSBAG": "a ROS bag",
+    b"\x89MCAP0": "an MCAP file",
+    b"SQLite format 3": "a database (such as a ROS 2 bag)",
+    b"PAR1": "a Parquet file",
+}
+UNPACKED = "a text, such as CSV (unpack or export the file)"
+ENDINGS = {b"\0": "zero", b"\x1a": "Ctrl-Z, which ends a text on old systems"}
+_QUOTED_OR_PLAIN = re.compile(rb'"([^"]*)"|(\S+)')
 _NOT_A_NUMBER = re.compile(rb"[+-]?(nan|inf|infinity)", re.IGNORECASE)
 
 
@@ -37,20 +59,17 @@ def read_table(data, file, by_blanks=False, names_of=None):
     lines, comments = _lines(_utf8(data, file, notes))
     if not lines:
         fail("no samples; allowed: a line for each", file)
-    separator = None if by_blanks else _separator([line for _, line in lines[:SAMPLED]])
+    separator = None if by_blanks else _separator([line for _, line in _sample(lines)])
     if names_of is None:
         lines = _from_header_on(lines, separator, notes)
     number, first = lines[0]
     words = split(first, separator)
     if len(words) > MOST_COLUMNS:
         fail(f"got {len(words)} columns; allowed: {MOST_COLUMNS}", f"{file}, line {number}")
-    names = names_of(words) if names_of else _header(words)
-    if names:
-        lines = lines[1:]
-        if names_of is None and lines and (units := _units_of(split(lines[0][1], separator))):
-            notes.append(f"line {lines[0][0]} has the units of the columns")
-            names = [f"{name} [{unit}]" if unit else name for name, unit in zip(names, units)]
-            lines = lines[1:]
+    if names_of:
+        names, lines = names_of(words), lines[1:]
+    else:
+        names, number, lines = _names_in_header(lines, separator, notes)
     header_line = number if names else None
     if not names:
         header_line, names = _commented_header(comments, number, len(words), separator)
@@ -77,13 +96,52 @@ def counted(count, thing):
 
 def _utf8(data, file, notes):
     """Converts the bytes of a text to UTF-8 without a byte order mark."""
-    if data[:2] in (b"\xff\xfe", b"\xfe\xff"):
+    for mark, kind in PACKED.items():
+        if data.startswith(mark):
+            fail(f"is {kind}, not a text; allowed: {UNPACKED}", file)
+    encoding = _wide_encoding(data)
+    if encoding:
         try:
-            data = data.decode("utf-16").encode()
+            data = data.decode(encoding).encode()
         except UnicodeDecodeError:
-            fail("begins as UTF-16, and is none; allowed: UTF-8", file)
-        notes.append("the text is UTF-16; it was read as such")
-    return data.removeprefix(b"\xef\xbb\xbf")
+            fail(f"begins as {encoding.upper()}, and is none; allowed: UTF-8", file)
+        notes.append(f"the text is {encoding[:6].upper()}; it was read as such")
+    data = data.removeprefix(codecs.BOM_UTF8)
+    # Zero bytes at the end come from a file that was allocated before it was written.
+    zero = data.rstrip(b"\0\r\n \x1a").find(b"\0")
+    if zero >= 0:
+        line = data.count(b"\n", 0, zero) + 1
+        fail("has a zero byte: it is no text; allowed: a text in UTF-8", f"{file}, line {line}")
+    text = data.rstrip(b"\0\x1a")
+    if len(text) < len(data):
+        notes.append(
+            f"{counted(len(data) - len(text), 'byte')} after the text ignored ({ENDINGS[data[-1:]]})"
+        )
+    if not text.isascii():
+        try:
+            text.decode()
+        except UnicodeDecodeError:
+            notes.append("the text is not UTF-8; it was read as Windows-1252")
+            text = text.decode("cp1252", "replace").encode()
+    return text
+
+
+def _wide_encoding(data):
+    """UTF-16 or UTF-32 by the byte order mark or, without it, by the zero bytes of a text in ASCII; or None."""
+    for mark, encoding in (
+        (codecs.BOM_UTF32_LE, "utf-32"),
+        (codecs.BOM_UTF32_BE, "utf-32"),
+        (codecs.BOM_UTF16_LE, "utf-16"),
+        (codecs.BOM_UTF16_BE, "utf-16"),
+    ):
+        if data.startswith(mark):
+            return encoding
+    start = data[: min(64, len(data) // 2 * 2)]
+    for first, encoding in ((1, "utf-16-le"), (0, "utf-16-be")):
+        zeros, letters = start[first::2], start[1 - first :: 2]
+        if len(start) >= 8 and not any(zeros) and all(letters):
+            return encoding
+    return None
 
 
 def _lines(data):
@@ -96,7 +154,7 @@ def _lines(data):
     for number, line in enumerate(raw, 1):
         # A tab at an end may separate an empty cell of a table with empty columns.
         bare = line.strip(_BLANK)
-        if bare:
+        if bare.strip(b',;\t "'):  # a row of empty cells is blank, too
             kept = line.strip(b" \r") if b"\t" in line else bare
             (comments if bare[0] in b"#%" else lines).append((number, kept))
     return lines, comments
@@ -105,7 +163,11 @@ def _lines(data):
 def split(line, separator):
     """Returns the cells of a line, without blanks and quotes."""
     if separator is None:
-        return line.split()
+        if b'"' not in line:
+            return line.split()
+        return [
+            found[1] if found[2] is None else found[2] for found in _QUOTED_OR_PLAIN.finditer(line)
+        ]
     if b'"' in line:
         text = line.decode("utf-8", "surrogateescape")
         with suppress(csv.Error):
@@ -127,6 +189,11 @@ def is_number(cell):
         or _NOT_A_NUMBER.fullmatch(cell) is not None
         or _COMMA_NUMBER.fullmatch(cell) is not None
     )
+
+
+def _sample(lines):
+    """Some of the first lines, and some of those below, where a file may have many lines above its header."""
+    return lines[:SAMPLED] + lines[SAMPLED + MOST_ABOVE :][:SAMPLED]
 
 
 def _separator(lines):
@@ -151,17 +218,82 @@ def _header(words):
 
 
 def _from_header_on(lines, separator, notes):
-    """Removes the lines above a header that have another number of cells than the header and the rows."""
-    rows = [split(line, separator) for _, line in lines[: 2 * SAMPLED]]
+    """Removes the lines above the header: those above the first rows of numbers that have as many cells as the header."""
+    rows = [split(line, separator) for _, line in lines[: 2 * SAMPLED + MOST_ABOVE]]
     counts = [len(row) - (not row[-1]) for row in rows]  # a separator may be at the end
+    numbers = [is_row(row) for row in rows]
     later = counts[len(counts) // 2 :]
-    first = counts.index(max(set(later), key=later.count))
+    usual = max(set(later), key=later.count)
+    first = next(
+        (i for i in range(len(rows)) if counts[i] == usual and all(numbers[i : i + 2])), len(rows)
+    )
+    if first == len(rows):
+        first = counts.index(usual)
+    # A header may have one name more than the rows have numbers: that of a column without values.
+    widths = (usual, usual + 1)
+    while first and not numbers[first - 1] and _header(rows[first - 1]):
+        above = rows[first - 1]
+        if (counts[first - 1] if len(widths) > 1 else len(above)) not in widths:
+            break
+        first, widths = first - 1, (len(above),)
     if not first or not _header(rows[first]):
         return lines
     notes.append(
         f"{counted(first, 'line')} above the header skipped, the first: line {lines[0][0]}"
     )
     return lines[first:]
+
+
+def is_row(words):
+    """True if most cells that are not empty are numbers."""
+    cells = [word for word in words if word]
+    return 2 * sum(map(is_number, cells)) > len(cells)
+
+
+def _names_in_header(lines, separator, notes):
+    """(names, line number of the header, lines below it). The header may have several lines: groups of columns, names
+    and units. The names are those of the last line that names every column differently."""
+    block = []
+    for _, line in lines[:MOST_HEADERS]:
+        words = _header(split(line, separator))
+        if not words or (block and (len(words) != len(block[0]) or MISSING.issuperset(words))):
+            break
+        block.append(words)
+    if not block:
+        return [], lines[0][0], lines
+    # Without numbers below them, the lines are rows of something else.
+    if len(lines) <= len(block) or not is_row(split(lines[len(block)][1], separator)):
+        block = block[:1]
+    numbers, below = [number for number, _ in lines[: len(block)]], lines[len(block) :]
+    units = _units_of([word.encode("utf-8", "surrogateescape") for word in block[-1]])
+    if len(block) > 1 and units:
+        notes.append(f"line {numbers[len(block) - 1]} has the units of the columns")
+        block.pop()
+    elif len(block) == 2 and not _are_distinct(block[1]) and _are_distinct(block[0]):
+        # The scale of an unknown unit is asked for where the column is read.
+        units = block.pop()
+        notes.append(f"line {numbers[1]} is read as the units of the columns")
+    else:
+        units = []
+    names = block[-1]
+    if len(block) > 1:
+        if not _are_distinct(names):
+            names = [".".join(filter(None, parts)) for parts in zip(*block)]
+        lines_of = f"lines {numbers[0]} ... {numbers[len(block) - 1]}"
+        notes.append(
+            f"{lines_of} are the header: the names of columns are those of line {numbers[len(block) - 1]}"
+            if names is block[-1]
+            else f"{lines_of} are the header: the names of columns join them, as in {quoted(names[-1])}"
+        )
+    if units:
+        names = [f"{name} [{unit}]" if unit else name for name, unit in zip(names, units)]
+    return names, numbers[len(block) - 1], below
+
+
+def _are_distinct(names):
+    """True if no name is there twice; columns may lack a name."""
+    named = [name for name in names if name]
+    return len(set(named)) == len(named)
 
 
 def _units_of(words):
@@ -198,6 +330,7 @@ def _drop_trailing_separators(table):
             f"a separator at the end of {counted(len(longer), 'line')} ignored, the first: "
             f"line {table.lines[longer[0]]}"
         )
+    _complete_last_column(table, width)
     if width < 2 or table.names[-1] or not table.rows:
         return
     if any(table.names) and all(len(row) == width - 1 for row in table.rows):
@@ -207,6 +340,21 @@ def _drop_trailing_separators(table):
         for cells in (table.names, *table.rows):
             cells.pop()
         table.notes.append("a separator at the end of every line ignored")
+
+
+def _complete_last_column(table, width):
+    """Appends an empty cell to rows without the last cell, if nearly all rows lack it, as the comments of LabVIEW."""
+    if width < 3 or not table.names[-1]:
+        return
+    shorter = [i for i, row in enumerate(table.rows) if len(row) == width - 1]
+    if len(shorter) < 0.9 * len(table.rows) or not shorter:
+        return
+    for i in shorter:
+        table.rows[i].append(b"")
+    table.notes.append(
+        f"column {width} {table.names[-1]} has no value in {counted(len(shorter), 'line')}, the first: "
+        f"line {table.lines[shorter[0]]}"
+    )
 
 
 def _refuse_decimal_commas_between_commas(table, file):

@@ -2,7 +2,7 @@
 import json
 
 from hapbench.results import at
-from hapbench_command import shell_line
+from hapbench_command import file_word, shell_line
 from hapbench_report.markup import (
     cell,
     columns,
@@ -152,8 +152,8 @@ def scenario_section(runs, labels):
 
 def commands_section(runs, words):
     lines = [
-        f"hapbench run {shell_line(run.folder / 'scenario.effective.json')}{plugin_option(run)} "
-        f"--out {shell_line(run.folder.name + '_again')}"
+        f"hapbench run {shell_line(file_word(run.folder / 'scenario.effective.json'))}{plugin_option(run)} "
+        f"--out {shell_line(file_word(run.folder.name + '_again'))}"
         for run in runs
         if run.scenario
     ]
@@ -178,4 +178,4 @@ def plugin_option(run):
     source = at(run.scenario, "/rendering/contact_source")
     if isinstance(source, dict) and source.get("type") == "plugin":
         files.append(run.folder / source["file"])
-    return "".join(f" --module {shell_line(file)}" for file in files if file)
+    return "".join(f" --module {shell_line(file_word(file))}" for file in files if file)

@@ -98,6 +98,10 @@ TEST(Axis, OfAWrongRangeSuggestsTheRangeThatWasMeant) {
   EXPECT_EQ(refusal("1:2", false).find("--over \"a=1:2\": got 2 parts between colons; allowed: a:b:n, or a:b:n:log"),
             0u)
       << refusal("1:2", false);
+  EXPECT_EQ(
+      refusal("1,5:2,5:3", false).find("--over \"a=1,5:2,5:3\": got a range with commas; allowed: decimal points"), 0u)
+      << refusal("1,5:2,5:3", false);
+  EXPECT_EQ(refusal("a:b,c", false), "accepted");
 }
 
 TEST(SampledAxis, IsARangeOrAList) {

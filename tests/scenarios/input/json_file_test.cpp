@@ -40,6 +40,14 @@ TEST(ParseJson, SaysWhereTheSyntaxIsWrongAndWhatWasExpected) {
       "string literal; remove the comma before it");
   EXPECT_EQ(
       refusal_of("[1, \"\xff\"]").find("is not JSON: parse error at line 1, column 6: syntax error while parsing"), 0u);
+  // Positions are those of an editor: characters, any line end, no byte order mark.
+  for (const auto& [text, position] : {std::pair("\xef\xbb\xbf{'a': 1}", "line 1, column 2"),
+                                       {"{\"\xc3\xa4\xc3\xb6\": x}", "line 1, column 8"},
+                                       {"{\r\"a\": 1,\r}", "line 3, column 1"},
+                                       {"{\r\n\"a\": 1,\r\n  }", "line 3, column 3"},
+                                       {"{\"a\": \"b\n\"}", "line 1, column 9"}})
+    EXPECT_NE(refusal_of(text).find(std::string("parse error at ") + position + ":"), std::string::npos)
+        << refusal_of(text);
   EXPECT_LT(refusal_of("\"" + std::string(1'000'000, 'x')).size(), 200u) << "cut";
   EXPECT_EQ(refusal_of(std::string("{\0}", 3)), "is not JSON: has a zero byte; allowed: UTF-8");
 }

@@ -111,6 +111,20 @@ TEST_F(MeshFile, IsReadWhateverElseItsTextHolds) {
       {"glued.off", "OFF4 4 6\n" + tetrahedron + "3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n"},
       {"glued_colours.off", "coff4 4\n" + tetrahedron + "3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n"},
       {"no_keyword.off", "4 4 6\n" + tetrahedron + "3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n"},
+      {"counts_in_lines.off", "OFF\n4 # vertices\n\n4\n6\n" + tetrahedron + "3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n"},
+      {"counts_in_two_lines.off", "OFF 4\n4 6\n" + tetrahedron + "3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n"},
+      {"edges_in_a_line.off", "OFF\n4 4\n6\n" + tetrahedron + "3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n"},
+      {"faces_first.ply",
+       "ply\nformat ascii 1.0\n\nelement face 4\nproperty list uchar int vertex_indices\nelement vertex 4\nproperty "
+       "float x\nproperty float y\nproperty float z\nend_header\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n" +
+           tetrahedron},
+      {"lines.stl",
+       "solid outer loop of a facet\nfacet normal nan nan nan outer loop vertex 0 0 0 vertex 0 1 0 vertex 1 0 0 "
+       "endloop endfacet\nfacet normal 0 0 0 outer loop\nvertex 0 0 0 vertex 1 0 0\nvertex 0 0 1 255 0 0 endloop "
+       "endfacet "
+       "facet\nouter loop\nvertex 0 0 0\nvertex 0 0 1\nvertex 0 1 0 endloop\nendfacet\nendsolid outer\n"
+       "solid\nfacet normal 0 0 0\nouter loop\nvertex 1 0 0\nvertex 0 1 0\nvertex 0 0 1\nendloop\nendfacet\n"
+       "endsolid facet\n"},
       {"counts_in_header.off", "OFF 4 4 6\n" + tetrahedron + "3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3"},
       {"comments.off",
        "OFF # header\n# nothing\n\n4 4\n" + tetrahedron + "3 0 2 1 255 0 0\n\n3 0 1 3 # face\n3 0 3 2 1\n3 1 2 3\n"},
@@ -341,6 +355,8 @@ TEST_F(MeshFile, WarnsAboutWhatItsReaderIgnores) {
   const TriangleSoup cube = test::cube();
   EXPECT_EQ(warning_of("lines.obj", test::obj_text(cube) + "l 1 2\nl 2 3\nusemtl x\n"),
             ": statements other than polygons, \"l\", which were ignored: 2, the first is line 23");
+  EXPECT_EQ(warning_of("other.obj", "call part.obj 1\n" + test::obj_text(cube)),
+            ": statements other than polygons, \"call\", which were ignored: 1, the first is line 1");
   EXPECT_EQ(warning_of("unknown.obj", "x 1\n" + test::obj_text(cube)),
             ": unknown statements \"x\", which were ignored: 1, the first is line 1");
   EXPECT_EQ(warning_of("long.off", test::off_text(cube) + "\n3 0 1 2\n3 0 1 2\n"),
@@ -380,7 +396,7 @@ TEST_F(MeshFile, KeepsOneOfSeveralEqualFaces) {
 }
 
 /// Both sides of a plane quadrilateral, which the readers divide along different diagonals. Its corners are rounded to
-/// six digits, so that the sides enclose a small volume.
+/// six digits, so that the sides enclose a small volume. Both sides have their own vertices.
 TEST_F(MeshFile, NamesASheetWhoseSidesAreDividedInDifferentWays) {
   const std::string corners = "0.123456 0 0\n1.123456 0.3 0.7\n0.423456 1.3 0.912346\n-0.576544 1 0.212346\n";
   std::string vertices = "v " + corners;
@@ -388,12 +404,12 @@ TEST_F(MeshFile, NamesASheetWhoseSidesAreDividedInDifferentWays) {
   const std::string says =
       ": double-sided sheets, which are closed components without volume: 1, the largest 4 triangles";
   for (const auto& [name, text] :
-       {std::pair(std::string("sheet.obj"), vertices + "f 1 2 3 4\nf 4 3 2 1\n"),
-        {"sheet.off", "OFF 4 2 0\n" + corners + "4 0 1 2 3\n4 3 2 1 0\n"},
+       {std::pair(std::string("sheet.obj"), vertices + vertices + "f 1 2 3 4\nf 8 7 6 5\n"),
+        {"sheet.off", "OFF 8 2 0\n" + corners + corners + "4 0 1 2 3\n4 7 6 5 4\n"},
         {"sheet.ply",
-         "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+         "ply\nformat ascii 1.0\nelement vertex 8\nproperty float x\nproperty float y\nproperty float z\n"
          "element face 2\nproperty list uchar int vertex_indices\nend_header\n" +
-             corners + "4 0 1 2 3\n4 3 2 1 0\n"}}) {
+             corners + corners + "4 0 1 2 3\n4 7 6 5 4\n"}}) {
     EXPECT_EQ(warning_of(name, text).find(says), 0u) << warning_of(name, text);
     EXPECT_TRUE(hapbench::MeshFile(text, name, {}).findings().components[0].is_flat);
   }
@@ -418,22 +434,45 @@ TEST_F(MeshFile, NamesVerticesThatNoFaceUses) {
 
 /// A file of another format, or with numbers in another notation, gives an error that names the problem.
 TEST_F(MeshFile, IsRefusedByWhatItIs) {
-  for (const auto& [name, text, says] :
-       {std::tuple("off.obj", std::string("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"),
-                   "off.obj, line 1: got \"OFF\", and the file has no faces; allowed: statements of OBJ"),
-        {"upper.obj", "V 0 0 0\nV 1 0 0\nV 0 1 0\nF 1 2 3\n",
-         "upper.obj, line 1: got \"V\", and the file has no faces"},
-        {"page.stl", "<!DOCTYPE html>\n<html><body>" + std::string(200, 'x') + "</body></html>\n",
-         "page.stl, line 1: is not an STL file: it begins with \"<!DOCTYPE html>\"; allowed"},
-        {"pointer.stl", "version https://git-lfs.github.com/spec/v1\noid sha256:4d7a\nsize 12345\n",
-         "it begins with \"version https://git-lfs.github.com/spec/\""},
-        {"none.stl", std::string(84, '\0') + std::string(600, '\1'),
-         "its header declares 0 triangles, and 600 bytes follow"},
-        {"comma.obj", "v 0 0 0\nv 1,5 0 0\n",
-         "comma.obj, line 2: got \"1,5\" with a decimal comma; allowed: a number with"},
-        {"comma.off", "OFF 3 1 0\n0 0 0\n1 0 0,25\n", "comma.off, line 3: got \"0,25\" with a decimal comma"},
-        {"comma.stl", "solid\nfacet normal 0 0 1\nouter loop\nvertex 0,1 0 0\n",
-         "comma.stl, line 4: got \"0,1\" with a decimal comma"}})
+  for (
+      const auto& [name, text, says] :
+      {std::tuple("off.obj", std::string("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"),
+                  "off.obj, line 1: got \"OFF\", and the file has no faces; allowed: statements of OBJ"),
+       {"not_finite.obj", "v 0 0 0\nv 1 0 -1.#IND\nv 0 1 0\nf 1 2 3\n",
+        "not_finite.obj, line 2: got \"-1.#IND\"; allowed: a finite number"},
+       {"not_finite.off", "OFF\n3 1 0\n0 0 0\n1 0 1.#QNAN # point\n0 1 0\n3 0 1 2\n",
+        "not_finite.off, line 4: got \"1.#QNAN\"; allowed"},
+       {"folder.obj", "v 0 0 0\nmtllib C:\\parts\\\nv 1 0 0\nv 0 1 0\nv 2 2 0\nf 1 2 3\n",
+        "folder.obj, line 2: got \"mtllib\" with a backslash at its end, which joins the next line, \"v\", to it"},
+       {"fortran.obj", "v 0 0 0\nv 1.0D+00 0 0\nv 0 1 0\nf 1 2 3\n",
+        "fortran.obj, line 2: got \"1.0D+00\"; allowed: a finite number; write an exponent as in 1e-3"},
+       {"many.off", "nOFF\n3\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n",
+        "many.off, line 1: got \"nOFF\", whose vertices do not have three coordinates; allowed: OFF"},
+       {"four.off", "C4OFF\n3 1 0\n", "four.off, line 1: got \"C4OFF\""},
+       {"one_line.off", "OFF 3 1 0 0 0 0 1 0 0 0 1 0 3 0 1 2\n",
+        "one_line.off, line 1: got 14 values after the counts of vertices and faces; allowed: the number of edges, and "
+        "then each vertex and each face in a line of its own"},
+       {"twice.ply",
+        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face "
+        "1\nproperty list uchar int vertex_indices\nelement face 1\n",
+        "twice.ply, line 9: the element \"face\" is declared twice; allowed: once"},
+       {"no_loop.stl", "solid\nfacet normal 0 0 1\nendfacet\nendsolid\n",
+        "no_loop.stl, line 3: got endfacet after \"facet\"; allowed: \"outer loop\" and three vertices"},
+       {"four.stl",
+        "solid\nfacet\nouter loop vertex 0 0 0 vertex 1 0 0 vertex 0 1 0\nvertex 1 1 0\nendloop endfacet\nendsolid\n",
+        "four.stl, line 4: got \"vertex\"; allowed: three times vertex after each \"outer loop\""},
+       {"upper.obj", "V 0 0 0\nV 1 0 0\nV 0 1 0\nF 1 2 3\n", "upper.obj, line 1: got \"V\", and the file has no faces"},
+       {"page.stl", "<!DOCTYPE html>\n<html><body>" + std::string(200, 'x') + "</body></html>\n",
+        "page.stl, line 1: is not an STL file: it begins with \"<!DOCTYPE html>\"; allowed"},
+       {"pointer.stl", "version https://git-lfs.github.com/spec/v1\noid sha256:4d7a\nsize 12345\n",
+        "it begins with \"version https://git-lfs.github.com/spec/\""},
+       {"none.stl", std::string(84, '\0') + std::string(600, '\1'),
+        "its header declares 0 triangles, and 600 bytes follow"},
+       {"comma.obj", "v 0 0 0\nv 1,5 0 0\n",
+        "comma.obj, line 2: got \"1,5\" with a decimal comma; allowed: a number with"},
+       {"comma.off", "OFF 3 1 0\n0 0 0\n1 0 0,25\n", "comma.off, line 3: got \"0,25\" with a decimal comma"},
+       {"comma.stl", "solid\nfacet normal 0 0 1\nouter loop\nvertex 0,1 0 0\n",
+        "comma.stl, line 4: got \"0,1\" with a decimal comma"}})
     EXPECT_NE(refusal_of(name, text).find(says), std::string::npos) << refusal_of(name, text);
 }
 

@@ -102,6 +102,23 @@ TEST(NumberTable, IsRefusedOnceWithTheFirstFaultAndTheNumberOfFaults) {
             "t.csv, line 3: got 1 cells; allowed: 3; the row is separated by \";\", the header by \",\"");
 }
 
+TEST(NumberTable, ReportsLinesAboveTheHeader) {
+  for (const auto& [text, note] :
+       {std::pair("My recording\nt,x,y\n1,2,3\n", "line 1: 1 line above the header is not used"),
+        {"\nGroup,Tip,Tip\nmade by x\n\nt;x;y\n1;2;3\n", "line 2: 2 lines above the header are not used"},
+        {"sep=;\nt;x;y\n1;2;3\n", ""}}) {
+    const NumberTable table = table_of(text);
+    EXPECT_EQ(table.values, (std::vector<double>{1, 2, 3})) << text;
+    EXPECT_EQ(table.notes, note[0] == 0 ? std::vector<std::string>{} : std::vector<std::string>{note});
+  }
+  // A header below numbers, or with one name by chance, is none.
+  EXPECT_NE(refusal_of("a,b,c\n1,2,3\nt,x,y\n").find("line 1: got header"), std::string::npos);
+  EXPECT_NE(refusal_of("title\nx is what is meant\n1,2,3\n").find("line 1: got header"), std::string::npos);
+  EXPECT_EQ(refusal_of("t,x,y\ns,m,m\n1,2,3\n"),
+            "t.csv, line 2: column 1 \"t\": got \"s\"; allowed: a finite number; remove the line if it holds names or "
+            "units");
+}
+
 TEST(NumberTable, KnowsTheLinesOfRows) {
   const NumberTable table = table_of("# c\n\nt,x,y\n0,0,0\n1,0,0\n\n% c\n2,0,0\n,,\n3,0,0\n4,0,0\n");
   ASSERT_EQ(table.rows(), 5u);

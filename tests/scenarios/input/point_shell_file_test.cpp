@@ -43,6 +43,11 @@ TEST(ShellFile, AsCsvReadsBackBitForBit) {
   }
 }
 
+TEST(ShellFile, MayHaveAnExtensionInCapitals) {
+  EXPECT_EQ(parse_point_shell("x_m,y_m,z_m,nx,ny,nz\n0,0,0,0,0,1\n", "POINTS.CSV").size(), 1u);
+  EXPECT_EQ(shell_extension("a.Ply"), ".ply");
+}
+
 TEST(ShellFile, AsPlyReadsBackToSinglePrecision) {
   const std::vector<SurfacePoint> points = random_points(1000);
   const auto again = parse_point_shell(format_point_shell(points, "s.ply"), "s.ply");

@@ -28,6 +28,24 @@ TEST(ReadTextFile, ReadsUpToItsLimitAndNoFurther) {
   EXPECT_TRUE(test::input_error_of([] { read_text_file("/dev/zero", 1 << 20); }));
 }
 
+TEST(ReadTextFile, RefusesOtherEncodingsAndCompressedFiles) {
+  const test::TemporaryDirectory directory;
+  const auto problem_of = [&](const std::string& bytes) {
+    test::write_plainly(directory / "file", bytes);
+    const auto refusal = test::input_error_of([&] { read_text_file(directory / "file", 100); });
+    return refusal ? refusal->problem() : "";
+  };
+  for (const std::string& text : {std::string("\xFF\xFEv\0 \0", 6), std::string("\xFE\xFF\0v\0 ", 6),
+                                  std::string("v\0 \0", 4), std::string("\0v\0 ", 4)})
+    EXPECT_EQ(problem_of(text).find("is a text in UTF-16 or UTF-32; allowed: UTF-8"), 0u);
+  for (const char* start : {"\x1F\x8B\x08", "PK\x03\x04", "BZh91AY&SY", "\xFD\x37zXZ", "\x28\xB5\x2F\xFD"})
+    EXPECT_EQ(problem_of(start).find("is compressed; allowed: the unpacked file"), 0u) << start;
+  for (const std::string& other : {std::string("v 0 0 0\n"), std::string("v\0\0\0", 4), std::string("BZh")}) {
+    test::write_plainly(directory / "file", other);
+    EXPECT_EQ(read_text_file(directory / "file", 100), other);
+  }
+}
+
 /// A second read would wait for a writer forever.
 TEST(ReadTextFile, ReadsAPipeOnceAndKeepsItsContents) {
   const test::TemporaryDirectory directory;

@@ -174,6 +174,13 @@ TEST(LoopLog, RefusesWhatIsNotAWholeLog) {
     return std::string("nothing is refused");
   };
   EXPECT_EQ(error_with(lines), "nothing is refused");
+  // Any line ends, and a byte order mark.
+  for (const std::string end : {"\r\n", "\r"}) {
+    std::string other = "\xEF\xBB\xBF";
+    for (const std::string& line : lines) other += line + end;
+    test::write_plainly(file, other);
+    EXPECT_EQ(read_loop_log(file).inputs.size(), 10u);
+  }
   auto missing = lines;
   missing.erase(missing.begin() + 6);
   EXPECT_NE(error_with(missing).find("line 7: got call 5 where call 4"), std::string::npos) << error_with(missing);

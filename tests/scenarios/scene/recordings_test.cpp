@@ -38,6 +38,15 @@ TEST(MotionFile, HasItsAxesNormalised) {
     EXPECT_THROW(read(std::string("0,0,0,0,") + axis + "\n"), InputError) << axis;
 }
 
+TEST(MotionFile, ReportsAxesOfOtherLengths) {
+  std::vector<std::string> notes;
+  parse_stroke(kHeader + "0,0,0,0,0,0,-1.0009\n1,0,0,0,0,0,-2\n2,0,0,0,0,0.5,0\n", kFile, &notes);
+  EXPECT_EQ(notes, std::vector<std::string>{"line 3: axes were divided by their lengths, which are not 1: 2, of length "
+                                            "0.5 ... 2; are they directions?"});
+  parse_stroke(kHeader + "0,0,0,0,0,0,-1\n", kFile, &notes);
+  EXPECT_TRUE(notes.empty());
+}
+
 /// A quarter turn about x rotates the axis from -z to y.
 TEST(MotionFileOfQuaternions, TurnsTheToolsFrameIntoTheWorlds) {
   const RecordedMotion motion =

@@ -73,6 +73,16 @@ Polygon rotated(Polygon polygon, std::size_t by) {
   return polygon;
 }
 
+/// Checks also that each triangle is higher than the rounding of single precision.
+void expect_covered_without_flat_triangles(const Polygon& polygon) {
+  expect_covered(polygon);
+  for (const auto& [i, j, k] : divided(polygon).triangles) {
+    const Vec3 &a = polygon[i], &b = polygon[j], &c = polygon[k];
+    const double longest = std::max({(b - a).norm(), (c - b).norm(), (a - c).norm()});
+    EXPECT_GT((b - a).cross(c - a).norm() / longest, 1e-3);
+  }
+}
+
 /// An L-shaped polygon: 24 mm^2 minus the notch of 6 mm^2.
 const Polygon kL = {{6, 2, 0}, {6, 4, 0}, {0, 4, 0}, {0, 0, 0}, {3, 0, 0}, {3, 2, 0}};
 
@@ -93,12 +103,41 @@ TEST(Polygon, IsAFanIfItIsConvex) {
       with_middles.push_back(0.5 * (polygon[i] + polygon[(i + 1) % n]));
     }
     for (Vec3& p : with_middles) p = (p + Vec3(500, 0, 0)).cast<float>().cast<double>();
-    for (std::size_t by : {0u, 1u}) EXPECT_TRUE(is_fan(divided(rotated(with_middles, by)))) << n;
+    for (std::size_t by : {0u, 1u}) expect_covered_without_flat_triangles(rotated(with_middles, by));
   }
-  // Repeated corners, and polygons without area.
-  EXPECT_TRUE(is_fan(divided({{0, 0, 0}, {1, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}})));
+  // Polygons without area.
   EXPECT_TRUE(is_fan(divided({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}})));
   EXPECT_TRUE(is_fan(divided({{1, 1, 1}, {1, 1, 1}, {1, 1, 1}, {1, 1, 1}})));
+}
+
+/// A flat triangle on an edge would repeat the corners of the neighbour's triangle on the same edge.
+TEST(Polygon, HasNoFlatTrianglesIfItsCornersAreOnALine) {
+  Random random(5);
+  const Polygon square = {{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}};
+  const Polygon triangle = {{0, 0, 0}, {9, 1, 0}, {2, 5, 0}};
+  for (const Polygon& outline : {square, triangle, kL}) {
+    for (std::size_t middles = 1; middles < 5; ++middles) {
+      const Eigen::Quaterniond turn(Eigen::AngleAxisd(3.0 * random.uniform(), random.direction()));
+      Polygon flat;
+      for (std::size_t i = 0; i < outline.size(); ++i) {
+        const Vec3 &a = outline[i], &b = outline[(i + 1) % outline.size()];
+        for (std::size_t k = 0; k <= middles; ++k)
+          flat.emplace_back(a + static_cast<double>(k) / static_cast<double>(middles + 1) * (b - a));
+      }
+      for (std::size_t by = 0; by < flat.size(); ++by) {
+        SCOPED_TRACE(testing::Message() << outline.size() << " sides with " << middles << " corners, from " << by);
+        Polygon polygon = rotated(flat, by);
+        expect_covered_without_flat_triangles(polygon);
+        for (Vec3& p : polygon) p = turn * p + Vec3(1, 2, 3);
+        expect_covered_without_flat_triangles(polygon);
+        for (Vec3& p : polygon) p = p.cast<float>().cast<double>();
+        expect_covered_without_flat_triangles(polygon);
+      }
+    }
+  }
+  const Polygon repeated = {{0, 0, 0}, {1, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 0}};
+  expect_covered_without_flat_triangles(repeated);
+  EXPECT_EQ(divided(repeated).repeated_corners, 2u);
 }
 
 TEST(Polygon, IsCoveredOnceIfItHasReflexCorners) {
