@@ -301,7 +301,8 @@ std::string ledger_markdown(const Json& ledger) {
   text += table_of(claims, "Findings of this project, which are no claims of the thesis",
                    [](const Json& claim) { return is(claim, "ours"); });
   return text +
-         "\n[ERRATA.md](ERRATA.md) lists what the thesis misprints; [figures.md](figures/figures.md) has the "
+         "\n[Controls](../../scenarios/thesis/README.md#controls) show which verdicts change with a wrong law, and "
+         "which claims pass with it.\n\n[ERRATA.md](ERRATA.md) lists what the thesis misprints; [figures.md](figures/figures.md) has the "
          "figures.\n";
 }
 
