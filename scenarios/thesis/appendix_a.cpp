@@ -23,8 +23,10 @@ Measured measure_peg_motion(const Evidence& e) {
   Measured measured;
   for (const auto& [scene, name] : {std::pair("peg_in_hole_2d_frictionless_", "no friction"),
                                     std::pair("peg_in_hole_2d_", "the trainer's friction")}) {
-    for (const std::string algorithm : {"original_averaging", kProposedLaw})
-      measured.push_back(vibration(algorithm + ", " + name, e.run(scene + algorithm)));
+    measured.push_back(
+        vibration(fmt::format("original_averaging, {}", name), e.run(fmt::format("{}original_averaging", scene))));
+    measured.push_back(reference_vibration(fmt::format("{}, {}", kProposedLaw, name),
+                                           e.run(fmt::format("{}{}", scene, kProposedLaw))));
   }
   return measured;
 }

@@ -33,7 +33,7 @@ constexpr std::uint64_t kStepsBetweenEvaluations = 8;
 constexpr double kLanded = 0.5;
 
 /// Returns the largest depth of the drill in the block after kLanded, at each tilt [m]. The final depth would not be
-/// enough: a drill that passes through the block has left the block at the end.
+/// enough: a drill that passes through the block has left the block at the end. NaN for a run that diverges.
 MeasuredCase pressed(const Evidence& e, const std::string& name, const std::string& scene,
                      std::vector<std::string> overrides = {}) {
   MeasuredCase m{name, {}};
@@ -44,19 +44,27 @@ MeasuredCase pressed(const Evidence& e, const std::string& name, const std::stri
     IdealTrajectoryObserver ideal(std::get<BlockEnvironment>(loaded.scenario.environment).block,
                                   make_cylinder(loaded.scenario.tool));
     double& deepest = m.values[fmt::format("at_{}", tilt)].emplace_back(0.0);
+    const auto rows = static_cast<std::uint64_t>(loaded.scenario.time.steps);
+    bool complete = false;
     for_each_row(checked(loaded), [&](const StepRecord& row) {
+      complete = row.step + 1 == rows;
       if (row.step % kStepsBetweenEvaluations != 0 || row.time < kLanded) return;
       ideal.on_step(row);
       if (ideal.error()) deepest = std::max(deepest, ideal.error()->interpenetration);
     });
+    // A run that diverges does not reach its last row.
+    if (!complete) deepest = std::nan("");
   }
   return m;
 }
 
-/// Returns the largest depth over the tilts [m].
+/// Returns the largest depth over the tilts [m]; NaN if the run at some tilt diverges.
 double deepest(const MeasuredCase& m) {
   double largest = 0.0;
-  for (const auto& [tilt, depth] : m.values) largest = std::max(largest, depth.front());
+  for (const auto& [tilt, depth] : m.values) {
+    if (std::isnan(depth.front())) return depth.front();
+    largest = std::max(largest, depth.front());
+  }
   return largest;
 }
 
@@ -80,8 +88,8 @@ Measured measure_averaging(const Evidence& e) {
 }
 
 // ---- B1b, B5: a drill turned in the hole as in B.3.1, with the proposed algorithm and with the original algorithm of
-// appendix B: its depth while it is near the hole [m], and the number of hands with which it passes through the
-// surface.
+// appendix B: its depth while it is near the hole [m], NaN if the run diverges; and the number of hands with which it
+// passes through the surface, or with which the proposed algorithm diverges.
 
 constexpr const char* kOriginalLaw = "original_averaging";
 
@@ -99,7 +107,8 @@ Measured measure_original(const Evidence& e) {
   for (const std::string law : {kProposedLaw, kOriginalLaw}) {
     const Result run = turned(e, law, 1.0);
     const auto depth = number_of(run.metrics, "ideal_trajectory.gentle.interpenetration_max_m");
-    measured.push_back({law, {{"depth", {depth.value_or(0.0)}}}});
+    const bool diverges = run.end.outcome == Outcome::diverges;
+    measured.push_back({law, {{"depth", {diverges ? std::nan("") : depth.value_or(0.0)}}}});
   }
   return measured;
 }
@@ -115,8 +124,10 @@ constexpr double kHands[] = {0.5, 1.0, 2.0, 3.5};  ///< [N]
 MeasuredValues measure_pop_through(const Evidence& e) {
   MeasuredValues values = {{"hands", {static_cast<double>(std::size(kHands))}}};
   for (const std::string law : {kProposedLaw, kOriginalLaw})
-    values[law] = {static_cast<double>(std::ranges::count_if(
-        kHands, [&](double force) { return turned(e, law, force).end.outcome == Outcome::went_through; }))};
+    values[law] = {static_cast<double>(std::ranges::count_if(kHands, [&](double force) {
+      const Outcome outcome = turned(e, law, force).end.outcome;
+      return outcome == Outcome::went_through || (law == kProposedLaw && outcome == Outcome::diverges);
+    }))};
   return values;
 }
 
@@ -141,7 +152,8 @@ Measured vibrations_beside_shaping(const Evidence& e, const std::string& law, co
                                             "record.ratio_iterations=[]"};
       if (scene == task) overrides.insert(overrides.end(), overrides_of_task.begin(), overrides_of_task.end());
       const Result run = e.run(scene, overrides);
-      measured.push_back(vibration(algorithm + (scene == task ? ", task 2" : ", planar peg"), run));
+      const auto measure = algorithm == kProposedLaw ? reference_vibration : vibration;
+      measured.push_back(measure(algorithm + (scene == task ? ", task 2" : ", planar peg"), run));
       measured.back().values["diverges"] = {run.end.outcome == Outcome::diverges ? 1.0 : 0.0};
     }
   }
@@ -150,7 +162,8 @@ Measured vibrations_beside_shaping(const Evidence& e, const std::string& law, co
 
 Finding judge_summation(const Measured& m, const PublishedNumbers& p) {
   const auto unstable = [&](std::size_t i) {
-    return m.at(i)["diverges"] == 1.0 || vibrates_much_more(m.at(i), m.at(i + 1), p);
+    const bool stable_reference = m.at(i + 1)["diverges"] == 0.0;
+    return stable_reference && (m.at(i)["diverges"] == 1.0 || vibrates_much_more(m.at(i), m.at(i + 1), p));
   };
   const bool peg = unstable(0), task = unstable(2);
   return {decide(peg && task, peg || task),

@@ -355,6 +355,8 @@ std::string ledger_markdown(const Json& ledger) {
   text += table_of(claims, "Findings of this project, which are no claims of the thesis",
                    [](const Json& claim) { return is(claim, "ours"); });
   return text +
+         "\n[Controls](../../scenarios/thesis/README.md#controls) are wrong laws and other values of K; the page lists the "
+         "verdicts that change with them.\n"
          "\n[ERRATA.md](ERRATA.md) lists misprints of the thesis; [figures.md](figures/figures.md) has the figures.\n";
 }
 

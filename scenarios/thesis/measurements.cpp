@@ -78,6 +78,13 @@ MeasuredCase vibration(const std::string& name, const Result& run) {
            {"force_reversals", {number("force_reversals")}}}};
 }
 
+MeasuredCase reference_vibration(const std::string& name, const Result& run) {
+  MeasuredCase m = vibration(name, run);
+  if (run.end.outcome == Outcome::diverges)
+    for (auto& [value, numbers] : m.values) numbers = {std::nan("")};
+  return m;
+}
+
 bool vibrates_more(const MeasuredCase& a, const MeasuredCase& b) {
   return a["velocity_variation"] > b["velocity_variation"] && a["vibration_power"] > b["vibration_power"];
 }

@@ -95,6 +95,9 @@ double seconds_with(const std::vector<ContactBuffer>& sets, int repetitions, Wor
 /// Returns the vibration measures of a run: total variation of the velocity [m/s], power of the velocity above 30 Hz
 /// [m^2/s^2], and number of force reversals.
 MeasuredCase vibration(const std::string& name, const Result& run);
+/// Returns vibration() of the run that others are compared with. If this run diverges, the values are NaN, so that
+/// every comparison with them fails: a law that diverges at once has a small variation.
+MeasuredCase reference_vibration(const std::string& name, const Result& run);
 
 /// Returns true if `a` has a larger velocity variation and a larger vibration power than `b`.
 bool vibrates_more(const MeasuredCase& a, const MeasuredCase& b);

@@ -223,6 +223,10 @@ class Pages(unittest.TestCase):
         self.assertIn(version, started(PROGRAM, "--version").stdout)
 
 
+def record(name):
+    return json.loads((RECORD / f"{name}.json").read_text(encoding="utf-8"))
+
+
 class Generated(unittest.TestCase):
     def test_tables_are_those_on_record(self):
         for manual in MANUALS:
@@ -230,6 +234,25 @@ class Generated(unittest.TestCase):
                 self.assertEqual(
                     renewed(manual.text, MAKERS), manual.text, "renew it with scripts/docs --tables"
                 )
+
+    def test_controls_and_pairs_are_about_the_verdicts_on_record(self):
+        """A wrong law or a pair of assumptions says nothing about a rule or a number that has changed since."""
+        ledger = {claim["id"]: claim for claim in record("claims")["claims"]}
+        faults = json.loads((SOURCE / "tests/mutants/controls.json").read_text(encoding="utf-8"))
+        controls = record("controls")["controls"]
+        self.assertEqual(
+            {fault["name"]: fault["meaning"] for fault in faults},
+            {control["name"]: control["meaning"] for control in controls},
+        )
+        for control in controls:
+            for case in control["cases"]:
+                claim = ledger[case["id"]]
+                self.assertEqual(case["recorded"], [claim["verdict"], claim["number"]], case)
+        for entry in record("pairs")["claims"]:
+            claim = ledger[entry["id"]]
+            self.assertEqual(entry["verdict"], claim["verdict"], entry["id"])
+            for pair in entry["pairs"]:
+                self.assertLessEqual(set(pair["values"]), set(claim["deciders"]), entry["id"])
 
     def test_a_block_without_end_is_refused(self):
         with self.assertRaises(InputError):

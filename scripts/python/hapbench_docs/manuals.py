@@ -190,6 +190,49 @@ def robustness(_old=""):
     return "\n".join(lines)
 
 
+def controls(_old=""):
+    """For each claim, the wrong laws of controls.json with which its verdict changes."""
+    changes, judged, meanings = {}, {}, []
+    for control in read("controls.json")["controls"]:
+        meanings.append(f"- `{control['name']}`: {control['meaning']}.")
+        for case in control["cases"]:
+            judged[case["id"]] = judged.get(case["id"], 0) + 1
+            names = changes.setdefault(case["id"], [])
+            if case["verdict"] != case["recorded"][0]:
+                names.append(f"`{control['name']}` ({case['verdict']})")
+    lines = ["| claim | verdict | changes | with |", "|---|---|---|---|"]
+    for claim in read("claims.json")["claims"]:
+        if claim["id"] in changes:
+            names = changes[claim["id"]]
+            lines.append(
+                f"| {claim['id']} | {claim['verdict']} | {len(names)} of {judged[claim['id']]} | "
+                f"{', '.join(names) or '–'} |"
+            )
+    return "\n".join([*meanings, "", *lines])
+
+
+def pairs(_old=""):
+    """For each claim that several assumptions decide, what pairs of them do to its verdict."""
+    lines = [
+        "| claim | verdict | pairs | recorded verdict | verdict of one of both | another verdict |",
+        "|---|---|---|---|---|---|",
+    ]
+    for claim in read("pairs.json")["claims"]:
+        back, others = [], []
+        for pair in claim["pairs"]:
+            text = " and ".join(f"`{name}` = {value}" for name, value in pair["values"].items())
+            if pair["verdict"] == claim["verdict"]:
+                back.append(text)
+            elif pair["verdict"] not in pair["alone"]:
+                others.append(f"{text}: {pair['verdict']}")
+        rest = len(claim["pairs"]) - len(back) - len(others)
+        lines.append(
+            f"| {claim['id']} | {claim['verdict']} | {len(claim['pairs'])} | {'; '.join(back) or '–'} | {rest} | "
+            f"{'; '.join(others) or '–'} |"
+        )
+    return "\n".join(lines)
+
+
 def six_dof(_old=""):
     """Returns the table of the study six_dof, whose sweep.csv is stored as six_dof.csv. It has a row for each scene
     and, in the edge and the slot, for each hand, grip and pivot: force and torque of the device with torque, and for
@@ -319,5 +362,7 @@ MAKERS = {
     "main_results": main_results,
     "experiments": experiments,
     "robustness": robustness,
+    "controls": controls,
+    "pairs": pairs,
     "six_dof": six_dof,
 }

@@ -1,0 +1,184 @@
+#!/usr/bin/env python3
+"""Judges the claims of the thesis with deliberately wrong laws: a rule that every law passes shows nothing.
+
+    tests/mutants/controls.py [BUILD] [--only NAME,...] [--claims ID,...]
+
+For each control of controls.json: puts the fault in, builds the program, judges the claims with it
+(hapbench reproduce), and adds the verdicts to results/reference/controls.json. Cases on record are
+kept, so an interrupted command continues. Without --claims, claims about computing time and those of
+appendix D, which take a minute, are left out. The source is restored after each control, also if
+interrupted, and the build at the end. Without a build it only checks that the text of each control
+stands once in its file. scripts/docs writes the table of scenarios/thesis/README.md.
+"""
+import argparse
+import importlib
+import json
+import signal
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE))
+mutants = importlib.import_module("try")  # a keyword of Python
+
+REFERENCE = mutants.SOURCE / "results" / "reference"
+RECORD = REFERENCE / "controls.json"
+NOT_MEASURED = "not measured"  # a run diverged, so the rule had nothing to judge
+
+
+def read(file):
+    return json.loads(file.read_text(encoding="utf-8"))
+
+
+def program_of(build):
+    status, output = mutants.said("cmake", "--build", build, "--target", "bin/hapbench")
+    if status:
+        raise RuntimeError("it does not compile:\n" + "\n".join(output.splitlines()[-20:]))
+    return build / "bin" / "hapbench"
+
+
+def verdicts(program, ids):
+    """Verdict and number of each claim. If the command fails for several claims, judges them one by one."""
+    with tempfile.TemporaryDirectory() as folder:
+        done = subprocess.run(
+            [program, "reproduce", "--only", ",".join(ids), "--out", folder, "--json"],
+            stdout=subprocess.PIPE,
+            stderr=subprocess.DEVNULL,
+            text=True,
+        )
+    if done.returncode in (0, 3):  # 3: a run did not end as its scenario expects
+        return {claim["id"]: claim for claim in json.loads(done.stdout)["claims"]}
+    if len(ids) == 1:
+        return {ids[0]: {"verdict": NOT_MEASURED, "number": ""}}
+    half = len(ids) // 2
+    return {**verdicts(program, ids[:half]), **verdicts(program, ids[half:])}
+
+
+def faults(control):
+    """The text with the fault by file. `file` of a control may name several files by a pattern."""
+    files = sorted(mutants.SOURCE.glob(control["file"]))
+    if "*" in control["file"]:
+        files = [path for path in files if control["find"] in path.read_text(encoding="utf-8")]
+    texts = {
+        path: mutants.mutated({**control, "file": str(path.relative_to(mutants.SOURCE))})
+        for path in files
+    }
+    if not texts:
+        raise RuntimeError(f"{control['name']}: no file {control['file']} has {control['find']!r}")
+    return texts
+
+
+def with_fault(control, work):
+    """What `work` returns while the files have the fault."""
+    texts = faults(control)
+    originals = {path: path.read_bytes() for path in texts}
+    try:
+        for path, text in texts.items():
+            path.write_text(text, encoding="utf-8")
+        return work()
+    finally:
+        for path, original in originals.items():
+            path.write_bytes(original)
+
+
+def write(record):
+    """One line for each case, so that changes of the record can be read."""
+    lines = [
+        f'    {{"name": {json.dumps(one["name"])}, "meaning": {json.dumps(one["meaning"])}, "cases": [\n'
+        + ",\n".join("      " + json.dumps(case, ensure_ascii=False) for case in one["cases"])
+        + "]}"
+        for one in record
+    ]
+    about = "Verdicts with a wrong law; made by tests/mutants/controls.py."
+    RECORD.write_text(
+        f'{{\n  "about": "{about}",\n  "controls": [\n' + ",\n".join(lines) + "\n  ]\n}\n",
+        encoding="utf-8",
+    )
+
+
+def judged(build, controls, claims):
+    recorded = read(RECORD)["controls"] if RECORD.exists() else []
+    for control in controls:
+        entry = next((one for one in recorded if one["name"] == control["name"]), None)
+        if entry is None:
+            entry = {"name": control["name"], "cases": []}
+            recorded.append(entry)
+        entry["meaning"] = control["meaning"]
+        # A case is about the verdict and number that the ledger has now.
+        now = {
+            claim["id"]: [claim["verdict"], claim["number"]]
+            for claim in read(REFERENCE / "claims.json")["claims"]
+        }
+        entry["cases"] = [
+            case for case in entry["cases"] if case["recorded"] == now.get(case["id"])
+        ]
+        known = {case["id"] for case in entry["cases"]}
+        missing = [claim for claim in claims if claim not in known]
+        if not missing:
+            continue
+        found = with_fault(control, lambda: verdicts(program_of(build), missing))
+        if all(found[claim]["verdict"] == NOT_MEASURED for claim in missing):
+            raise RuntimeError(
+                f"{control['name']}: the program judges no claim; does it run at all?"
+            )
+        entry["cases"] += [
+            {
+                "id": claim,
+                "recorded": now[claim],
+                "verdict": found[claim]["verdict"],
+                "number": found[claim]["number"],
+            }
+            for claim in missing
+        ]
+        write(recorded)
+        moved = sum(case["verdict"] != case["recorded"][0] for case in entry["cases"])
+        print(f"{control['name']:20} changes {moved} of {len(entry['cases'])} verdicts", flush=True)
+    program_of(build)
+
+
+def chosen(all_of, names, what):
+    if unknown := set(names) - set(all_of):
+        raise RuntimeError(f"no {what} is called {', '.join(sorted(unknown))}")
+    return [name for name in all_of if name in names or not names]
+
+
+def main():
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("build", type=Path, nargs="?", help="a build folder, such as build/release")
+    parser.add_argument("--only", default="", help="controls to judge with, instead of all")
+    parser.add_argument("--claims", default="", help="claims to judge")
+    options = parser.parse_args()
+    signal.signal(signal.SIGTERM, signal.default_int_handler)  # restores the source
+    listed = lambda text: [name for name in text.split(",") if name]  # noqa: E731
+    try:
+        controls = {one["name"]: one for one in read(HERE / "controls.json")}
+        names = chosen(list(controls), listed(options.only), "control")
+        for name in names:
+            faults(controls[name])
+        if options.build is None:
+            return 0
+        ledger = [
+            claim
+            for claim in read(REFERENCE / "claims.json")["claims"]
+            if not claim["timing"] and claim["verdict"] != "not testable"
+        ]
+        wanted = listed(options.claims)
+        claims = chosen([claim["id"] for claim in ledger], wanted, "judged claim")
+        if not wanted:
+            claims = [claim for claim in claims if not claim.startswith("D")]
+        judged(options.build.resolve(), [controls[name] for name in names], claims)
+        return 0
+    except RuntimeError as problem:
+        print(f"tests/mutants/controls.py: {problem}", file=sys.stderr)
+        return 2
+    except KeyboardInterrupt:
+        print(f"interrupted: build {options.build} before its tests are run", file=sys.stderr)
+        return 130
+
+
+if __name__ == "__main__":
+    sys.exit(main())
