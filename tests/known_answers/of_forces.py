@@ -465,6 +465,7 @@ def rigid_tool_in_a_hand(bench):
         },
         rendering={"algorithm": "mean", "stiffness_N_per_m": 3000, "mass_kg": 0.05},
         reference_force={"type": "rigid_contact"},
+        record={"force_reference": True},
     )
     run = bench.run(held)
     target = profile(down, np.arange(n) * dt)
@@ -483,6 +484,37 @@ def rigid_tool_in_a_hand(bench):
     )
     naive = ("distance from the target", rms(tip[:, 2] - target))
     bench.metrics(run, [("fidelity.displacement_rms_m", *known, *naive)])
+    # The error of the reference is estimated; it bounds the error against the closed form.
+    reference = run.table("force_reference.csv").vectors("mfx_N", "mfy_N", "mfz_N")
+    exact = 400.0 * (rigid - np.column_stack([rigid[:, :2], target]))
+    error = run.summary["fidelity"]["reference_error_N"]
+    largest = norms(reference - exact).max()
+    bench.add(
+        "run --json: reference_error_N",
+        bool(largest <= error + 1e-14 and error < 1e-9),
+        True,
+        "at least the largest distance from the closed form, up to rounding of 1e-17 m times 400 N/m",
+        EXACT,
+        ("below it", bool(error < largest - 1e-14)),
+    )
+    force = run.table().vectors("fx_N", "fy_N", "fz_N")
+    for metric, per_newton in (
+        ("force_error_rms_N", 1.0),
+        ("force_error_relative", 1.0 / rms(norms(reference))),
+        ("force_error_normal_rms_N", 1.0),
+        ("force_error_tangential_rms_N", 1.0),
+        ("force_artefact_share", 1.0 / rms(norms(force))),
+        ("force_direction_error_rad", 1.0 / 0.1),
+        ("displacement_rms_m", 1.0 / 400.0),
+    ):
+        bench.add(
+            f"run --json: tolerances.fidelity.{metric}",
+            run.summary["tolerances"][f"fidelity.{metric}"],
+            5.0 * error * per_newton,
+            "five times the error of the reference, in the unit of the metric",
+            ROUNDING,
+            ("the error itself", error * per_newton),
+        )
     over = bench.folder / "over"
     bench.hapbench("converge", held, "--over", "rendering.algorithm=mean", "--out", over, "--quiet")
     printed = Table(over / "convergence_model.csv")["displacement_rms_m"][0]
