@@ -191,7 +191,9 @@ def cases(laws):
             4,
             scene("rk4", 20.0, law),
             driven(share * K, share * 20.0),
-            f"renders {share:.4g} times the stiffness of one spring" if abs(share - 1) > 1e-12 else "",
+            f"renders {share:.4g} times the stiffness of one spring"
+            if abs(share - 1) > 1e-12
+            else "",
         )
     for name, hand, force in HANDS:
         why = "its force is sampled and held" if name in ("force, sine", "impedance") else ""

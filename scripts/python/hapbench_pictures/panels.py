@@ -21,7 +21,9 @@ SPANS = 600  # number of time spans of a curve; a page hardly shows more
 LARGEST_RATIO = 30
 # Runs with peaks beyond a gap of the first ratio, and failed runs beyond the second ratio, do not influence the axis.
 THROWN_RATIO, FAILED_RATIO = 100, 5
-ROUNDING = 1e-9  # fraction of a value that an axis must span; a smaller span shows rounding errors only
+ROUNDING = (
+    1e-9  # fraction of a value that an axis must span; a smaller span shows rounding errors only
+)
 MOST_THROWN = 3  # largest number of runs whose largest value is printed in a panel
 PANEL = 1.1  # usual height of a panel without its tick labels [inch]
 GRID = 400  # number of cells along each side of a section
