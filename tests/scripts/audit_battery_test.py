@@ -124,7 +124,7 @@ class OneAxis(unittest.TestCase):
         t, position, force = simulated(600.0, 2.0, 2)
         scratch = scratch_folder(self)
         file = scratch / "log.csv"
-        lines = [f"{a!r},{b!r},{c!r}" for a, b, c in zip(t, position[:, 1], force[:, 1])]
+        lines = [f"{a!s},{b!s},{c!s}" for a, b, c in zip(t, position[:, 1], force[:, 1])]
         file.write_text("\n".join(["stamp,tip_z,load", *lines]) + "\n")
         for columns in ("time=stamp,position=tip_z,force=load", "time=1,position=2,force=3"):
             words = ("audit", file, "--json", "--out", scratch / "out", "--columns", columns)

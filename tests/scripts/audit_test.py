@@ -44,7 +44,7 @@ def table(z, force, **more):
 
 def csv_text(columns):
     rows = zip(*(values.tolist() for values in columns.values()))
-    return "\n".join([",".join(columns), *(",".join(map(repr, row)) for row in rows)]) + "\n"
+    return "\n".join([",".join(columns), *(",".join(map(str, row)) for row in rows)]) + "\n"
 
 
 def wall(z, stiffness, damping=0.0):
@@ -265,7 +265,7 @@ class Formats(unittest.TestCase):
         file = scratch / "engine.csv"
         lines = ["stamp_ns,tip.x [mm],tip.y [mm],tip.z [mm],qw,qx,qy,qz,load_x,load_y,load_z"]
         lines += [
-            f"{start + 1_000_000 * k},0,0,{1e3 * z[k]!r},1,0,0,0,0,0,{-force[k]!r}"
+            f"{start + 1_000_000 * k},0,0,{1e3 * z[k]!s},1,0,0,0,0,0,{-force[k]!s}"
             for k in range(len(z))
         ]
         file.write_text("\n".join(lines) + "\n")

@@ -119,7 +119,7 @@ class Consumer(unittest.TestCase):
             )
             steps = [i / 1500 for i in range(1500)]
             motion.write_text(
-                "".join(f"{1e-4 * t!r},{2e-4 * t!r},{top + (deep - top) * t!r}\n" for t in steps)
+                "".join(f"{1e-4 * t!s},{2e-4 * t!s},{top + (deep - top) * t!s}\n" for t in steps)
             )
             largest = float(must(program, scenario, motion, log, cwd=self.folder))
             self.assertGreater(largest, 0.1, scenario)

@@ -1,6 +1,7 @@
 """The command `import stroke`: files, pipes, presets, Ctrl-C and output."""
 import json
 import os
+import shlex
 import signal as signals
 import subprocess
 import sys
@@ -111,7 +112,7 @@ class Command(Given):
             f"limit tap_wall --device <(cat {self.root}/device) --vary rendering.stiffness_N_per_m "
             f"--between 1000:2000 --out {self.root}/limit",
         ):
-            done = ran("bash", "-c", f"{PROGRAM} {words}")
+            done = ran("bash", "-c", f"{shlex.quote(str(PROGRAM))} {words}")
             self.assertEqual(done.returncode, 0, done.stderr)
         missing = run(
             "limit", "tap_wall", "--device", "./none", "--vary", "rendering.stiffness_N_per_m"
@@ -207,7 +208,9 @@ class Command(Given):
             cwd=self.root,
         )
         line = (
-            json.loads(said.stdout)["next"].replace("hapbench", str(PROGRAM)).partition(" && ")[0]
+            json.loads(said.stdout)["next"]
+            .replace("hapbench", shlex.quote(str(PROGRAM)))
+            .partition(" && ")[0]
         )
         self.assertEqual(ran("sh", "-c", line, cwd=self.root).returncode, 0)
         self.assertTrue((self.root / "my 'log'_stroke.json").exists())

@@ -260,7 +260,7 @@ class Layouts(Given):
 
     def test_clocks_in_two_columns_counters_and_days(self):
         log = "header.stamp.secs,header.stamp.nsecs,x,y,z\n" + "".join(
-            f"{1764288000 + (2 * i) // 1000},{(2 * i) % 1000 * 10**6},{','.join(map(repr, row))}\n"
+            f"{1764288000 + (2 * i) // 1000},{(2 * i) % 1000 * 10**6},{','.join(map(str, row))}\n"
             for i, row in enumerate(self.PLACES.tolist())
         )
         for names in (
@@ -286,7 +286,7 @@ class Layouts(Given):
             found["warnings"][0],
         )
         of_day = "t,x,y,z\n" + "".join(
-            f"2026/11/28 05:59:{0.002 * i:06.3f},{','.join(map(repr, row))}\n"
+            f"2026/11/28 05:59:{0.002 * i:06.3f},{','.join(map(str, row))}\n"
             for i, row in enumerate(self.PLACES.tolist())
         )
         self.assertIn("are read as seconds since the first", self.assert_places(of_day)[0])
@@ -418,7 +418,7 @@ class Layouts(Given):
             "field.pose.orientation" + end for end in ends[1]
         ]
         log = f"%time,field.header.seq,{','.join(names)}\n" + "".join(
-            f"{1600000000123456789 + 2000000 * i},{i},{','.join(map(repr, row))}\n"
+            f"{1600000000123456789 + 2000000 * i},{i},{','.join(map(str, row))}\n"
             for i, row in enumerate(pose.tolist())
         )
         columns = "time=%time,position=field.pose.position.x,orientation=field.pose.orientation.x"

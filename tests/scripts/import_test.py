@@ -99,7 +99,7 @@ class Recordings(Given):
     def test_the_mean_direction_of_the_tip_shows_a_wrong_order(self):
         # Two rotations about x, by 0.2 +- 0.1 rad, with w first.
         rows = "".join(
-            f"{0.01 * i},0,0,0,{math.cos(a / 2)!r},{math.sin(a / 2)!r},0,0\n"
+            f"{0.01 * i},0,0,0,{math.cos(a / 2)!s},{math.sin(a / 2)!s},0,0\n"
             for i, a in enumerate((0.1, 0.3))
         )
         layout = (
@@ -306,7 +306,7 @@ class Recordings(Given):
         text = (
             " ".join(names)
             + "\n"
-            + "".join(" ".join(map(repr, sample)) + " \r\n" for sample in samples)
+            + "".join(" ".join(map(str, sample)) + " \r\n" for sample in samples)
         )
         expected = self.stroke(text, "", preset="hapi")
         np.testing.assert_allclose(expected.position[1], [0.001, -0.004, 0.002], atol=1e-15)
