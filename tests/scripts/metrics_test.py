@@ -321,6 +321,7 @@ class Recomputed:
             "fidelity.force_error_tangential_rms_N": rms(e - dot(n, e) * n),
             "fidelity.reference_mu": np.sum(load[:, 0] * norms(m - load * n)) / np.sum(load**2),
             "fidelity.force_artefact_share": rms(f - dot(unit(m), f) * unit(m)) / rms(f),
+            "fidelity.displacement_rms_m": None,  # no hand with a target moves the tool of these scenes
             "fidelity.direction_rows": both.sum(),
             "fidelity.force_direction_error_rad": angles[both].mean() if both.any() else None,
         }

@@ -29,7 +29,7 @@ class Laws(Scratch):
             self.assertNotIn("plugin", built_in.summary["provenance"])
         self.assertIn("test_summation", hapbench.algorithms())
         self.assertIn(
-            "All springs added", json.dumps(hapbench.command("describe", "test_summation"))
+            "The sum of all springs", json.dumps(hapbench.command("describe", "test_summation"))
         )
 
     def test_a_force_and_a_tensor(self):
