@@ -75,10 +75,10 @@ bool PolygonDivider::project(std::span<const Vec3> corners) {
     Eigen::Index axis = 0;
     box.size().maxCoeff(&axis);
     const auto on_axis = [&](const Vec3& a, const Vec3& b) { return a[axis] < b[axis]; };
-    const auto [low, high] = std::ranges::minmax_element(corners, on_axis);
-    const Vec3 direction = (*high - *low).normalized();
+    const auto ends = std::ranges::minmax_element(corners, on_axis);
+    const Vec3 low = *ends.min, direction = (*ends.max - low).normalized();
     const bool is_line = std::ranges::all_of(corners, [&](const Vec3& p) {
-      return (p - *low).cross(direction).norm() <= std::max(rounding_, 2.0 * kSmallArea) * diameter;
+      return (p - low).cross(direction).norm() <= std::max(rounding_, 2.0 * kSmallArea) * diameter;
     });
     if (!is_line) throw PolygonError("crosses itself: its parts have opposite winding; allowed: a simple polygon");
     return false;

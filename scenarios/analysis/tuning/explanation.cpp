@@ -88,9 +88,12 @@ std::map<std::string, std::vector<const TuneTrial*>> candidates(Trials& trials, 
   std::map<std::string, std::vector<const TuneTrial*>> all;
   for (const auto& [key, trial] : trials.all())
     if (const std::string limit = single_limit(trials, trial); !limit.empty()) all[limit].push_back(&trial);
-  for (auto& [name, found] : all)
-    found = trials.smallest_excess(std::move(found), count, /*one_per_setting=*/false,
-                                   [&](const TuneTrial& trial) { return single_limit(trials, trial) == name; });
+  for (auto& [name, found] : all) {
+    const auto is_of_limit = [&, &limit = name](const TuneTrial& trial) {
+      return single_limit(trials, trial) == limit;
+    };
+    found = trials.smallest_excess(std::move(found), count, /*one_per_setting=*/false, is_of_limit);
+  }
   return all;
 }
 
