@@ -351,8 +351,8 @@ Finding judge_tandpasta(const MeasuredCase& m, const PublishedNumbers& p) {
   return {
       decide(unchanged && smallest >= threshold(p, "boosted"), unchanged && smallest > 1.0),
       fmt::format(
-          "the weights {} the elastic energy and {} the outward force; with the time step of the thesis, the peg leaves "
-          "after 5 steps because the explicit friction diverges, not because of the law",
+          "the weights {} the elastic energy and {} the outward force; with the time step of the thesis, the peg "
+          "leaves after 5 steps because the explicit friction diverges, not because of the law",
           unchanged ? "keep" : "change", smallest > 1.0 ? "raise" : "do not raise"),
       fmt::format("energy ratio {:.12g}; outward force at tilts of {} rad {:.1f} times that of the plain springs; in a "
                   "converged run the peg leaves after {:.3f} s, with summation after {:.3f}, with stiffness shaping "

@@ -173,11 +173,11 @@ Finding judge_summation(const Measured& m, const PublishedNumbers& p) {
 
 Finding judge_highest_depth(const Measured& m, const PublishedNumbers& p) {
   const bool peg = vibrates_much_more(m.at(0), m.at(1), p), task = vibrates_much_more(m.at(2), m.at(3), p);
-  return {
-      decide(peg || task, vibrates_more(m.at(0), m.at(1)) && vibrates_more(m.at(2), m.at(3))),
-      fmt::format(
-          "the averaged direction turns quickly where gradients cancel: the tool {} with the planar peg and {} in task 2",
-          peg ? "vibrates" : "does not vibrate much more", task ? "vibrates" : "does not vibrate much more")};
+  return {decide(peg || task, vibrates_more(m.at(0), m.at(1)) && vibrates_more(m.at(2), m.at(3))),
+          fmt::format(
+              "the averaged direction turns quickly where gradients cancel: the tool {} with the planar peg and {} in "
+              "task 2",
+              peg ? "vibrates" : "does not vibrate much more", task ? "vibrates" : "does not vibrate much more")};
 }
 
 // ---- G1: gradients on both sides of the tool's median line: the inner product of the gradients for two wall points,

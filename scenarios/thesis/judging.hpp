@@ -51,7 +51,8 @@ inline constexpr VerdictText kVerdicts[] = {
      "✓"},
     {"not consistent in simulation", "simulated subjects do not show the published differences", "✗"},
     {"not judged",
-     "an input is calibrated to a published number, but the calibration misses this number, so the run predicts nothing",
+     "an input is calibrated to a published number, but the calibration misses this number, so the run predicts "
+     "nothing",
      "?"},
     {"holds", "a finding of this project that the measurement shows", "✓"},
     {"does not hold", "a finding of this project that the measurement does not show", "✗"}};

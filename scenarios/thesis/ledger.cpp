@@ -158,8 +158,8 @@ std::string other_values(const Json& claims) {
   if (cells.empty()) return "";
   std::string text =
       "\n### What other assumptions would change\n\nEach row has an assumption, and the values with which a claim has "
-      "another verdict, with the number of this case. [Sensitivity](../../scenarios/thesis/README.md#sensitivity) states "
-      "the meaning of each assumption. For example, the local average is off if `local.average` is false.\n\n"
+      "another verdict, with the number of this case. [Sensitivity](../../scenarios/thesis/README.md#sensitivity) "
+      "states the meaning of each assumption. For example, the local average is off if `local.average` is false.\n\n"
       "| assumption | other value: claim with its verdict |\n|---|---|\n";
   for (const auto& [assumption, cell] : cells) text += fmt::format("| `{}` | {} |\n", assumption, cell);
   return text + notes;
@@ -209,8 +209,8 @@ std::string revisions(const Json& claims) {
   std::string text;
   if (!rows.empty())
     text +=
-        "\n### Rules that were changed after their verdicts were known\n\nThe column *rule before* quotes the earlier rule "
-        "in its earlier wording.\n\n| id | rule before | verdict before | verdict now | "
+        "\n### Rules that were changed after their verdicts were known\n\nThe column *rule before* quotes the earlier "
+        "rule in its earlier wording.\n\n| id | rule before | verdict before | verdict now | "
         "reason |\n|---|---|---|---|---|\n" +
         rows;
   if (!added.empty())
@@ -331,9 +331,9 @@ std::string ledger_markdown(const Json& ledger) {
   for (const VerdictText& verdict : kVerdicts)
     text += fmt::format("- {} *{}*: {}.\n", verdict.mark, verdict.name, verdict.meaning);
   text +=
-      "\nDecided by: the thesis leaves some values open, so hapbench assumes them. Each assumption was set to each of its "
-      "plausible values, one at a time, and calibrated hands were calibrated again. `hapbench describe NAME` explains an "
-      "assumption or a claim.\n\n"
+      "\nDecided by: the thesis leaves some values open, so hapbench assumes them. Each assumption was set to each of "
+      "its plausible values, one at a time, and calibrated hands were calibrated again. `hapbench describe NAME` "
+      "explains an assumption or a claim.\n\n"
       "- *exact*: no assumption enters the claim.\n"
       "- *robust*: no other value of a single assumption changes the verdict.\n"
       "- *sensitive to* an assumption: only this assumption changes the verdict.\n"
@@ -355,8 +355,8 @@ std::string ledger_markdown(const Json& ledger) {
   text += table_of(claims, "Findings of this project, which are no claims of the thesis",
                    [](const Json& claim) { return is(claim, "ours"); });
   return text +
-         "\n[Controls](../../scenarios/thesis/README.md#controls) are wrong laws and other values of K; the page lists the "
-         "verdicts that change with them.\n"
+         "\n[Controls](../../scenarios/thesis/README.md#controls) are wrong laws and other values of K; the page "
+         "lists the verdicts that change with them.\n"
          "\n[ERRATA.md](ERRATA.md) lists misprints of the thesis; [figures.md](figures/figures.md) has the figures.\n";
 }
 
@@ -367,8 +367,8 @@ std::string claim_pages(const Json& ledger) {
       "- **Published** and **Number**: the number of the thesis and the number of hapbench.\n"
       "- **Cases**: the numbers of all runs of the claim. `signed_distance` and `binary` are the two densities of the "
       "block from which its surface points are computed.\n"
-      "- **Rule**: the conditions of the verdict. *qualitatively* begins the weaker condition. **Rule before** quotes an "
-      "earlier rule in its earlier wording.\n"
+      "- **Rule**: the conditions of the verdict. *qualitatively* begins the weaker condition. **Rule before** quotes "
+      "an earlier rule in its earlier wording.\n"
       "- **Sensitivity**: assumptions with another value, each with the verdict and the number that this value gives. "
       "Cases without a verdict (*not judged*, *not measured*) are listed but decide nothing.\n";
   for (const Json& claim : ledger.at("claims")) {

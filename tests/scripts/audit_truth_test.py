@@ -1,4 +1,4 @@
-"""hapbench.audit on logs that invite a false number: jitter, noise, short slides, rests, rigid and averaged contacts."""
+"""hapbench.audit states nothing false: jitter, noise, short slides, rests, rigid and averaged contacts."""
 import os
 import unittest
 from unittest import mock

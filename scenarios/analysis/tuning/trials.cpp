@@ -343,7 +343,7 @@ bool Trials::needs_depth(const TuneTrial& trial, Need need) const {
     double factor = 1.0;  // largest factor beyond the bound
     if (bound.max && largest > *bound.max) factor = ratio_beyond(largest, *bound.max);
     if (bound.min && smallest < *bound.min) factor = std::max(factor, ratio_beyond(*bound.min, smallest));
-    // Where another limit is violated by a larger factor, this factor does not count.
+    // This factor counts only if no other limit is violated by a larger factor.
     const bool counts = need != Need::excess || !violated.contains(name) || factor > excess(trial);
     if (factor > 1.0 && counts) return true;
   }

@@ -35,8 +35,8 @@ def clock_warnings(clock):
     found = []
     if clock["rate_Hz"] > FASTEST_HZ:
         found.append(
-            f"the rate of {clock['rate_Hz']:.4g} Hz is unusually high for a haptic or contact loop: is the time in other "
-            "units? (--scale time=SECONDS_PER_UNIT)"
+            f"the rate of {clock['rate_Hz']:.4g} Hz is unusually high for a haptic or contact loop: is the time in "
+            "other units? (--scale time=SECONDS_PER_UNIT)"
         )
     if clock["jitter_s"] > JITTER * clock["interval_s"]:
         found.append(

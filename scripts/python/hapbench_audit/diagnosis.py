@@ -166,8 +166,8 @@ def against_pop(log, contacts, audit):
     moved, caused = motion_at(log, audit["stiffness"], k)
     if caused is not None and caused > 0.5 * (force["settled_force_step_max_N"] or math.inf):
         return (
-            f"a higher rate, slower motion or a smaller stiffness: the tool moves by {1e3 * moved:.3g} mm in one row, of "
-            f"which the stiffness makes {caused:.3g} N"
+            f"a higher rate, slower motion or a smaller stiffness: the tool moves by {1e3 * moved:.3g} mm in one row, "
+            f"of which the stiffness makes {caused:.3g} N"
         )
     if k > 0 and contacts.in_contact[k] and not contacts.in_contact[k - 1]:
         return (
@@ -177,8 +177,8 @@ def against_pop(log, contacts, audit):
     part = travel_share(log, contacts, k)
     if part > 0.5 * share_of_largest(log, k):
         return (
-            f"a higher rate or slower motion: the tool moves by {1e3 * moved:.3g} mm in one row, {100.0 * part:.0f} % of "
-            "its travel in contact"
+            f"a higher rate or slower motion: the tool moves by {1e3 * moved:.3g} mm in one row, {100.0 * part:.0f} % "
+            "of its travel in contact"
         )
     if log.contacts is not None:
         step = np.linalg.norm(np.diff(log.force, axis=0), axis=1)
@@ -199,8 +199,8 @@ def against_pop(log, contacts, audit):
             "restitution or more damping, and a force that starts at zero at touch"
         )
     return (
-        f"look at the contacts at that time, where the tool moves by {1e3 * moved:.3g} mm in a row; a log with a column "
-        "of their number shows whether they change there"
+        f"look at the contacts at that time, where the tool moves by {1e3 * moved:.3g} mm in a row; a log with a "
+        "column of their number shows whether they change there"
     )
 
 
@@ -219,7 +219,8 @@ def share_of_largest(log, row):
 
 
 def motion_at(log, stiffness, row):
-    """(largest motion in one row [m], force that the stiffness makes of it [N] or None) of the rows that cause the force
+    """(largest motion in one row [m], force that the stiffness makes of it [N] or None) of the rows that cause the
+    force
     step at a row, with any delay that the log allows."""
     delay = 0 if not stiffness else round(stiffness["delay_interval_s"][1] / log.interval)
     held = 1 if log.held is None else round(log.held.rows)

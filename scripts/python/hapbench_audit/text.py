@@ -157,7 +157,8 @@ def stiffness_rows(audit):
         ("delay", delay_text(spring)),
         (
             "along",
-            f"{'' if spring['direction_is_known'] else 'about '}({x:.2g}, {y:.2g}, {z:.2g}); explains {100.0 * spring['explained']:.4g} % of the variance",
+            f"{'' if spring['direction_is_known'] else 'about '}({x:.2g}, {y:.2g}, {z:.2g}); explains "
+            f"{100.0 * spring['explained']:.4g} % of the variance",
         ),
     ]
     if spring["linearity"] is not None:

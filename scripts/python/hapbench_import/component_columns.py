@@ -249,7 +249,8 @@ class Columns:
             bare = [self.names.bare[column].lower() for column in columns]
             if bare and all(map(NAMED_AS[other].fullmatch, bare)):
                 self.notes.append(
-                    f"the columns of {group} are {', '.join(map(self.names.title, columns))}, which are named as {other}"
+                    f"the columns of {group} are {', '.join(map(self.names.title, columns))}, which are named as "
+                    f"{other}"
                 )
 
     def _quaternion(self):

@@ -97,7 +97,7 @@ class Recording:
         return np.where(np.isfinite(values), values, math.nan)
 
     def clock(self, column, nanoseconds=None, scale=1.0):
-        """Returns (origin, numbers minus the origin) for a column of times, to which a column of nanoseconds may belong.
+        """Returns (origin, numbers minus the origin) for a column of times and an optional column of nanoseconds.
         The origin is 0, except for integers that are too large for a double, such as nanoseconds since 1970. Times of
         day, with or without a date (ISO 8601), are converted to seconds since the first; `scale`, the seconds per unit,
         must be 1 for them."""

@@ -218,7 +218,7 @@ def _header(words):
 
 
 def _from_header_on(lines, separator, notes):
-    """Removes the lines above the header: those above the first rows of numbers that have as many cells as the header."""
+    """Removes the lines above the header. The header is above the first rows of numbers with as many cells."""
     rows = [split(line, separator) for _, line in lines[: 2 * SAMPLED + MOST_ABOVE]]
     counts = [len(row) - (not row[-1]) for row in rows]  # a separator may be at the end
     numbers = [is_row(row) for row in rows]
