@@ -68,7 +68,7 @@ class ForceHand final : public Hand {
   /// `force`: components x, y, z in the world frame [N] over time. Empty profiles: no hand holds the handle.
   explicit ForceHand(std::array<Profile, 3> force = {}) : force_(std::move(force)) {}
 
-  Vec3 force(double t, const HandView&) noexcept override { return {force_[0](t), force_[1](t), force_[2](t)}; }
+  Vec3 force(double t, const HandView&) noexcept override { return vector_at(force_, t); }
 
  private:
   std::array<Profile, 3> force_;
@@ -96,7 +96,7 @@ class ImpedanceHand final : public Hand {
       : stiffness_(stiffness), damping_(damping), target_(std::move(target)), tremor_(tremor) {}
 
   Vec3 force(double t, const HandView& view) noexcept override {
-    Vec3 position{target_[0](t), target_[1](t), target_[2](t)};
+    Vec3 position = vector_at(target_, t);
     Vec3 velocity{target_[0].rate(t), target_[1].rate(t), target_[2].rate(t)};
     if (tremor_) {
       const HandleState moved = tremor_->at(t);

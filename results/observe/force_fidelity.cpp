@@ -11,7 +11,7 @@
 namespace hapbench {
 
 std::optional<Vec3> ReferenceForce::at(double t) const noexcept {
-  if (const Ideal* ideal = std::get_if<Ideal>(&force_)) return Vec3((*ideal)[0](t), (*ideal)[1](t), (*ideal)[2](t));
+  if (const Ideal* ideal = std::get_if<Ideal>(&force_)) return vector_at(*ideal, t);
   const std::vector<Sample>& samples = *std::get_if<std::vector<Sample>>(&force_);
   if (!(t >= samples.front().time && t <= samples.back().time)) return std::nullopt;
   const auto next = std::ranges::upper_bound(samples, t, {}, &Sample::time);
@@ -24,7 +24,7 @@ std::optional<Vec3> ReferenceForce::tip_at(double t) const noexcept {
   const std::optional<Vec3> force = hand_ ? at(t) : std::nullopt;
   if (!force) return std::nullopt;
   const auto& target = hand_->target;
-  return Vec3(target[0](t), target[1](t), target[2](t)) + *force / hand_->stiffness;
+  return vector_at(target, t) + *force / hand_->stiffness;
 }
 
 namespace {

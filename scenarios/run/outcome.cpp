@@ -55,7 +55,7 @@ class OutcomeObserverImpl final : public OutcomeObserver {
     if (drag_ != nullptr) progress_.emplace(*drag_, width, scenario.time.step * static_cast<double>(steps));
     if (const ImpedanceHandFields* hand = spring_of(scenario.hand);
         hand != nullptr && position_is_free(scenario.motion))
-      standstill_.emplace([&to = hand->target](double t) { return Vec3(to[0](t), to[1](t), to[2](t)); }, width);
+      standstill_.emplace([&to = hand->target](double t) { return vector_at(to, t); }, width);
     if (const auto* hand = dynamic_cast<const TrackingHand*>(parts.hand.get()))
       standstill_.emplace([hand](double) { return hand->intended(); }, width);
   }

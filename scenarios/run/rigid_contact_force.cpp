@@ -26,12 +26,11 @@ std::optional<HandSpring> leading_hand(const Scenario& scenario) {
   return HandSpring{spring->target, spring->stiffness};
 }
 
-/// Follows the prescribed path, or the target of the hand, and returns the force in every step.
-ReferenceForce computed(const Scenario& scenario, const NamedFiles& files) {
+/// Follows the prescribed path, or the target of `hand` if it leads the tool, and returns the force in every step.
+ReferenceForce computed(const Scenario& scenario, const NamedFiles& files, const std::optional<HandSpring>& hand) {
   const auto& tool = std::get<CylinderFields>(scenario.tool);
   RigidContact contact(files.at(kEnvironmentFile).mesh().triangles(), {tool.diameter / 2.0, tool.length});
   const auto motion = make_motion(scenario, files);
-  const std::optional<HandSpring> hand = leading_hand(scenario);
   const Vec3 start = hand ? scenario.initial.position : motion->position_at(0.0);
   const SurfaceDistance height = make_solid(scenario, files)->at(start);
   if (height.value <= 0.0 || !contact.start(start, motion->axis_at(0.0))) {
@@ -45,8 +44,7 @@ ReferenceForce computed(const Scenario& scenario, const NamedFiles& files) {
   const double K = hand ? hand->stiffness : scenario.rendering.stiffness;
   for (std::int64_t step = 0; step < scenario.time.steps; ++step) {
     const double time = static_cast<double>(step) * scenario.time.step;
-    const Vec3 wanted =
-        hand ? Vec3(hand->target[0](time), hand->target[1](time), hand->target[2](time)) : motion->position_at(time);
+    const Vec3 wanted = hand ? vector_at(hand->target, time) : motion->position_at(time);
     const Vec3 free = contact.follow(wanted, motion->axis_at(time));
     if (contact.touched_far_end()) {
       fail_at("/reference_force",
@@ -65,16 +63,16 @@ std::shared_ptr<const ReferenceForce> rigid_contact_force(const Scenario& scenar
   // The fields that determine the force; neither law nor damping is among them.
   const Json whole = effective_scenario(scenario, {});
   Json content = {{"mesh", files.at(kEnvironmentFile).hash()}};
-  const bool has_hand = leading_hand(scenario).has_value();
-  if (!has_hand) content["stiffness"] = scenario.rendering.stiffness;
+  const std::optional<HandSpring> hand = leading_hand(scenario);
+  if (!hand) content["stiffness"] = scenario.rendering.stiffness;
   for (const char* field : {"time", "environment", "tool", "motion"}) content[field] = whole.at(field);
-  if (has_hand) content.update({{"hand", whole.at("hand")}, {"initial", whole.at("initial")}});
+  if (hand) content.update({{"hand", whole.at("hand")}, {"initial", whole.at("initial")}});
   const auto bytes = [&scenario](const ReferenceForce&) {
     return sizeof(ReferenceForce::Sample) * static_cast<std::size_t>(scenario.time.steps);
   };
   return shared_cache().get<ReferenceForce>(
       "rigid contact " + content.dump(),
-      [&] { return std::make_shared<const ReferenceForce>(computed(scenario, files)); }, bytes);
+      [&] { return std::make_shared<const ReferenceForce>(computed(scenario, files, hand)); }, bytes);
 }
 
 }  // namespace hapbench

@@ -167,8 +167,7 @@ double ScriptedMotion::roll_at(double t) const noexcept {
 }
 
 Vec3 ScriptedMotion::position_at(double t) const noexcept {
-  const auto& profiles = *position_;
-  return {profiles[0](t), profiles[1](t), profiles[2](t)};
+  return vector_at(*position_, t);
 }
 
 RecordedMotion::RecordedMotion(std::vector<Sample> samples) : samples_(std::move(samples)) {

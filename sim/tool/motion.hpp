@@ -113,6 +113,11 @@ class Profile {
   Shape shape_{Constant{}};
 };
 
+/// Returns the three profiles' values at t [s] as a vector, in their common unit.
+inline Vec3 vector_at(const std::array<Profile, 3>& profiles, double t) noexcept {
+  return {profiles[0](t), profiles[1](t), profiles[2](t)};
+}
+
 /// Scripted part of the tool's motion: always the orientation, and also the position if it is prescribed.
 class Motion {
  public:
