@@ -26,6 +26,12 @@ Json& element_at(Json& list, std::string_view key, const std::string& path) {
 
 }  // namespace
 
+Json override_value(const std::string& text) {
+  if (Json::accept(text)) return parse_json(text);
+  if (const auto number = finite_number(text)) return *number;
+  return text;
+}
+
 void apply_override(Json& json, const std::string& text) {
   // Split and check the override.
   const std::size_t equals = text.find('=');
@@ -47,7 +53,7 @@ void apply_override(Json& json, const std::string& text) {
       node = &(*node)[std::string(key)];
     }
   }
-  *node = Json::accept(value) ? parse_json(value) : Json(value);
+  *node = override_value(value);
   if (path == "time" || path == "time.step_s") drop_derived_samples(json);
 }
 

@@ -13,6 +13,9 @@ inline std::string_view overridden_path(std::string_view override) noexcept {
   return override.substr(0, override.find('='));
 }
 
+/// Returns the value of a text: JSON, a number as other programs write it (".001", "+1"), or else the text itself.
+Json override_value(const std::string& text);
+
 /// Applies an override "path=value". A number in the dotted path is an index of a list. A field that excludes the
 /// overridden field is removed. Throws InputError.
 void apply_override(Json& scenario, const std::string& text);

@@ -20,6 +20,7 @@
 #include "scenarios/run/expectations.hpp"
 #include "scenarios/scene/field_files.hpp"
 #include "scenarios/scene/load_scenario.hpp"
+#include "scenarios/scene/overrides.hpp"
 #include "scenarios/scene/scenario.hpp"
 #include "sim/core/hash.hpp"
 #include "sim/core/math.hpp"
@@ -152,7 +153,7 @@ std::vector<std::string> Assumptions::overrides(const Scenario& scenario, std::s
       try {
         for (const Location& location : locations_of(changed, field.path)) {
           const std::string text = assumed_text(location, field, values[i]);
-          *location.second = Json::accept(text) ? parse_json(text) : Json(text);
+          *location.second = override_value(text);
           texts[location.first] = text;
         }
       } catch (const InputError& error) {

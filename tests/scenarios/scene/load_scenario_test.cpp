@@ -165,6 +165,10 @@ TEST_F(Override, SetsWhatItsPathLeadsTo) {
       {{"initial.position_m=[0.001, 0, -2e-3]"}, "/initial/position_m", "[0.001, 0.0, -0.002]"},
       {{R"(environment={"type":"plane"})"}, "/environment/type", "\"plane\""},
       {{"time.steps=1e3"}, "/time/steps", "1000"},
+      // Numbers that are not JSON, as other programs write them.
+      {{"rendering.damping_ratio=.5"}, "/rendering/damping_ratio", "0.5"},
+      {{"rendering.damping_ratio=+0.5"}, "/rendering/damping_ratio", "0.5"},
+      {{"rendering.damping_ratio=1."}, "/rendering/damping_ratio", "1.0"},
       // Every other value is a text.
       {{"rendering.algorithm=mean"}, "/rendering/algorithm", "\"mean\""},
       {{R"(rendering.algorithm="mean")"}, "/rendering/algorithm", "\"mean\""},
