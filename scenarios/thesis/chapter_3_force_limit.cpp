@@ -40,13 +40,14 @@ struct FlatRow {
   double depth, handle, force;
 };
 
-/// Returns the steps with contact of a scenario on the flat.
+/// Returns the steps with contact of a scenario on the flat. Throws NothingToMeasure if there is none.
 std::vector<FlatRow> rows_on_flat(const Evidence& e, const std::string& scenario) {
   const auto table = e.table(scenario, "trajectory.csv");
   std::vector<FlatRow> rows;
   for (std::size_t i = 0; i < table.at("pz_m").size(); ++i)
     if (table.at("colliding")[i] != 0.0)
       rows.push_back({-table.at("pz_m")[i], -table.at("hz_m")[i], -table.at("fmeas_z_N")[i]});
+  if (rows.empty()) throw NothingToMeasure(fmt::format("no step of {} has a contact", scenario));
   return rows;
 }
 

@@ -237,6 +237,7 @@ MeasuredValues measure_underestimation(const Evidence& e) {
       if (exact.depth[i] > 0.0) share.push_back(error.back() / exact.depth[i]);
     }
   });
+  if (error.empty()) throw NothingToMeasure("no step of the run has a contact that is shallow enough");
   // Compare the path with the path of a run with the depth along the normal.
   std::sort(error.begin(), error.end());
   double distance = 0.0;

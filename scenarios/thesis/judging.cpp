@@ -9,11 +9,6 @@
 
 namespace hapbench {
 
-Finding Claim::finding(const Evidence& evidence) const {
-  if (judge == nullptr) return {Verdict::not_testable, why};
-  return judged(measure(evidence), evidence.published);
-}
-
 Finding Claim::judged(const Measured& cases, const PublishedNumbers& numbers_of_thesis) const {
   Finding finding = judge(cases, numbers_of_thesis);
   // Insert the measured numbers into the texts. NAME refers to the latest case so far, CASE.NAME to the given case.
@@ -33,7 +28,7 @@ Finding Claim::judged(const Measured& cases, const PublishedNumbers& numbers_of_
 }
 
 Finding Measurements::finding(const Claim& claim, const Evidence& evidence) {
-  if (claim.judge == nullptr) return claim.finding(evidence);
+  if (claim.judge == nullptr) return {Verdict::not_testable, claim.why};
   auto found = made_.find(claim.measure);
   if (found == made_.end()) {
     Made made;
@@ -43,10 +38,15 @@ Finding Measurements::finding(const Claim& claim, const Evidence& evidence) {
       made.scenarios.push_back(scenario);
       evidence.provide(scenario);
     };
-    made.cases = claim.measure(noting);
+    try {
+      made.cases = claim.measure(noting);
+    } catch (const NothingToMeasure& missing) {
+      made.nothing = missing.what();
+    }
     found = made_.emplace(claim.measure, std::move(made)).first;
   }
   if (evidence.used) std::ranges::for_each(found->second.scenarios, evidence.used);
+  if (!found->second.nothing.empty()) return {Verdict::not_judged, found->second.nothing};
   return claim.judged(found->second.cases, evidence.published);
 }
 

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <map>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -52,7 +53,7 @@ inline constexpr VerdictText kVerdicts[] = {
     {"not consistent in simulation", "simulated subjects do not show the published differences", "✗"},
     {"not judged",
      "an input is calibrated to a published number, but the calibration misses this number, so the run predicts "
-     "nothing",
+     "nothing; or the run has nothing to measure, such as no contact",
      "?"},
     {"holds", "a finding of this project that the measurement shows", "✓"},
     {"does not hold", "a finding of this project that the measurement does not show", "✗"}};
@@ -99,7 +100,13 @@ struct Finding {
   Measured cases = {};        ///< the measured numbers
 };
 
-/// Measures a claim.
+/// Thrown by a measurement whose run has nothing to measure, such as no contact. The claim is not judged then; what()
+/// is the reason.
+struct NothingToMeasure : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// Measures a claim. Throws NothingToMeasure, and InputError for a scenario that cannot run.
 using Measure = Measured (*)(const Evidence& evidence);
 /// Decides the verdict on a claim from measured and published numbers.
 using Judge = Finding (*)(const Measured& measured, const PublishedNumbers& published);
@@ -143,8 +150,6 @@ struct Claim {
 
   /// Judges the measured numbers and inserts them into the texts.
   Finding judged(const Measured& cases, const PublishedNumbers& numbers_of_thesis) const;
-  /// Measures the claim and returns the verdict on it. Throws InputError.
-  Finding finding(const Evidence& evidence) const;
 };
 
 /// A claim, the verdict on it, and the inputs of the verdict.
@@ -160,12 +165,14 @@ struct JudgedClaim {
 class Measurements {
  public:
   /// Measures a claim and returns the verdict on it. Calls evidence.used with the name of each scenario that the
-  /// measurement needs, also if an earlier claim has made it. Throws InputError.
+  /// measurement needs, also if an earlier claim has made it. Without anything to measure, the verdict is
+  /// `not_judged`. Throws InputError.
   Finding finding(const Claim& claim, const Evidence& evidence);
 
  private:
   struct Made {
     Measured cases = {};
+    std::string nothing = {};  ///< why the run has nothing to measure; empty if `cases` holds the numbers
     std::vector<std::string> scenarios = {};  ///< names of the scenarios that the measurement needs
   };
   std::map<Measure, Made> made_;

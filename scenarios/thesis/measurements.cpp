@@ -63,6 +63,7 @@ std::vector<ContactBuffer> contact_sets(const Scenario& scenario, std::uint64_t 
 }
 
 ContactBuffer largest_of(const std::vector<ContactBuffer>& sets) {
+  if (sets.empty()) throw NothingToMeasure("no step of the run has a contact");
   return *std::ranges::max_element(sets, {}, &ContactBuffer::size);
 }
 

@@ -74,7 +74,7 @@ enum class Points { colliding, rendered };
 std::vector<ContactBuffer> contact_sets(const Scenario& scenario, std::uint64_t stride,
                                         Points points = Points::colliding);
 
-/// Returns the largest set. Precondition: there is a set.
+/// Returns the largest set. Throws NothingToMeasure if there is none.
 ContactBuffer largest_of(const std::vector<ContactBuffer>& sets);
 /// Returns the size of the largest set; 0 without sets.
 std::size_t largest_size(const std::vector<ContactBuffer>& sets);

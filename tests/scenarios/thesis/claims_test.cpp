@@ -443,13 +443,26 @@ TEST(Claims, AreJudgedByTheirThresholds) {
   }
   for (const char* id : {"C4", "C9", "D5", "F6"}) {  // claims that a simulation cannot test
     judged.emplace(id);
-    const Finding finding = claim(id).finding({published(), {}, {}});
+    const Finding finding = Measurements().finding(claim(id), {published(), {}, {}});
     EXPECT_EQ(finding.verdict, not_testable) << id;
     EXPECT_FALSE(finding.why.empty()) << id;
   }
   std::set<std::string> all;
   for (const Claim& c : all_claims()) EXPECT_TRUE(all.insert(c.id).second) << c.id << " twice";
   EXPECT_EQ(judged, all);
+}
+
+/// Without contacts, a measurement has no numbers. The other claims must still be judged.
+TEST(Claims, AreNotJudgedIfTheirRunsHaveNothingToMeasure) {
+  EXPECT_THROW(largest_of({}), NothingToMeasure);
+  Claim silent = claim("G1");
+  silent.measure = [](const Evidence&) -> Measured { throw NothingToMeasure("no step of the run has a contact"); };
+  Measurements measurements;
+  for (int i = 0; i < 2; ++i) {  // the second finding uses the first measurement
+    const Finding finding = measurements.finding(silent, {published(), {}, {}});
+    EXPECT_EQ(finding.verdict, not_judged);
+    EXPECT_EQ(finding.why, "no step of the run has a contact");
+  }
 }
 
 TEST(Claims, OfTheRangeAfterOneUpdateCoverBothReadingsOfTheFigure) {
