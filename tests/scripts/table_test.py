@@ -1,18 +1,12 @@
-"""The option --table of the program: tables as Markdown, LaTeX that compiles, and CSV."""
+"""The option --table of the program: tables as Markdown, LaTeX and CSV. latex_test.py compiles the tables in LaTeX."""
 import csv
 import io
-import json
 import re
-import shutil
 import unittest
-from functools import cache
 
-from fixture import PROGRAM, must, ran, scratch_folder
-
-NASTY = r'50 % of {a_b} & #1 ~ $x^2$ \y |q| <z> "w" --n [s] é µ ≤ λ'
-LAWS = "mean,least_squares,summation"  # some of these laws fail in the hole
-PEG = "peg_in_hole_2d_shaped_stiffness"
-SHORT = ("--set", "time.steps=300", "--set", "expect={}")
+import printed_tables
+from fixture import PROGRAM, ran
+from printed_tables import COMMANDS, LAWS, NASTY, printed
 
 
 def markdown_rows(text):
@@ -23,38 +17,7 @@ def markdown_rows(text):
 
 
 def setUpModule():
-    global ROOT
-    ROOT = scratch_folder(unittest)
-    scene = {"extends": "tap_wall", "name": NASTY, "time": {"steps": 300}, "expect": {}}
-    (ROOT / "nasty.json").write_text(json.dumps(scene), encoding="utf-8")
-
-
-# Command lines that print tables, with failures, missing values, errors and texts from files.
-COMMANDS = {
-    "run": ("run", "nasty.json", "tap_wall", *SHORT),
-    "latency": ("run", "nasty.json", "--latency"),
-    "compare": ("compare", "nasty.json", "--algorithms", LAWS),
-    "seeds": (
-        "compare",
-        "tap_wall",
-        PEG,
-        *("--algorithms", LAWS, "--seeds", 2, "--jitter", 1e-6, "--set", "time.steps=300"),
-    ),
-    "errors": ("compare", "nasty.json", "--algorithms", "mean,proxy", "--errors", "--time"),
-    "limit": ("limit", "spring_stiffness"),
-    "devices": ("limit", "tap_wall", "--device", "touch,ideal", "--resolution", 0.1),
-    "tune": ("tune", "tap_wall", "--algorithms", "mean"),
-    "converge": ("converge", "nasty.json", "--levels", 3),
-    "over": ("converge", "tap_wall", "--over", "integrator.type=all", "--levels", 3, *SHORT),
-    "claims": ("describe", "claims"),
-    "terms": ("describe", "terms"),
-    "everything": ("describe", "--grep", "stiffness"),
-}
-
-
-@cache
-def printed(name, form):
-    return must(PROGRAM, *COMMANDS[name], "--table", form, cwd=ROOT, statuses=(0, 3))
+    printed_tables.make_scene()
 
 
 def csv_rows(name):
@@ -75,24 +38,6 @@ class Tables(unittest.TestCase):
             rows = markdown_rows(printed(name, "markdown"))
             self.assertEqual({len(row) for row in rows}, {len(rows[0])}, name)
 
-    def test_latex_compiles(self):
-        if not shutil.which("pdflatex"):
-            self.skipTest("no LaTeX (scripts/setup --check installs it)")
-        tables = [printed(name, "latex") for name in COMMANDS]
-        (ROOT / "tables.tex").write_text(
-            "\\documentclass{article}\n\\usepackage{booktabs,siunitx}\n\\begin{document}\n\\tiny\n"
-            + "\n\n\\clearpage\n".join(tables)
-            + "\\end{document}\n",
-            encoding="utf-8",
-        )
-        words = ("pdflatex", "-interaction=nonstopmode", "-halt-on-error", "tables.tex")
-        done = ran(*words, cwd=ROOT)
-        said = re.sub(r"(?s)^.*?(?=^!)", "", done.stdout, flags=re.M)
-        if "siunitx.sty' not found" in done.stdout or "booktabs.sty' not found" in done.stdout:
-            self.skipTest("no siunitx (scripts/setup --check installs it)")
-        self.assertEqual(done.returncode, 0, said[:2000])
-        self.assertNotRegex(done.stdout, "Missing character|Undefined|siunitx Error")
-
     def test_names_are_those_of_the_scenario(self):
         heads, *rows = csv_rows("run")
         self.assertEqual(rows[0][heads.index("scenario")], NASTY)
@@ -106,7 +51,9 @@ class Tables(unittest.TestCase):
         self.assertEqual({row[1] for row in rows}, set(LAWS.split(",")))
         for head in heads[3:-1]:
             self.assertRegex(head, r"\[[^]]+\]")
-        with (ROOT / "results/out/compare/ranking.csv").open(encoding="utf-8") as file:
+        with (printed_tables.ROOT / "results/out/compare/ranking.csv").open(
+            encoding="utf-8"
+        ) as file:
             ranking = list(csv.DictReader(file))
         for row in rows:
             for entry in ranking:
@@ -134,10 +81,10 @@ class Tables(unittest.TestCase):
             (("describe", "mean", "--table", "csv"), "allowed: with a list, such as claims"),
             (("validate", "tap_wall", "--table", "csv"), "--table"),
         ):
-            done = ran(PROGRAM, *words, cwd=ROOT)
+            done = ran(PROGRAM, *words, cwd=printed_tables.ROOT)
             self.assertEqual(done.returncode, 2, words)
             self.assertIn(said, done.stderr)
 
     def test_several_csv_tables_are_announced(self):
-        done = ran(PROGRAM, *COMMANDS["latency"], "--table", "csv", cwd=ROOT)
+        done = ran(PROGRAM, *COMMANDS["latency"], "--table", "csv", cwd=printed_tables.ROOT)
         self.assertIn("2 CSV tables", done.stderr)
