@@ -42,6 +42,7 @@ constexpr const char *kOrders = "converge.csv", *kLevels = "converge_levels.csv"
                      *kTimes = "converge_levels_timing.csv";
 constexpr double kLargestRatio = 10.0;
 constexpr int kLevelsOfMetrics = 5, kLevelsOfSettings = 4;  ///< numbers of levels by default
+constexpr double kLargestErrorAskedFor = 0.01;              ///< [m]; beyond it, --to is a number in another unit
 constexpr double kErrorAskedFor = 1e-6;                     ///< default of --to with --over [m]
 
 struct ConvergeOptions : CommonOptions {
@@ -269,11 +270,11 @@ LevelSweep levels_of(const ConvergeOptions& options, const ScenarioText& scenari
 double parse_position_error(const std::string& text) {
   if (text.empty()) return kErrorAskedFor;
   const auto number = finite_number(text);
-  if (!number || *number <= 0.0)
+  if (!number || *number <= 0.0 || *number > kLargestErrorAskedFor)
     fail_in_option("--to",
                    fmt::format("got \"{}\"; allowed with --over: an error of the tip's position in metres, such "
-                               "as 1e-6",
-                               text));
+                               "as 1e-6, at most {}",
+                               text, kLargestErrorAskedFor));
   return *number;
 }
 
