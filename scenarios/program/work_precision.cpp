@@ -12,6 +12,7 @@
 #include "scenarios/batch/ranking.hpp"
 #include "scenarios/program/digits.hpp"
 #include "scenarios/run/bare_run.hpp"
+#include "scenarios/run/expectations.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/scene/environments.hpp"
 
@@ -164,6 +165,7 @@ constexpr const char *kModelErrors = "convergence_model.csv", *kModelTimes = "co
 struct ModelError {
   std::string problem;  ///< values of the fields of --over
   std::string outcome;
+  bool is_expected = true;  ///< true if the scenario expects the outcome; the errors of other runs are empty
   std::optional<double> direction = {}, force = {}, relative = {}, displacement = {};  ///< [rad], [N], [1], [m]
   double reference_error = 0.0;   ///< error of the reference force [N]
   bool shares_reference = false;  ///< renders by the constraints of the reference force
@@ -185,6 +187,8 @@ Columns<ModelError> model_columns() {
   return {
       {"problem", "", "values of the fields of --over, such as the law", &Row::problem, under("problem")},
       {"outcome", "", "outcome of the run", &Row::outcome},
+      {"expected", "", "true if the scenario expects the outcome; the errors of other runs are empty",
+       &Row::is_expected},
       {"force_direction_error_rad", "rad",
        "mean angle between rendered force and reference force, where both exceed 0.1 N", &Row::direction},
       {"direction\ndeg", "1", "force_direction_error_rad in degrees", degrees, only_printed()},
@@ -222,10 +226,14 @@ Columns<ModelError> model_timing_columns() {
 /// Runs a case and returns its errors, without times.
 ModelError model_error(const CheckedScenario& scene, std::string problem) {
   const Result run = run_scenario(scene, std::nullopt, false);
-  const auto metric = [&run](const char* name) { return number_of(run.metrics, name); };
+  const bool is_expected = outcome_is_expected(scene.scenario().expect, run.end.outcome);
+  const auto metric = [&](const char* name) {
+    return is_expected ? number_of(run.metrics, name) : std::optional<double>();
+  };
   const bool is_rigid = std::holds_alternative<RigidContactFields>(*scene.scenario().reference_force);
   ModelError error{.problem = std::move(problem),
                    .outcome = std::string(outcome_name(run.end.outcome)),
+                   .is_expected = is_expected,
                    .direction = metric("fidelity.force_direction_error_rad"),
                    .force = metric("fidelity.force_error_rms_N"),
                    .relative = metric("fidelity.force_error_relative"),
@@ -268,6 +276,12 @@ void report_model_errors(const Cases& cases, const JobOptions& jobs, const Layou
     report.say(layout.wrapped(
         fmt::format("{}: renders by the constraints of the reference force; its error says nothing", kSharesReference),
         0));
+  for (const ModelError& row : all)
+    if (!row.is_expected)
+      report.say(
+          layout.wrapped(fmt::format("{}: the run ends as {}, which the scene does not expect; no error is stated",
+                                     row.problem, row.outcome),
+                         0));
   report.json() = Json::array();
   for (const ModelError& row : all) {
     report.json().push_back(model_columns().json(row));

@@ -32,6 +32,7 @@ def laws_against_a_force(bench):
     for name, known, naive, wrong in (
         ("problem", laws, "in reverse", laws[::-1]),
         ("outcome", ["completes"] * 2, "another", ["diverges"] * 2),
+        ("expected", ["true"] * 2, "the opposite", ["false"] * 2),
         ("force_direction_error_rad", [math.atan(0.1)] * 2, "of the x components", [0.0] * 2),
         ("force_error_rms_N", errors, "of the x components", [0.5, 0.5]),
         ("force_error_relative", [e / size for e in errors], "of the force", errors),

@@ -10,6 +10,7 @@ from functools import partial
 from pathlib import Path
 from unittest import mock
 
+import matplotlib
 import numpy as np
 from skimage.color import deltaE_ciede2000, rgb2lab
 
@@ -19,6 +20,7 @@ import hapbench_looks
 import hapbench_style as style
 from hapbench import columns
 from hapbench.errors import InputError
+from hapbench_pictures import work_precision_plot
 from hapbench_pictures.__main__ import main as pictures
 from hapbench_pictures.panels import draw_over_time, looks
 from hapbench_pictures.given import given_runs, labels
@@ -236,6 +238,55 @@ class Moments(unittest.TestCase):
         self.assertIsNone(
             settled_range([(calm & (np.arange(502) < 50) & (hammering < 2), hammering, hammering)])
         )
+
+
+class ModelErrors(unittest.TestCase):
+    """Picture of laws against a reference force."""
+
+    def drawn(self, displacement, failed=()):
+        """Returns the panels of two laws with these displacements [m], as texts of the table. The laws that `failed`
+        have no errors."""
+        laws = ("mean", "proxy")
+        errors = [
+            {
+                "problem": law,
+                "force_direction_error_rad": "" if law in failed else "0.1",
+                "force_error_rms_N": "" if law in failed else "0.5",
+                "displacement_rms_m": of_law,
+                "shares_reference": "true" if law == "proxy" else "false",
+            }
+            for law, of_law in zip(laws, displacement)
+        ]
+        times = [{"step_median_s": "1e-6", "step_p99_9_s": "2e-6", "deadline_s": "0.00025"}] * 2
+        files = mock.Mock()
+        files.records = {
+            work_precision_plot.MODEL_ERRORS: errors,
+            work_precision_plot.MODEL_TIMES: times,
+        }.get
+        with matplotlib.rc_context(style.SETTINGS):
+            figure = work_precision_plot.draw_model_errors(files)
+        self.assertIn(
+            "deadline, 0.25 ms", [text.get_text() for text in figure.legends[0].get_texts()]
+        )
+        return {ax.get_ylabel(): ax for ax in figure.axes if ax.get_visible()}
+
+    def test_the_displacement_is_drawn_where_a_hand_moves_the_tool(self):
+        panels = self.drawn(["1e-4", "2e-4"])
+        self.assertEqual(len(panels), 3)
+        marks = [
+            line.get_ydata()[0]
+            for line in panels["rms displacement of the tip [mm]"].lines
+            if len(line.get_ydata()) == 1
+        ]
+        np.testing.assert_allclose(marks, [0.1, 0.2])
+
+    def test_a_prescribed_path_has_no_displacement(self):
+        self.assertEqual(len(self.drawn(["", ""])), 2)
+
+    def test_a_law_whose_run_failed_is_left_out(self):
+        panels = self.drawn(["1e-4", ""], failed=["proxy"])
+        named = panels["rms error of the force [N]"].get_legend_handles_labels()[1]
+        self.assertEqual(named, ["mean"])
 
 
 class Shapes(unittest.TestCase):

@@ -29,13 +29,15 @@ SPEED = {"color": GREY, "lw": 0.8, "ls": "--"}
 REAL_TIME = 1000.0
 
 
+LOGARITHMIC_FROM = 10.0  # smallest ratio of the largest to the smallest error of a logarithmic axis
 MODEL_ERRORS, MODEL_TIMES = "convergence_model.csv", "convergence_model_timing.csv"
 
 
 def draw_model_errors(files, sheet=SHEET):
-    """Draws laws against a reference force: the error of the force's direction, and of the force, over the time of a
-    step. A mark is the median, and a line reaches to the 99.9th percentile. Grey: the deadline of a step. Hollow: a law
-    that renders by the constraints of the reference. Marks are not joined, because laws have no order.
+    """Draws laws against a reference: the error of the force's direction, of the force and, where a hand moves the
+    tool, of the tip's position, over the time of a step. A mark is the median, and a line reaches to the 99.9th
+    percentile. Grey: the deadline of a step. Hollow: a law that renders by the constraints of the reference. Marks are
+    not joined, because laws have no order. Laws whose runs failed have no error and are left out.
     """
     errors, times = files.records(MODEL_ERRORS), files.records(MODEL_TIMES)
     median, late = (1e6 * numbers(times, name) for name in ("step_median_s", "step_p99_9_s"))
@@ -48,11 +50,18 @@ def draw_model_errors(files, sheet=SHEET):
             np.degrees(numbers(errors, "force_direction_error_rad")),
         ),
         ("rms error of the force [N]", numbers(errors, "force_error_rms_N")),
+        ("rms displacement of the tip [mm]", 1e3 * numbers(errors, "displacement_rms_m")),
     )
-    rows, columns = sheet.grid(2)
+    quantities = [one for one in quantities if np.isfinite(one[1]).any()]
+    if not quantities:
+        raise InputError("nothing to draw: no law has an error against the reference force")
+    # A law whose run failed has no error.
+    drawn = np.flatnonzero(np.isfinite([values for _, values in quantities]).any(axis=0))
+    rows, columns = sheet.grid(len(quantities))
     figure, axes = sheet.panels(rows, columns, 1.0 + sheet.panel(2.4) * rows)
     for ax, (label, values) in zip(axes.flat, quantities):
-        for i, row in enumerate(errors):
+        for i in drawn:
+            row = errors[i]
             look = style_look(row["problem"])
             ax.plot([median[i], late[i]], [values[i]] * 2, color=look.colour, lw=0.8)
             ax.plot(
@@ -66,14 +75,17 @@ def draw_model_errors(files, sheet=SHEET):
                 label=law_name(row["problem"]) + (" (shares the reference)" if shared[i] else ""),
             )
         ax.axvline(deadline, zorder=1, **SPEED)
-        logarithmic = (values[np.isfinite(values)] > 0).all()
+        known = values[np.isfinite(values)]
+        logarithmic = known.min() > 0 and known.max() > LOGARITHMIC_FROM * known.min()
         ax.set(xscale="log", xlabel="time of a step [µs]: median to 99.9 %", ylabel=label)
         ax.set_yscale("log" if logarithmic else "linear")
         for of in (ax.xaxis, ax.yaxis) if logarithmic else (ax.xaxis,):
             number_ticks(of)
+    for ax in axes.flat[len(quantities) :]:
+        ax.set_visible(False)
     handles, labels = axes.flat[0].get_legend_handles_labels()
     handles.append(Line2D([], [], **SPEED))
-    labels.append("deadline, 0.5 ms")
+    labels.append(f"deadline, {1e-3 * deadline:g} ms")
     legend_above(figure, handles, labels, columns=None)
     return figure
 
