@@ -48,6 +48,11 @@ std::optional<RunVerdict> verdict_of(Outcome outcome) {
   return static_cast<RunVerdict>(found - texts.begin());
 }
 
+/// Returns true for the verdicts on a tool that its hand does not move on.
+bool is_left_behind(RunVerdict verdict) {
+  return verdict == RunVerdict::stuck || verdict == RunVerdict::not_dragged;
+}
+
 /// Runs the scenario once with its given length and returns the verdict.
 RunStability judged_once(const Scenario& scenario, const NamedFiles& files,
                          const std::shared_ptr<const PointShell>& shell, const StabilityRule& rule) {
@@ -69,7 +74,8 @@ RunStability judged_once(const Scenario& scenario, const NamedFiles& files,
     if (!run_end.touched()) return RunVerdict::no_contact;
     if (outcome == Outcome::leaves_hole || (shell && run_end.has_left(*shell, tool->reach())))
       return RunVerdict::thrown_out;
-    if (const auto known = verdict_of(outcome)) return *known;
+    const auto known = verdict_of(outcome);
+    if (known && (rule.judges_progress || !is_left_behind(*known))) return *known;
     const bool only_fast = rule.max_vibration || has_scripted_motion(scenario);
     if (only_fast && run_end.keeps_bouncing()) return RunVerdict::vibrating;
     return verdict_of(motion, settled, rule.max_vibration);

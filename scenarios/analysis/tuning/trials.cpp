@@ -29,6 +29,14 @@ std::string verdict_with(const RunStability& run, const SceneVariant& variant) {
   return std::string(run_verdict_name(run.verdict)) + with(variant);
 }
 
+/// Returns the rule for a run of a variant. The variants with other hands ask whether the loop is stable. A softer hand
+/// that cannot pull the tool on leaves it at rest, which is stable.
+StabilityRule rule_for(const Scenario& scenario, const SceneVariant& variant) {
+  StabilityRule rule = rule_of(scenario);
+  rule.judges_progress = variant.family != "hands";
+  return rule;
+}
+
 /// Stores the worst value of a limited metric over the variants in the trial. Stores no value if the metric has no
 /// value in one of the runs.
 void note_worst(TuneTrial& trial, const std::string& name, const MetricBound& bound,
@@ -251,7 +259,7 @@ std::optional<Failing> Trials::first_failing(const TuneTrial& trial, std::size_t
       why[i] = "the contact loop is unstable" + with(variant);
       return;
     }
-    const RunStability run = stability_of(scene, shell_, rule_of(scene.scenario()));
+    const RunStability run = stability_of(scene, shell_, rule_for(scene.scenario(), variant));
     if (!is_stable(run.verdict)) why[i] = verdict_with(run, variant);
   });
   for (std::size_t i = 0; i < count; ++i)
@@ -411,7 +419,7 @@ void Trials::judge_motion(TuneTrial& trial, std::size_t first, std::size_t last)
   in_parallel(&trial, judged.size(), [&](std::size_t job) {
     const double gain = job % 2 != 0 ? question_.margin : 1.0;
     const CheckedScenario scene = checked(load(trial.setting, gain * trial.stiffness, variants_[first + job / 2]));
-    judged[job] = stability_of(scene, shell_, rule_of(scene.scenario()));
+    judged[job] = stability_of(scene, shell_, rule_for(scene.scenario(), variants_[first + job / 2]));
     if (job % 2 == 0) contacts[job / 2] = contact_of(scene, judged[job]);
   });
   trial.judged = last;

@@ -31,5 +31,16 @@ TEST(StabilityOf, OfSlowBouncesThatGoOnIsVibrating) {
   }
 }
 
+/// A soft hand cannot pull the tool over a bump of the molar. The tool is at rest, so the loop is stable.
+TEST(StabilityOf, OfAToolThatItsHandDoesNotMoveOnIsStableUnlessProgressIsJudged) {
+  const std::vector<std::string> fields = {"hand.stiffness_N_per_m=100", "rendering.stiffness_N_per_m=66000"};
+  const LoadedScenario loaded = load_scenario(read_scenario_text(find_scenario("drag_molar")), fields);
+  const auto shell = make_shell(loaded.scenario, loaded.files);
+  StabilityRule rule = rule_of(loaded.scenario);
+  EXPECT_EQ(stability_of(checked(loaded), shell, rule).verdict, RunVerdict::stuck);
+  rule.judges_progress = false;
+  EXPECT_EQ(stability_of(checked(loaded), shell, rule).verdict, RunVerdict::stable);
+}
+
 }  // namespace
 }  // namespace hapbench::run_stability_test

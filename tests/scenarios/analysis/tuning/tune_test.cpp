@@ -109,6 +109,18 @@ TEST(Tune, KeepsLimitsAndSaysWhatBinds) {
   for (const auto& [name, value] : quiet.choice->metrics) EXPECT_EQ(number_of(run.metrics, name), value) << name;
 }
 
+/// In the run at 2 K, a hand of 100 N/m cannot pull the tool on from K = 33,000 N/m on. Only stiffer settings keep both
+/// bounds.
+TEST(Tune, IsNotBoundByAHandThatIsTooSoftToPullTheToolOn) {
+  TuneQuestion asked = question("drag_molar", {});
+  asked.threads = 2;
+  asked.limits["inside_max_m"].max = 8e-5;
+  asked.limits["force_rms_above_30Hz_N"].max = 0.06;
+  const TunedLaw law = tuned_law(asked, "shaped_stiffness");
+  ASSERT_TRUE(law.choice) << law.why;
+  EXPECT_GT(law.choice->stiffness, 36000.0);
+}
+
 TEST(Tune, SaysWhichLimitToRelaxAndByHowMuch) {
   TuneQuestion asked = question("tap_wall", {});
   asked.threads = 2;
