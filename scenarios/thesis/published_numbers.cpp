@@ -40,6 +40,15 @@ const PublishedNumber& PublishedNumbers::operator[](const std::string& id) const
 
 namespace {
 
+/// Returns a number in the format g, such as "1e+01", without its exponent if it is below 100,000: "10". Texts of other
+/// formats stay.
+std::string without_exponent(const std::string& text, std::string_view format) {
+  constexpr double kLargest = 1e5;
+  if (!format.ends_with('g') || text.find("e+") == std::string::npos) return text;
+  const auto number = finite_number(text);
+  return number && std::abs(*number) < kLargest ? fmt::format("{:.0f}", *number) : text;
+}
+
 /// Returns the member of a number with this name; the mean for an unknown name.
 double part_of(const PublishedNumber& number, std::string_view name) {
   if (name == "spread") return number.spread;
@@ -64,7 +73,8 @@ std::string PublishedNumbers::fill(const std::string& text) const {
     const double factor = match[3].matched ? finite_number(match[3].str()).value() : 1.0;
     const double scaled = part_of(number, match[2].str()) * factor;
     if (std::isnan(scaled)) return "none";
-    return match[4].matched ? fmt::format(fmt::runtime("{:" + match[4].str() + "}"), scaled) : plain(scaled);
+    if (!match[4].matched) return plain(scaled);
+    return without_exponent(fmt::format(fmt::runtime("{:" + match[4].str() + "}"), scaled), match[4].str());
   };
   std::string filled;
   auto end = text.begin();

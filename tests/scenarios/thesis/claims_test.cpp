@@ -92,6 +92,7 @@ TEST(PublishedNumbers, FillTextsThatNameThem) {
   EXPECT_EQ(numbers.fill("raw <A.raw>, <B*1000 mm"), "raw 37.8 ± 17.7, <B*1000 mm");
   EXPECT_EQ(numbers.fill("<B.mean*1000> mm, <B.at_most>"), "0.25 mm, 15");
   EXPECT_EQ(numbers.fill("<A.raw.spread:.2f>"), "17.70");
+  EXPECT_EQ(numbers.fill("<A.raw.mean:.1g>, <A.raw.mean*1000:.1g>, <A.raw.mean*10000:.1g>"), "40, 40000, 4e+05");
   EXPECT_THROW(numbers.fill("<C>"), InputError);
 }
 
