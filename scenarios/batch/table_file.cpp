@@ -37,10 +37,12 @@ TableFile::TableFile(TableTitle title, const Keep& keep)
   const std::size_t rows = rows_in_progress(title_.file);
   if (keep) {
     resume(keep);
-  } else if (rows > 0 && has_same_definition()) {
-    fail_in_file(part_, fmt::format("holds {} finished runs of this sweep, which was interrupted; allowed: --resume to "
-                                    "go on from there, another --out, or to begin anew without this file",
-                                    rows));
+  } else if (rows > 0) {
+    const bool is_same = has_same_definition();
+    fail_in_file(part_,
+                 fmt::format("holds {} finished runs of {} sweep, which was interrupted; allowed: {}another "
+                             "--out, or to begin anew without this file",
+                             rows, is_same ? "this" : "another", is_same ? "--resume to go on from there, " : ""));
   }
   // Start a new .part file, or append to it.
   const bool is_new = !keep || !fs::exists(part_, error) || fs::file_size(part_, error) == 0;

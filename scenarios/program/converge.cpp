@@ -379,9 +379,10 @@ void add_converge(CommandLine& line) {
               {.required = true});
   command.add("--metric <name,...>", options.metrics,
               fmt::format("metrics of summary.json (default: {})", kDefaultMetrics[0]), {.comma_separated = true});
-  command.add("--vary <field>", options.field,
-              "field to refine (default: time.step_s), such as environment.spacing_m (distance of surface points), "
-              "environment.grid_m or tool.grid_m; any positive number whose error falls with it");
+  command.add(
+      "--vary <field>", options.field,
+      "field to refine (default: time.step_s), such as environment.spacing_m (distance of surface points), "
+      "environment.grid_m or tool.grid_m; any positive number that need not be an integer and whose error falls with it");
   command.add("--over <field=values>", options.over,
               "print run time against error for each value of these fields, such as integrator.type=all or "
               "rendering.algorithm=mean,proxy, at each time step; repeatable",

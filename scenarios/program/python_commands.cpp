@@ -181,7 +181,10 @@ int run_import(const ProgramArguments& given, ProgramContext& context) {
         "\nUsage: hapbench import stroke [OPTIONS] [<recording>]\n"
         "       hapbench import device [OPTIONS] [<log.csv>]\n\n" +
         kinds + "\n" +
-        layout.wrapped("Both read any column names and units: see --columns and --scale in their help.", 0) +
+        layout.wrapped(
+            "Both read any column names and units: see --columns and --scale in their help. A file with invalid rows is "
+            "refused, and nothing is written; see --skip-bad-rows.",
+            0) +
         "\nExamples:\n"
         "  hapbench import stroke log.txt --preset hapi\n"
         "  hapbench import stroke rec.csv --columns time=1,position=2 --scale time=1e-6\n"

@@ -247,12 +247,13 @@ void add_reproduce(CommandLine& line) {
   command.add("--sensitivity <file.json>", options.sensitivity,
               "judge claims with one assumption at a time at another value, and add the verdicts to this record");
   command.footer(
-      "Files: claims.json and claims.md (the ledger: claim, published and measured value, verdict) and the runs in "
-      "OUT/thesis.\n\n"
+      "Files: claims.json, claims.md and claim_pages.md (the ledger: claim, published and measured value, verdict) and the "
+      "runs in OUT/thesis.\n\n"
       "Assumptions: the thesis leaves them open; \"hapbench describe assumptions\" lists them. --assumptions prints, "
       "for each set, the verdicts and numbers of the claims that it can change, and what moved. --sensitivity "
       "continues an interrupted record; results/reference/sensitivity.json is the record of the ledger.\n\n"
-      "Earlier results: runs of the same scenario by the same build are used again; a ledger is replaced.\n\n"
+      "Earlier results: runs of the same scenario by the same build are used again, unless the build has uncommitted "
+      "changes; a ledger is replaced.\n\n"
       "Time: about 5 minutes on two processors; a single claim takes seconds to a minute. An assumption set that "
       "changes all claims takes as long; a whole record takes about an hour of one processor.\n\n"
       "Exit status: 0 whatever the verdicts are; 3 if a run did not end as its scenario expects; 130 stopped by "

@@ -29,6 +29,13 @@ class Replays(Given):
         (folder / "replay.csv").write_text("\n".join([about, names, *rows]) + "\n")
         return folder
 
+    def test_the_picture_of_a_log_is_beside_it(self):
+        log = self.root / "alone" / "loop.csv"
+        log.parent.mkdir()
+        shutil.copy(LOG, log)
+        plotted(log)
+        self.assertEqual({file.name for file in log.parent.iterdir()}, {"loop.csv", "plot.svg"})
+
     def test_a_log_and_its_replay(self):
         folder = self.other()
         first, second = Log(LOG), Log(folder / "replay.csv")

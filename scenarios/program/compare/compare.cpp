@@ -242,8 +242,8 @@ void add_compare(CommandLine& line) {
       "along, or does not end as its scenario expects. It ends when it has failed for good (hapbench describe \"early "
       "end\").\n\n"
       "Files: comparison.csv (one row per run), ranking.csv (one row per scenario, law and metric), and each run in "
-      "OUT/[SCENARIO/]ALGORITHM[/seed_K]; the parts in brackets exist if there are several. An earlier comparison in "
-      "the folder is removed, other files stay.\n\n"
+      "OUT/[SCENARIO/]ALGORITHM[/seed_K]; the parts in brackets exist if there are several. An earlier comparison of "
+      "the same scenarios in the folder is removed, other files stay.\n\n"
       "Exit status: 0 also if laws fail, except: 3 if a run diverges and its scenario does not expect that.");
 }
 

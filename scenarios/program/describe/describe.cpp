@@ -140,7 +140,9 @@ int describe(const DescribeOptions& options, ProgramContext& context) {
 
 void add_describe(CommandLine& line) {
   auto [command, options] = line.command("describe", "Explain a name, or list what exists.", describe);
-  command.add("name <name>", options.name, "what to explain, see below; without it, everything is listed");
+  command.add(
+      "name <name>", options.name,
+      "what to explain, see below; without it, everything is listed but metrics, claims, assumptions and terms");
   command.add("--grep <text>", options.grep, "list only entries with this text in name, description or source");
   add_table(command, options.output);
   command.footer(

@@ -1,4 +1,5 @@
-"""python -m hapbench_audit WORDS…: analyses a log of any engine. The program calls it for `hapbench audit`."""
+"""Analyses the log of any haptic or contact engine: python -m hapbench_audit ARGUMENTS…. The program runs this module
+for `hapbench audit`."""
 import sys
 from pathlib import Path
 
@@ -25,13 +26,14 @@ NOTES = [
     'a row is in contact; default: any force), sample_rate_Hz (for a log without times), and those of "hapbench import '
     'stroke --help".',
     "Energy: the sum of f . dp, with the force of a row held until the next row. Positive work is energy that the "
-    'engine gives to the hand; the largest sum is the net created energy. "Along the path" the force changes '
-    "linearly between rows, without the effect of holding it. The error follows from the resolution of the log.",
+    "engine gives to the hand; the largest sum is the net created energy. If the log begins in contact, the energy "
+    'stored there is subtracted, which needs a stiffness. "Along the path" the force changes linearly between rows, '
+    "without the effect of holding it. The error follows from the resolution of the log.",
     "Contacts: from touch to release. The first 0.05 s are a landing, the rest is settled contact, as in `run`.",
     "Stiffness: regression of the force on position and velocity, along the normal of the surface, over delays of "
     "whole rows; the weighted median of the contacts. Where the log does not determine a number, it is not stated.",
     "Expectations: any number of audit.json, such as energy_mJ=1, force_rms_above_30Hz_N=0.1 or "
-    "stiffness_N_per_m=900:1100.",
+    "stiffness_N_per_m=900:1100. A number that the log does not determine does not meet its expectation.",
     "Files: audit.json, audit.svg and audit.html in results/out/audit_LOG. They replace earlier ones.",
     "Exit status: 0 also with a diagnosis; 2 bad input; 3 an expectation is not met.",
 ]

@@ -25,8 +25,8 @@ PLOT_NOTES = [
     "replay folder has only the new outputs: name the recorded log, too, for the difference.",
     "A sampled sweep: the metric over each field, with the influence of the field: Spearman's rank "
     "correlation and first-order Sobol index.",
-    "Files: plot.svg in the folder of the runs; for several runs, in the nearest folder that "
-    "contains them all. It replaces an earlier picture.",
+    "Files: plot.svg in the folder of the run, or beside the log; for several runs, in the nearest "
+    "folder that contains them all. It replaces an earlier picture.",
 ]
 PLOT_EXAMPLES = [
     "hapbench plot results/out/drag_molar",
@@ -38,7 +38,8 @@ PLOT_EXAMPLES = [
 REPORT_NOTES = [
     "Page: one HTML file that needs no other file, no server and no network. It shows curves, "
     "metrics, scenarios and commands, and replays up to four runs side by side. Runs with --set "
-    "record.contacts=true also show depths. For two runs, their differences come first.",
+    "record.contacts=true also show depths. For two runs, their differences come first. If the live page is built "
+    "(scripts/live/README.md), it is copied beside the page, which then links to it.",
     "Many runs (several seeds, or many laws in several scenes): the page begins with laws by metrics "
     "and the ranking; curves are means over the seeds.",
     "A sweep: use sweep --keep-runs, then report FOLDER/runs.",
@@ -79,7 +80,8 @@ def plot_line():
     line.texts(
         "--y",
         "<name,...>",
-        "quantities to draw (default: force, depth, ratio, contacts, path, and energy if recorded)",
+        "quantities to draw (default: force, depth, ratio, contacts, path, and what was recorded of reference, "
+        "force_error and energy)",
     )
     line.texts(
         "--metric",

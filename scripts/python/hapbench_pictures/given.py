@@ -143,12 +143,16 @@ def relative_folders(runs):
 
 
 def common_folder(words):
-    """Returns the folder that contains all runs; for a single run, the folder of the run."""
-    return (
+    """Returns the folder that contains all runs or logs; for a single run, the folder of the run. The current folder
+    for a pipe."""
+    path = (
         Path(os.path.commonpath([os.path.abspath(word) for word in words]))
         if len(words) > 1
         else Path(words[0])
     )
+    if path.is_file():
+        return path.parent
+    return path if path.is_dir() or not path.exists() else Path()
 
 
 def fields_of(run):

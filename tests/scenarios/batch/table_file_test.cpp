@@ -76,6 +76,7 @@ TEST_F(TableFiles, CutShortAnywhereKeepTheWholeLinesAndGoOn) {
 TEST_F(TableFiles, OfAnotherDefinitionAreRefusedAndLeftAlone) {
   const std::string whole = left({"0,a"});
   expect_refusal([&] { resumed("theirs"); }, "sweep.csv.part: is not the table of this sweep");
+  expect_refusal([&] { TableFile(title("theirs")); }, "sweep.csv.part: holds 1 finished runs of another sweep");
   EXPECT_EQ(read_file(part_), whole);
   fs::remove(directory_ / "sweep.json.part");
   expect_refusal([&] { resumed(); }, "is not the table of this sweep");
