@@ -25,8 +25,8 @@ constexpr std::uint64_t kMinQuarterSteps = 10;
 /// any stiffness.
 constexpr double kSmallestStiffness = 1e-9;
 
-/// Returns the largest stable K of the loop on springs in permanent contact [N/m], with the stiffest direction of the
-/// run (largest stiffness ratio lambda). Empty without a loop.
+/// Returns the largest stable K [N/m] of a tool on permanent springs, with the stiffest direction of the run (largest
+/// stiffness ratio lambda). Empty without a loop.
 Number springs_limit(const DiagnosedRun& run) {
   const Number lambda = run.metric("ratio_max");
   const double K = run.scenario().rendering.stiffness;
@@ -52,7 +52,10 @@ Number surface_limit(const DiagnosedRun& run) {
 Number ratio_to_stability_limit(const DiagnosedRun& run) {
   const double K = run.scenario().rendering.stiffness;
   if (!(K > 0.0) || !run.is_free()) return std::nullopt;
-  const Number limit = run.has_springs() ? springs_limit(run) : surface_limit(run);
+  // Without a hand, a tool has no equilibrium on a surface. The derivative of the force at another pose contains the
+  // change of the normal, which pushes the tool sideways at any K.
+  const bool has_equilibrium = !run.has_springs() && run.has_hand();
+  const Number limit = has_equilibrium ? surface_limit(run) : springs_limit(run);
   if (!limit) return std::nullopt;
   return rounded_to_digits(K / std::max(kSmallestStiffness * K, *limit), 6);
 }

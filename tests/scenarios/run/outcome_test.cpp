@@ -281,6 +281,10 @@ std::vector<Pair> pairs() {
        {"device_at_wall", {"device.servo.delay_samples=20"}},
        {"drag_molar", {"rendering.stiffness_N_per_m=2e6"}}},
       {"edge", {"drag_molar", {"rendering.stiffness_N_per_m=2e6"}}, molar},
+      // Nothing presses the ball to an equilibrium.
+      {"edge",
+       {"bounce_molar", {"rendering.stiffness_N_per_m=3e6"}},
+       {"bounce_molar", {"rendering.stiffness_N_per_m=157", "rendering.damping_ratio=7.5"}}},
       {"buzz", {"drag_molar", {kOmega}}, molar},
       {"pop", {"drag_molar", {kOmega}}, molar},
       {"reduction",
