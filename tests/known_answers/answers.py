@@ -1,6 +1,6 @@
-"""Known answers: rows that compare a printed number with a closed form, or with a computation that shares no code with
-hapbench. Each row also has the number that a naive reading of the field's meaning gives; the comparison must refuse it.
-A scene yields its rows from few runs."""
+"""Known answers: each answer compares a printed number with a closed form, or with a computation that shares no code
+with hapbench. Most answers also contain a naive value: the number that a plausible but wrong definition of the field
+gives. The comparison must reject the naive value. Each scene gives many answers from few runs."""
 import csv
 import json
 import math
@@ -17,7 +17,7 @@ SCENES = {}
 
 @dataclass(frozen=True)
 class Within:
-    """A tolerance with its derivation. The relative part refers to the largest known value of a series."""
+    """A tolerance and the reason for it. The relative part refers to the largest known value of a series."""
 
     why: str
     relative: float = 0.0
@@ -40,7 +40,7 @@ class Answer:
     within: Within
     known: object
     printed: object
-    naive: tuple = None  # naive meaning, and its value
+    naive: tuple = None  # (description, value) of a wrong definition of the field
 
     def faults(self):
         if not same(self.printed, self.known, self.within):
@@ -76,7 +76,7 @@ def same(value, known, within):
     )
     return value.shape == known.shape and np.allclose(
         value, known, rtol=0.0, atol=allowed, equal_nan=True
-    )  # NaN for empty cells
+    )  # empty cells are NaN
 
 
 class Table:
@@ -115,7 +115,8 @@ class Run:
 
 
 class Bench:
-    """Workspace of a scene: its folder, the program, and the answers found so far."""
+    """Runs the program for a scene, in the folder of the scene. Collects the answers of the scene and the JSON that the
+    program printed."""
 
     def __init__(self, scene, folder):
         self.scene, self.folder, self.answers, self.printed = scene, folder, [], []
@@ -161,8 +162,8 @@ class Bench:
         self.answers.append(Answer(self.scene, field, known_by, within, known, printed, naive))
 
     def proven(self, field, file, test, said, refused):
-        """Adds a row that is proven by a test in C++. The test contains both texts: the known answer and the refused
-        answer."""
+        """Adds an answer that a test in C++ proves. The source of this test must contain two texts: the known answer
+        `said` and the rejected answer `refused`."""
         suite, name = test.split(".")
         body = re.search(
             rf"TEST(_F)?\({suite}, {name}\) {{(.*?)\n}}",
@@ -180,8 +181,8 @@ class Bench:
         )
 
     def metrics(self, run, table):
-        """Adds rows (metric, known value, source of the known value, tolerance, naive meaning, naive value); the last
-        two are optional."""
+        """Adds an answer for each row of `table`: (metric, known value, source of the known value, tolerance, naive
+        definition, naive value). The last two may be missing."""
         for name, known, known_by, within, *naive in table:
             self.add(
                 re.sub(r"^targets\.\d+", "targets.PLACE", name),
@@ -193,7 +194,8 @@ class Bench:
             )
 
     def tolerance(self, run, metric, known, known_by, within, naive, exact):
-        """Adds the row of a metric's tolerance, and a row which states that the metric is within it."""
+        """Adds the answer for the tolerance of a metric. Also adds an answer which states that the metric differs from
+        the `exact` value by at most this tolerance."""
         printed = run.summary["tolerances"][metric]
         self.add(f"run --json: tolerances.{metric}", printed, known, known_by, within, naive)
         self.add(
@@ -205,7 +207,7 @@ class Bench:
         )
 
     def columns(self, table, rows):
-        """Adds rows like metrics(), for the columns of a table, whose known values are series."""
+        """Adds answers like metrics(), for columns of a table. A known value is a series, or one value for all rows."""
         for name, known, known_by, within, *naive in rows:
             known = (
                 np.broadcast_to(known, len(table.rows))
@@ -219,13 +221,14 @@ class Bench:
 
 
 def scene(function):
-    """Registers a function that adds answers to a Bench. Its docstring describes the known answers."""
+    """Registers a function that adds the answers of a scene to a Bench. Its docstring describes the source of the known
+    values."""
     SCENES[function.__name__] = function
     return function
 
 
 def profile(given, t):
-    """Returns the values of a scenario's profile at the times t, by the definition of the profile."""
+    """Returns the values of a profile of a scenario at the times t [s], computed from the definition of profiles."""
     if not isinstance(given, dict):
         return np.full_like(t, float(given))
     if given["type"] == "ramp":

@@ -1,5 +1,5 @@
-"""Tests that every printed field has a known answer: tests/known_answers/README.md. The program provides the list of
-printed fields."""
+"""Tests that every printed field has a known answer, and that the program prints it (tests/known_answers/README.md).
+The program lists its printed fields itself."""
 import json
 import re
 import unittest
@@ -27,7 +27,8 @@ def described(what):
 
 
 def keys_of(data):
-    """Yields each key, and True if its value is an object or a list of objects that only groups other keys."""
+    """Yields (key, True if its value only groups other keys) for each key of the JSON `data`. A grouping value is an
+    object or a list of objects."""
     for part in data if isinstance(data, list) else ():
         yield from keys_of(part)
     if not isinstance(data, dict):
@@ -46,7 +47,7 @@ def keys_of(data):
             for finding in data.get(DIAGNOSIS, [])
             for name, value in finding.items()
         }
-    )  # words that are values of other keys
+    )  # members of each finding of the diagnosis
     for key, value in members.items():
         grouping = (
             isinstance(value, dict)
@@ -59,8 +60,8 @@ def keys_of(data):
 
 
 def printed_fields():
-    """Returns all printed fields: metrics, columns as FILE:COLUMN, words as "WORD (KIND)", and other keys of JSON as
-    "COMMAND --json: KEY"."""
+    """Returns the names of all printed fields: metrics by their name, columns as FILE:COLUMN, words as "WORD (KIND)",
+    and other keys of JSON as "COMMAND --json: KEY"."""
     metrics = [metric["name"] for metric in described("metrics")[0]["metrics"]]
     parts = {part for name in metrics for part in name.split(".")}
     fields, columns = [re.sub(r"^targets\.\d+", "targets.PLACE", name) for name in metrics], set()

@@ -1,4 +1,4 @@
-"""Scenes for the tables of compare, recomputed from the summaries of single runs."""
+"""Known answers for the tables of compare, recomputed from the summaries of single runs."""
 import math
 from itertools import product
 
@@ -13,9 +13,9 @@ SEEDS = 14
 
 
 def ranks_of(means, bad):
-    """Returns the rank by law. Laws without failures are ranked by their means; means within 0.1 % share a rank. Laws
-    with failures follow, ranked by their number of failures `bad`. Empty if all ranks would be equal.
-    """
+    """Returns the rank of each law. Laws without failed runs are ranked by their means, and means within 0.1 % share a
+    rank. Laws with failed runs follow, ranked by their number of failed runs `bad`. Returns an empty dictionary if all
+    ranks would be equal."""
     alike = lambda a, b: abs(means[a] - means[b]) <= 1e-3 * max(abs(means[a]), abs(means[b]))
     order = sorted((name for name in means if bad[name] == 0), key=means.get)
     leader, rank = {}, {}
@@ -29,8 +29,8 @@ def ranks_of(means, bad):
 
 
 def rows_of_ranking(scenes, runs):
-    """Returns the known rows of ranking.csv, the rows that a naive reading gives, and the ranks of each law over scenes
-    and metrics. `runs`: Run by scene, law and seed."""
+    """Returns the known rows of ranking.csv, the rows of a naive definition, and the ranks of each law over all scenes
+    and metrics. `runs`: Run by (scene, law, seed)."""
     known, naive, ranks = [], [], {law: [] for law in LAWS}
     number = lambda x: math.nan if x is None else float(x)
     outcomes = {
@@ -86,9 +86,9 @@ def rows_of_ranking(scenes, runs):
 
 @scene
 def league(bench):
-    """A mass on two parallel springs. One is soft; the other is so stiff that leapfrog amplifies every step, and some
-    starts leave the bounds. Computes the ranking by its definition: means over common seeds, and ranks.
-    """
+    """Checks the ranking of laws for a mass on two parallel springs, in two scenes. In the second scene, the springs
+    are so stiff that leapfrog amplifies every step of most laws, and some starts leave the bounds. The ranking follows
+    from its definition: means over common seeds, and ranks."""
     start = {"position_m": [1e-4, -1e-3, 0]}
     bench.scenario(
         "held",
@@ -156,8 +156,8 @@ def league(bench):
             wrong,
         )
     order = [law["algorithm"] for law in printed["laws"]]
-    # The stiffness of the other laws exceeds 4 M / dt^2 = 4e5 N/m; the stiffness of virtual coupling is two thirds of
-    # it.
+    # The stiffness of most laws exceeds 4 M / dt^2 = 4e5 N/m. Only the stiffness of virtual coupling is smaller, by a
+    # factor of two thirds.
     for key, values, wrong in (
         ("mean_rank", [np.mean(ranks[law]) for law in order], ("place in the order", [1, 2, 3, 4])),
         (
@@ -182,8 +182,8 @@ def league(bench):
 
 @scene
 def compared(bench):
-    """comparison.csv contains the summaries of the runs, one for each law. A shell is described by the contents of the
-    point shell's file."""
+    """Checks that comparison.csv contains the summaries of single runs, one for each law. Checks that shell.csv
+    contains the points of the file of a point shell."""
     base = bench.scenario(
         "compared",
         time={"step_s": 0.001, "steps": 400},

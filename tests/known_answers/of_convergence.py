@@ -1,4 +1,5 @@
-"""Scenes for the tables of converge: recurrences of one spring and their limits."""
+"""Known answers for the tables of converge and for the errors of compare: recurrences of one spring and their
+limits."""
 import math
 
 import numpy as np
@@ -10,8 +11,8 @@ from physics import PLAIN, SPRING, UP, Phases, nearest_rank, step_matrix
 
 @scene
 def sampled_finer(bench):
-    """Laws on a plane at half and a quarter of the step and of the point spacing: single runs, measured at the same
-    times."""
+    """Checks the errors of step and point spacing that compare estimates for laws on a plane. Single runs at half and a
+    quarter of the step and of the spacing give the known values, measured at the same times."""
     laws, by, scene_name = (
         ["summation", "proxy", "shaped_stiffness", "highest_depth"],
         ["force_step_p99_N", "force_max_N"],
@@ -60,8 +61,8 @@ def sampled_finer(bench):
     }
     for m, row in enumerate(said):
         for part in ("spacing", "step"):
-            # The error is at least the distance of the runs. If an order is observed, it is 1.25 |f - f*| instead. Bins
-            # of p99 are 1.6 % wide.
+            # The error is at least the difference between the runs. If the order of convergence is known, the error is
+            # 1.25 |f - f*| instead, with the extrapolated value f*. Histogram bins of p99 are 1.6 % wide.
             far = [max(abs(own[law][m] - runs[m]) for runs in finer[law][part]) for law in laws]
             least = [
                 n[f"error_of_{part}"] is None
@@ -119,8 +120,9 @@ def sampled_finer(bench):
 
 
 def verdict_on(f):
-    """Returns the order, Richardson's value and its error (with Roache's factor) of three results at steps that are
-    halved each time."""
+    """Returns the observed order, Richardson's extrapolated value, and the error of each result with Roache's factor
+    1.25. `f`: results at steps that are halved each time; the last three results determine the order.
+    """
     p = math.log2((f[-3] - f[-2]) / (f[-2] - f[-1]))
     limit = f[-1] + (f[-1] - f[-2]) / (2**p - 1)
     return p, limit, 1.25 * np.abs(f - limit)
@@ -128,8 +130,9 @@ def verdict_on(f):
 
 @scene
 def convergence_in_thirds(bench):
-    """Leapfrog on one damped spring with steps divided by r = 3. With the differences d of successive levels, the order
-    is p = log(d_1 / d_2) / log r, and Richardson's value is f + (f - f_before) / (r^p - 1)."""
+    """Checks converge for leapfrog on one damped spring, with steps divided by r = 3. With the differences d_1 and d_2
+    of successive results f, the order is p = log(d_1 / d_2) / log r. Richardson's value is
+    f + (f - f_before) / (r^p - 1)."""
     K, M, dt, n, r = 1500.0, 0.1, 0.002, 40, 3
     B = 2 * 0.2 * math.sqrt(K * M)
     base = bench.scenario(
@@ -175,8 +178,8 @@ def convergence_in_thirds(bench):
 
 @scene
 def convergence(bench):
-    """Leapfrog on one damped spring with five steps, evaluated at the same time: orders and limit follow from a
-    recurrence."""
+    """Checks converge for leapfrog on one damped spring with five steps, evaluated at the same time. Orders and
+    extrapolated value follow from a recurrence."""
     K, M, dt, n = 1500.0, 0.1, 0.002, 40
     B = 2 * 0.2 * math.sqrt(K * M)
     base = bench.scenario(
@@ -205,7 +208,7 @@ def convergence(bench):
     orders = [math.nan] * 2 + [verdict_on(f[i - 2 : i + 1])[0] for i in range(2, 5)]
     ratio = (
         abs((f[-3] - f[-4]) / f[-3]) / abs((f[-2] - f[-3]) / f[-2]) / 2**p
-    )  # of the three levels before the last; the larger error
+    )  # 1 if the relative differences of the levels before the last decrease by 2^p
     near = Within(
         "positions of 1e-4 m known to 1e-18 m after 640 steps, over differences of 1e-6 m",
         relative=1e-9,
@@ -275,7 +278,7 @@ def convergence(bench):
 
 
 def error_of_step(bench, base, f, fine, metric, printed):
-    """Checks the error that compare assigns to a number: the error of the coarsest of three levels."""
+    """Checks the error of the time step that compare assigns to a number: the error of the coarsest of three levels."""
     error = verdict_on(f[:3])[2][0]
     (said,) = bench.json(
         "compare",
@@ -304,7 +307,7 @@ def error_of_step(bench, base, f, fine, metric, printed):
 
 
 def levels_of_convergence(bench, dt, errors, f, fine, levels, metric, near, orders, out, steps):
-    """converge_levels.csv: steps, results, orders and errors of each level."""
+    """Checks converge_levels.csv: steps, results, observed orders and errors of each level."""
     for name, (value, within, naive, wrong) in {
         "value": (steps, EXACT, "the coarsest over 1, 2, 3 ...", dt / np.arange(1, 6)),
         "result": (f, near, "of the last row of each run", np.append(f[1:], f[0])),

@@ -1,4 +1,4 @@
-"""Scenes for the comparison of devices by limit: the motion of linear recurrences."""
+"""Known answers for the comparison of devices by limit: the motion of linear recurrences."""
 import math
 
 import numpy as np
@@ -9,8 +9,8 @@ from physics import PLAIN, bisected, class_of, edge_of, held_loop, high_pass, mo
 
 @scene
 def devices(bench):
-    """The stiffness of two springs, and of a unilateral wall, on a handle, from the motion of the sampled loop with
-    scipy's filter."""
+    """Checks the stiffness limits of devices on two springs and at a unilateral wall. The known limits follow from the
+    motion of the sampled loop and scipy's high-pass filter."""
     m, b, T, B, n, resolution, most = 0.1, 0.5, 0.001, 2.0, 2000, 1e-3, 1e-3
     (bench.folder / "mine.json").write_text(
         '{"type":"impedance","handle_mass_kg":0.1,"viscous_N_s_per_m":0.5}', encoding="utf-8"
@@ -182,7 +182,7 @@ def devices(bench):
 
 
 def linear_limit_of_device(bench, B, T, b, cell, m, number, printed, theory):
-    """The linear limit with the hand, from the eigenvalues of the sampled loop."""
+    """Checks the linear limit of a device in a hand, by the eigenvalues of the sampled loop."""
     pushed = ("mine", "pushes", "summation")
     linear = edge_of(lambda K: held_loop(m + 0.2, b + 2, T, K, B, spring=300), 100.0, 1e6)
     close = Within("an edge by eigenvalues, bisected to 1e-9 or better", relative=1e-8)
@@ -206,7 +206,7 @@ def linear_limit_of_device(bench, B, T, b, cell, m, number, printed, theory):
 
 
 def names_of_devices(bench, number, runs, table):
-    """Device, scene and law of each row, and the limit published by the device's manufacturer."""
+    """Checks device, scene and law of each row, and the stiffness limit that is published for the device."""
     order = [
         (d, s, a)
         for d in ("mine", "omega.3")
@@ -242,8 +242,8 @@ def names_of_devices(bench, number, runs, table):
 
 
 def limits_of_both_ends(bench, fine, how, most, resolution, vibration):
-    """The limits at both ends of a preset's unpublished parameters: mass divided and multiplied by 1.3, viscous
-    friction from 0.5 to 5 N s/m."""
+    """Checks the limits at both ends of a preset's unpublished parameters: mass divided and multiplied by 1.3, viscous
+    friction of 0.5 and of 5 N s/m."""
     # Without dry friction, encoder and saturation, the only estimated parameters of an omega.3 are its mass and viscous
     # friction.
     bare = [

@@ -1,4 +1,4 @@
-"""Scenes for words: outcomes of runs, and the classes of motion by which limits are found."""
+"""Known answers for words: outcomes of runs, and the classes of motion by which `limit` finds limits."""
 import math
 
 from answers import EXACT, ROUNDING, Table, Within, scene
@@ -10,8 +10,8 @@ BALL = {"type": "bur", "family": "ball", "diameter_m": 0.004}
 
 @scene
 def ends(bench):
-    """Runs whose outcome follows from physics, with the word for this outcome and the word that a superficial look
-    would give."""
+    """Checks runs whose outcome follows from physics. Each row has the word for this outcome, and a wrong word that
+    only looks plausible."""
     time = {"step_s": 0.0005, "steps": 1000}
     free = {"rendering": {**PLAIN, "algorithm": "summation"}}
     pressed = {
@@ -198,7 +198,8 @@ def ends(bench):
 
 
 def classes(bench):
-    """Runs on the same scenes whose tool does not vibrate but which are not valid answers."""
+    """Checks the classes of runs that do not vibrate but are not valid: for example, the tool goes through the surface
+    or loses contact."""
     ask = ("--vary", "rendering.stiffness_N_per_m", "--between")
     row = bench.json(
         "limit",
@@ -364,8 +365,9 @@ def divergence(bench, run):
 
 @scene
 def limit_of_spring(bench):
-    """The stability limit of the stiffness of one damped spring. The recurrence determines the class of a run. The
-    linear limit satisfies 4 - 2 B dt / M - K dt^2 / M = 0."""
+    """Checks the stability limit of the stiffness K of one damped spring. The recurrence determines the class of each
+    run. The linear limit satisfies 4 - 2 B dt / M - K dt^2 / M = 0, with the damping B, the mass M and the step dt.
+    """
     M, dt, n, zeta, resolution = 0.1, 0.0005, 400, 0.02, 1e-4
     base = bench.scenario(
         "limit_of_spring",
@@ -490,10 +492,8 @@ def limit_of_spring(bench):
 
 
 def limit_under_bound(bench, base, field, strip):
-    """Limit of the stiffness under a bound on the force. The force is largest at the start, where it is K times 1 mm,
-    as long as damping removes more energy than the integrator adds."""
-    # The force is largest at the start, where it is K times 1 mm, as long as damping removes more energy than the
-    # integrator adds.
+    """Checks the limit of the stiffness K under a bound on the force. The force is largest at the start, where it is K
+    times 1 mm, as long as damping removes more energy than the integrator adds."""
     ask = (
         "limit",
         base,
@@ -528,7 +528,7 @@ def limit_under_bound(bench, base, field, strip):
 
 
 def words_of_limit(bench, base, printed, resolution, row):
-    """Words of limit: the answer repeats the question, and a field without an effect has no limit."""
+    """Checks further fields of `limit`: the JSON repeats the options, and a field without an effect has no limit."""
     for key, known, naive in (
         ("from", 1e3, 1.0),
         ("to", 1e7, 1e6),
@@ -567,7 +567,7 @@ def words_of_limit(bench, base, printed, resolution, row):
 
 
 def digits(bench, base, field):
-    """The table prints a limit down to the leading digit of the width of the interval that contains it."""
+    """Checks that the table prints a limit with the digits down to the leading digit of its tolerance."""
     for resolution in (0.1, 1e-3, 1e-5):
         ask = (
             "limit",

@@ -1,4 +1,4 @@
-"""Scenes for the energies of a run: recurrences and trapezoidal rules along paths."""
+"""Known answers for the energies of a run: recurrences, and trapezoidal rules along paths."""
 import math
 
 import numpy as np
@@ -9,8 +9,8 @@ from physics import FILTERED, SPRING, STEPPED, SUMMED, high_pass
 
 @scene
 def mean_of_two(bench):
-    """A tool moves onto two springs, whose force `mean` halves, then sideways off one spring, then away from the other.
-    This cycle creates energy."""
+    """Checks the energies of a tool that moves onto two springs, then sideways off one spring, then away from the other
+    spring. The law `mean` halves the force of two springs, so that this cycle creates energy."""
     K, dt, n = 1000.0, 0.001, 400
     U = np.array([[0, 0, -1.0], [0.8, 0, -0.6]])
     path = {
@@ -169,7 +169,7 @@ def mean_of_two(bench):
 def rows_of_two(
     bench, K, by, created, d, dt, f, held, kinetic, n, onto, rect, run, script, spring, stored, t
 ):
-    """Rows of energy.csv: the accumulated work along the path."""
+    """Checks the rows of energy.csv: the work accumulated along the path."""
     rows = [
         ("step", np.arange(n), "0, 1, ...", EXACT, "from 1", np.arange(n) + 1),
         ("time_s", t, "k dt", EXACT, "after the step", t + dt),
@@ -205,7 +205,7 @@ def rows_of_two(
 
 
 def events_of_two(bench, by, count, created, d, run, t):
-    """The rows that create the most energy, and the touches and releases in these rows."""
+    """Checks the rows that create the most energy, and the contacts that begin or end in these rows."""
     events = [
         event for event in run.summary["energy"]["events"] if event["created_J"] > 1e-12
     ]  # the other amounts are rounding errors
@@ -243,8 +243,8 @@ def events_of_two(bench, by, count, created, d, run, t):
 
 @scene
 def limited_hand(bench):
-    """A free mass on a damped spring, pushed by a hand whose force is a ramp that the device limits: a linear
-    recurrence."""
+    """Checks the energies of a free mass on a damped spring. The force of the hand is a ramp that the device limits, so
+    that the motion is a linear recurrence."""
     K, M, dt, n, limit = 2000.0, 0.2, 0.001, 300, 0.6
     B = 2 * 0.1 * math.sqrt(K * M)
     run = bench.run(
@@ -384,8 +384,8 @@ def limited_hand(bench):
 
 @scene
 def handle_on_spring(bench):
-    """The handle of an impedance device on a spring whose force is held and delayed by a sample: exact by the matrix
-    exponential."""
+    """Checks the energies of the handle of an impedance device on a spring. The spring force is delayed by a sample and
+    held, so that the motion between samples has a closed form."""
     m, b, K, dt, n, push = 0.3, 2.0, 800.0, 0.002, 400, 0.5
     run = bench.run(
         bench.scenario(

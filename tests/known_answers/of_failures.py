@@ -1,4 +1,4 @@
-"""Scenes for runs that fail: their end, and the rules of the diagnosis."""
+"""Known answers for runs that fail: the time at which they end, and the rules of the diagnosis."""
 import json
 import re
 
@@ -15,8 +15,8 @@ STEP, SPEED, BOUND = (
 
 @scene
 def early_end(bench):
-    """A free mass on a spring that is too soft to have an effect exceeds the bound of its position: the run
-    diverges."""
+    """Checks the end of a run that diverges: a free mass on a spring without noticeable effect exceeds the bound of its
+    position."""
     base = bench.scenario(
         "early_end",
         time={"step_s": STEP, "steps": 40},
@@ -74,7 +74,8 @@ def early_end(bench):
 
 @scene
 def rules_of_the_diagnosis(bench):
-    """A test in C++ tests each rule on a scene with its fault and on a scene without it."""
+    """Checks that a test in C++ tests each rule of the diagnosis, on a scene with the fault and on a scene without
+    it."""
     text = (SOURCE / "tests/scenarios/run/outcome_test.cpp").read_text(encoding="utf-8")
     table = re.search(r"std::vector<Pair> pairs\(\) {(.*?)\n}", text, re.S)[1]
     test = re.search(

@@ -1,4 +1,4 @@
-"""Scenes for the comparison with an exact or measured reference force."""
+"""Known answers for the comparison with an exact or measured reference force."""
 import math
 
 import numpy as np
@@ -23,7 +23,8 @@ STEPS = [
 
 @scene
 def late_force(bench):
-    """A force that lags the reference by 30 ms, with a perpendicular component."""
+    """Checks the metrics of a force that lags the reference by 30 ms. The reference also has a perpendicular
+    component."""
     K, dt, n, late = 1000.0, 0.0005, 2000, 0.03
     reference = {
         "z_N": {"type": "waypoints", "points": [[max(0, s - late), -K * z] for s, z in STEPS[1:]]},
@@ -212,7 +213,8 @@ def late_force(bench):
 
 @scene
 def periodic_force(bench):
-    """A force in phase with a reference of 20 Hz: the smallest of many possible lags, and their spacing."""
+    """Checks the lag of a force behind a reference of 20 Hz. A periodic force has many possible lags, which differ by
+    the period. The known values are the smallest lag and the period."""
     run = bench.run(
         bench.scenario(
             "periodic_force",
@@ -259,8 +261,8 @@ def periodic_force(bench):
 
 @scene
 def recorded_force(bench):
-    """A stroke with a force that was measured in its middle. Between samples, motion and force are linear; rows outside
-    of the measurement have no reference."""
+    """Checks a stroke whose force was measured only in its middle. Motion and force are linear between samples. Rows
+    outside of the measurement have no reference."""
     K, dt, n = 500.0, 0.001, 1000
     t = np.array([0.1, 0.25, 0.45, 0.7])
     place, force = np.array([0, -1e-3, -3e-3, -2e-3]), np.array(
@@ -336,7 +338,7 @@ def recorded_force(bench):
 
 @scene
 def imported(bench):
-    """A recording whose positions have resolutions of 10, 20 and 5 um: the report of import."""
+    """Checks the report of `import` for a recording whose positions have resolutions of 10, 20 and 5 um."""
     t = np.arange(400) * 0.002
     p = np.column_stack(
         [
@@ -445,7 +447,8 @@ def imported(bench):
 
 @scene
 def rigid_tool_in_a_hand(bench):
-    """A hand lowers a round drill on the face of a box: the reference is a rigid tool in the same hand."""
+    """Checks the metrics for a hand that lowers a round drill onto the face of a box. The reference is a rigid tool in
+    the same hand."""
     x, y, z, radius, n, dt = 4.0, 3.0, 1.0, 0.5, 1200, 0.0005
     corners = [f"v {i} {j} {k}" for k in (-z, z) for j in (-y, y) for i in (-x, x)]
     faces = ["f 1 3 4 2", "f 5 6 8 7", "f 1 2 6 5", "f 3 7 8 4", "f 1 5 7 3", "f 2 4 8 6"]

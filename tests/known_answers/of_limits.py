@@ -1,4 +1,4 @@
-"""Scenes for the tables of limit and stress: the eigenvalues and the motion of linear recurrences."""
+"""Known answers for the tables of limit and stress: eigenvalues and motion of linear recurrences."""
 import math
 
 import numpy as np
@@ -9,7 +9,7 @@ from physics import PLAIN, SPRING, SUMMED, bisected, class_of, edge_of, held_loo
 
 @scene
 def limits_of_springs(bench):
-    """The limits of two parallel springs with leapfrog (thesis A.3) and with rk4."""
+    """Checks the stability limits of two parallel springs with the integrators leapfrog (thesis A.3) and rk4."""
     M, dt, zeta, lam, K = 0.1, 0.0005, 0.7, 2.0, 20000.0
     base = bench.scenario(
         "limits_of_springs",
@@ -94,8 +94,9 @@ def limits_of_springs(bench):
 
 @scene
 def smallest_mass(bench):
-    """The smallest stable mass on one damped spring with leapfrog. From 4 - 2 B dt / M - K dt^2 / M = 0 with B = 2 zeta
-    sqrt(K M): M = K (dt / s)^2 with s = 2 (sqrt(1 + zeta^2) - zeta)."""
+    """Checks the smallest stable mass M on one damped spring with leapfrog. The linear limit satisfies 4 - 2 B dt / M -
+    K dt^2 / M = 0 with B = 2 zeta sqrt(K M). Its solution is M = K (dt / s)^2 with s = 2 (sqrt(1 + zeta^2) - zeta).
+    """
     K, dt, zeta = 20000.0, 0.0005, 0.7
     base = bench.scenario(
         "smallest_mass",
@@ -145,7 +146,8 @@ def smallest_mass(bench):
 
 @scene
 def smallest_stiffness(bench):
-    """The smallest stiffness that holds a force F at rest within a distance x of the spring's free end: K = F / x."""
+    """Checks the smallest stiffness K that holds a force F at rest within a distance x of the spring's free end: K = F
+    / x."""
     F, x = 1.0, 5e-5
     base = bench.scenario(
         "smallest_stiffness",
@@ -185,8 +187,8 @@ HANDS = [(0, 0), *((m, k) for m in (0.1, 0.2, 0.5) for k in (100, 300, 1000))]
 
 @scene
 def over_another_field(bench):
-    """Limit of K over B, delay and hand of a handle at a bilateral wall: each class from the linear recurrence, each
-    limit from its eigenvalues."""
+    """Checks the limit of K over damping, delay and hand, for a handle at a bilateral wall. The linear recurrence gives
+    the class of each run, and its eigenvalues give each limit."""
     ask = (
         "limit",
         "wall_on_handle",
@@ -276,7 +278,7 @@ def over_another_field(bench):
 
 
 def limits_over_delay_and_hand(bench, ask, close, given, handle):
-    """Limit of K over a delay and over the stiffness of the hand, from the eigenvalues of the sampled loop."""
+    """Checks the limit of K over a delay and over the stiffness of the hand, by the eigenvalues of the sampled loop."""
     hand = (
         '{"type":"mass_spring_damper","mass_kg":0.2,"stiffness_N_per_m":100,'
         '"damping_N_s_per_m":2,"target":{"x_m":0,"y_m":0,"z_m":0}}'
@@ -325,7 +327,8 @@ def limits_over_delay_and_hand(bench, ask, close, given, handle):
 
 
 def limits_over_encoder(bench, ask, damping, given):
-    """Limit of K over the encoder step q with dry friction c: min(2 b / T, 2 c / q) of Abbott and Okamura."""
+    """Checks the limit of K over the encoder step q with dry friction c and viscous friction b: min(2 b / T, 2 c / q)
+    of Abbott and Okamura, with the sampling period T."""
     q = np.geomspace(1e-6, 1e-3, 4)
     told = bench.json(
         *ask,

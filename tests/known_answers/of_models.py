@@ -1,4 +1,4 @@
-"""Scene for the comparison of laws with a reference force by converge --over."""
+"""Known answers for the comparison of laws with a reference force by converge --over."""
 import math
 
 import numpy as np
@@ -11,8 +11,8 @@ K, PRESSED, DEADLINE = 1000.0, 1e-3, 0.5e-3
 
 @scene
 def laws_against_a_force(bench):
-    """A prescribed tool presses two parallel springs: summation gives the force 2 K x, mean gives K x. The reference
-    force is tilted by 0.1 rad."""
+    """Checks the errors of two laws for a tool that presses two parallel springs by x. The law `summation` gives the
+    force 2 K x, and `mean` gives K x. The constant reference force is tilted by 0.1 rad."""
     reference = (-1.5, 0.15, 0.0)
     base = bench.scenario(
         "model",

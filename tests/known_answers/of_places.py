@@ -1,4 +1,4 @@
-"""Scenes whose answers are positions: the ideal trajectory in a hole, and depth below a surface."""
+"""Known answers for positions: the ideal trajectory in a hole, and the depth below a surface."""
 import math
 
 import numpy as np
@@ -9,22 +9,23 @@ R, r, H = 1e-3, 0.5e-3, 5e-3  # radii of hole and tool, depth of the hole [m]
 
 
 def depth_in_block(q):
-    """Returns the depth of points below the surface of a half space z < 0 with a hole; 0 outside of the half space."""
+    """Returns the depth [m] of points below the surface of the half space z < 0 with a hole; negative outside of the
+    solid. `q`: points, with the coordinates in the last axis."""
     out, below = np.hypot(q[..., 0], q[..., 1]) - R, -H - q[..., 2]
     hole = np.where((out > 0) & (below > 0), np.hypot(out, below), np.maximum(out, below))
     return np.minimum(hole, -q[..., 2])
 
 
 def interpenetration(tip, tilt):
-    """Returns the largest depth of the tool's solid, by successively finer grids around the deepest points of a coarse
-    grid."""
+    """Returns the largest depth [m] of the tool's solid. It is found on a coarse grid, and then on successively finer
+    grids around the deepest points."""
     axis, e1, e2 = (
         -np.array([math.sin(tilt), 0, math.cos(tilt)]),
         np.array([math.cos(tilt), 0, -math.sin(tilt)]),
         np.array([0, 1.0, 0]),
     )
 
-    # Depth of points on the side; points inside the flat tip are never deepest.
+    # Returns the depth of points on the side of the tool. Points inside the flat tip are never deepest.
     def depth(angle, up):
         turned = np.cos(angle)[..., None] * e1 + np.sin(angle)[..., None] * e2
         return depth_in_block(tip + r * turned - np.clip(up, 0, 0.01)[..., None] * axis)
@@ -49,8 +50,8 @@ def interpenetration(tip, tilt):
 
 @scene
 def beside_the_ideal(bench):
-    """A drill follows the ideal trajectory of thesis 3.6 with given offsets. Half of the rows have a gentle hand; in
-    some rows the ideal trajectory does not exist."""
+    """Checks the metrics of a drill that is offset from the ideal trajectory of thesis 3.6 by given distances. In half
+    of the rows, the hand is gentle. In some rows, the ideal trajectory does not exist."""
     n, dt = 24, 0.001
     tilt = np.r_[
         np.linspace(0.35, 0.95, 20), 1.10, 1.15, 1.2, 1.25
@@ -240,8 +241,8 @@ def beside_the_ideal(bench):
 
 @scene
 def pressed_ball(bench):
-    """A ball of 1 mm is pressed 3 mm into a plane. Its depth is the radius minus the height, independent of the plane's
-    width; the depth of a contact is at most the radius."""
+    """Checks the depth of a ball of 1 mm that is pressed 3 mm into a plane. The depth is the radius minus the height,
+    independent of the plane's width. The depth of a contact is at most the radius."""
     n, dt, a = 600, 0.001, 0.5e-3
     height = {
         "type": "waypoints",
@@ -355,8 +356,8 @@ def pressed_ball(bench):
 
 @scene
 def counted(bench):
-    """A ball touches a plane of 81 x 81 points for seven rows: the work counters with and without skips, and the
-    tool."""
+    """Checks the work counters, with and without skips, and the tool. A ball touches a plane of 81 x 81 points for
+    seven rows."""
     fields = dict(
         time={"step_s": 0.001, "steps": 600},
         environment={"type": "plane", "size_m": 0.008, "spacing_m": 0.0001},

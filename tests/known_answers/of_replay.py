@@ -1,4 +1,4 @@
-"""The log of a haptic loop on one spring, rendered again along its motion by compare --replay."""
+"""Known answers for compare --replay: the log of a haptic loop on one spring is rendered again along its motion."""
 import json
 
 import numpy as np
@@ -25,7 +25,7 @@ NAMES = (
 
 
 def statuses():
-    """Returns the status of each call. Without a ramp, the force is either on or off."""
+    """Returns the status of each call. The force has no ramp: it is either on or off."""
     found, below = [], 0
     for call in range(CALLS):
         if call == GAP:
@@ -44,7 +44,7 @@ def statuses():
 
 @scene
 def replay_of_a_log(bench):
-    """The force of the spring is -K x while the renderer is on, and at most LIMIT."""
+    """Checks the replayed forces. The force of the spring is -K x while the renderer is on, limited to LIMIT."""
     scenario = bench.scenario(
         "replay",
         time={"step_s": PERIOD, "steps": CALLS},
@@ -59,8 +59,8 @@ def replay_of_a_log(bench):
     force = np.clip(spring, -LIMIT, LIMIT)
     status[np.abs(spring) > LIMIT] = CLAMPED
     time_ns = 1_000_000 * (calls + np.where(calls >= GAP, 20, 0))
-    # Zeros keep the signs of their products: -K times 0 perpendicular to the spring, and 0 times the last force after a
-    # fall to 0.
+    # A zero force keeps the sign of its product: -K times 0 perpendicular to the spring, and 0 times the last force
+    # after a fall to zero.
     recorded = force.copy()
     fallen = np.isin(status, (STALE, IS_FAULT))
     recorded[GAP] *= np.sign(force[GAP - 1])

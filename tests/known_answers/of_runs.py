@@ -1,5 +1,5 @@
-"""Scenes for the metrics of summary.json: masses with friction, bundled scenes recomputed from the rows of their
-tables, and runs that are too coarse for a metric."""
+"""Known answers for the metrics of summary.json: a mass with friction, bundled scenes recomputed from the rows of their
+tables, and a run whose step is too long for some metrics."""
 import math
 
 import numpy as np
@@ -11,8 +11,8 @@ from physics import BELOW, BINNED, FILTERED, Phases, nearest_rank, settled_high_
 
 @scene
 def rubbed(bench):
-    """A free mass is pushed against a spring and along it. From some row on, the friction exceeds the stability limit
-    of leapfrog."""
+    """Checks a free mass that a hand pushes against a spring and sideways. From some row on, the friction exceeds the
+    stability limit of leapfrog."""
     K, M, dt, n, mu_s, mu_f = 5000.0, 0.1, 0.001, 120, 2.0, 20.0
     B = 2 * 0.3 * math.sqrt(K * M)
     push = {"type": "ramp", "start": 0.0, "rate_per_s": -150.0}
@@ -98,8 +98,8 @@ def rubbed(bench):
 
 @scene
 def from_rows(bench):
-    """Bundled scenes on a mesh, in a hole, and with both kinds of devices: metrics recomputed from the rows of
-    trajectory.csv by their definitions."""
+    """Checks the metrics of bundled scenes on a mesh, in a hole, and with both kinds of devices. The known values are
+    recomputed from the rows of trajectory.csv by the definitions of the metrics."""
     for name in (
         "drag_molar",
         "peg_in_hole_2d_original_averaging",
@@ -189,8 +189,8 @@ def from_rows(bench):
 
 @scene
 def too_coarse(bench):
-    """A step of 20 ms, which contains no frequencies above 30 Hz, and a contact of one row: the metrics are empty, not
-    0."""
+    """Checks that metrics without a value are empty, not 0. The run has a step of 20 ms, which contains no frequencies
+    above 30 Hz, and a contact of one row."""
     run = bench.run(
         bench.scenario(
             "too_coarse",

@@ -1,4 +1,4 @@
-"""Scenes for the comparison with a 6-DOF device: a drill pressed against one point."""
+"""Known answers for the comparison with a 6-DOF device: a drill is pressed against one point."""
 import numpy as np
 
 from answers import EXACT, Within, rms, scene
@@ -7,9 +7,13 @@ from physics import SUMMED
 
 @scene
 def pressed_on_one_point(bench):
-    """Springs in series. The hand presses by D against one point with the lever l about the force point, and the grip
-    is at the force point. The force is D / (1/K' + l^2 / K_r') with torque and D K' without torque, with K' = K_t K_h /
-    (K_t + K_h) and K_r' = K_r K_phi / (K_r + K_phi)."""
+    """Checks the forces of springs in series. The hand presses a tool by the distance D against one point. The lever
+    from the force point to the contact is l, and the grip is at the force point.
+
+    The force is D / (1/K' + l^2 / K_r') with torque, and D K' without torque. The stiffnesses in series are
+    K' = K_t K_h / (K_t + K_h) and K_r' = K_r K_phi / (K_r + K_phi), with the stiffness K_t of the
+    rendering, the rotational stiffness K_r of the coupling, and the stiffnesses K_h and K_phi of the hand.
+    """
     K, hand, turning, coupling = 2000.0, 500.0, 0.2, 0.4
     r, a, height, n, step, dt = 0.5e-3, 0.03, 2e-3, 101, 1e-8, 0.01
     # Normal of the surface; the point lies on the other side of the tool.

@@ -1,4 +1,4 @@
-"""Scenes for the stages of a force (friction, energy tank), and for forces of delayed contacts."""
+"""Known answers for the stages of a force (friction, energy tank), and for forces of delayed contacts."""
 import math
 
 import numpy as np
@@ -9,7 +9,7 @@ from physics import BELOW, SPRING, STEPPED, SUMMED, nearest_rank
 
 @scene
 def bristle(bench):
-    """A tool moves back and forth under dry friction while it is pressed deeper into one spring."""
+    """Checks dry friction on a tool that moves back and forth while it is pressed deeper into one spring."""
     K, M, dt, n, mu, kt, zeta = 1000.0, 0.01, 0.0005, 2000, 0.4, 2000.0, 0.5
     path = {
         "x_m": {"type": "sine", "mean": 0, "amplitude": 1e-3, "period_s": 0.25, "phase_rad": 0.3},
@@ -80,8 +80,8 @@ def bristle(bench):
 
 @scene
 def tank(bench):
-    """A mass on one spring, with an energy tank whose capacity is a tenth of the spring's energy: the stage's formula,
-    row by row."""
+    """Checks an energy tank for a mass on one spring, row by row, with the formula of the tank. The capacity of the
+    tank is a tenth of the spring's energy."""
     K, B, M, dt, n, capacity = 2000.0, 2.0, 0.1, 0.0005, 400, 1e-4
     run = bench.run(
         bench.scenario(
@@ -145,7 +145,8 @@ def tank(bench):
 
 @scene
 def late(bench):
-    """A mass on one spring. Its contacts are requested every fourth row, used three rows later, and often lost."""
+    """Checks the age of contacts for a mass on one spring. Contacts are requested every fourth row, used three rows
+    later, and lost with a probability of 0.3."""
     K, dt, n = 2000.0, 0.0005, 400
     run = bench.run(
         bench.scenario(

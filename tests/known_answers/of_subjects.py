@@ -1,4 +1,4 @@
-"""Scenes for the targets of subjects: the time at which a target is reached, and means over subjects."""
+"""Known answers for subjects and targets: the time at which a target is reached, and means over subjects."""
 import math
 
 import numpy as np
@@ -8,8 +8,7 @@ from answers import EXACT, ROUNDING, norms, scene
 
 @scene
 def subjects(bench):
-    """Subjects on targets. Means and standard errors are over subjects; each subject contributes the mean of its
-    targets."""
+    """Checks means and standard errors over subjects. Each subject contributes the mean of its targets."""
     run = bench.run(
         "vertical_peg_in_hole_shaped_stiffness",
         "--set",
@@ -75,9 +74,9 @@ def subjects(bench):
 
 @scene
 def one_subject(bench):
-    """The targets of one subject, by the rule: a target is reached if the tool stays within 0.2 mm for 1 s without
-    interruption while the force on the hand is 1 N, until 1.5 s have passed. The force on the hand is the force
-    rendered in the previous row."""
+    """Checks the targets of one subject by their rule. A target is reached if the tool stays within 0.2 mm for 1 s
+    without interruption while the force on the hand is at least 1 N. The target ends after 1.5 s. The force on the hand
+    is the rendered force of the previous row."""
     run = bench.run(
         "vertical_peg_in_hole_shaped_stiffness",
         "--set",

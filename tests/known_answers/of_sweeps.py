@@ -1,4 +1,4 @@
-"""Scenes for the table of sweep, recomputed from the summaries of single runs."""
+"""Known answers for the table of sweep, recomputed from the summaries of single runs."""
 import math
 
 from answers import EXACT, Table, scene
@@ -7,7 +7,7 @@ from physics import PLAIN, UP
 
 @scene
 def swept(bench):
-    """The rows of a sweep equal its single runs."""
+    """Checks that the rows of a sweep equal single runs."""
     base = bench.scenario(
         "swept",
         time={"step_s": 0.001, "steps": 300},

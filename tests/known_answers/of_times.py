@@ -1,4 +1,4 @@
-"""Scenes for the tables of run time: compare --time, and run time against error by converge --over."""
+"""Known answers for the tables of run time: compare --time, and run time against error by converge --over."""
 import math
 
 import numpy as np
@@ -13,7 +13,7 @@ FASTEST, SLOWEST = 1e-8, 1e-3
 
 
 def oscillator(bench, name):
-    """A mass on one spring without damping: x = X cos(omega t)."""
+    """Returns the scenario of a mass on one spring without damping, whose motion is x = X cos(omega t)."""
     return bench.scenario(
         name,
         time={"step_s": STEP, "steps": STEPS},
@@ -30,7 +30,7 @@ def oscillator(bench, name):
 
 
 def add_times(bench, table, times, steps, deadline=DEADLINE):
-    """Adds the columns that all tables of times have."""
+    """Adds the answers for the columns that all tables of run times have. `steps`: time steps [s]."""
     each, spread = times["seconds_per_step"], times["spread_s"]
     for name, found, wrong in (
         ("seconds_per_step", (each > FASTEST) & (each < SLOWEST), 640 * each < SLOWEST / 1e3),
@@ -60,7 +60,7 @@ def add_times(bench, table, times, steps, deadline=DEADLINE):
 
 @scene
 def times_of_laws(bench):
-    """Two laws on the same spring, in contact in every step."""
+    """Checks the run times of two laws on the same spring, in contact in every step."""
     base = oscillator(bench, "times_of_laws")
     bench.hapbench(
         "compare", base, "--algorithms", "summation,mean", "--time", "--out", "times", "--quiet"
@@ -98,7 +98,8 @@ def times_of_laws(bench):
 
 @scene
 def errors_of_settings(bench):
-    """Velocity Verlet moves as X cos(omega' t) with cos(omega' h) = 1 - (omega h)^2 / 2, instead of X cos(omega t)."""
+    """Checks the errors of velocity Verlet with several steps h. It moves as X cos(omega' t) with cos(omega' h) = 1 -
+    (omega h)^2 / 2, instead of X cos(omega t)."""
     base = oscillator(bench, "errors_of_settings")
     bench.hapbench(
         "converge",
@@ -214,7 +215,7 @@ def errors_of_settings(bench):
 
 @scene
 def times_of_a_sweep(bench):
-    """Three runs with different masses on the same spring."""
+    """Checks the run times of a sweep over three masses on the same spring."""
     base = oscillator(bench, "times_of_a_sweep")
     words = ("--vary", "rendering.mass_kg=0.1,0.2,0.3", "--time", "--out", "swept", "--quiet")
     bench.hapbench("sweep", base, *words)

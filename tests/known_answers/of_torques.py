@@ -1,4 +1,4 @@
-"""Scenes for the torques of a run: a tool that rotates while it touches one point."""
+"""Known answers for the torques of a run: a tool rotates while it touches one point."""
 import numpy as np
 from scipy.spatial.transform import Rotation
 
@@ -8,8 +8,8 @@ from physics import SUMMED
 
 @scene
 def turned_into_point(bench):
-    """A cylinder rotates about its tip into one point. Its depth is r - x cos(angle) + ..., and the whole force acts at
-    this point."""
+    """Checks force and torque of a cylinder that rotates about its tip into one point. The depth is the radius r minus
+    the distance of the point from the axis. The whole force acts at this point."""
     K, r, n, dt, at = 1000.0, 0.5e-3, 200, 0.001, np.array([0.6e-3, 0.0, 4e-3])
     bench.write("one.csv", "x_m,y_m,z_m,nx,ny,nz", [(*at, -1, 0, 0)])
     turn = {"type": "ramp", "start": 0.0, "rate_per_s": 0.5}
@@ -111,7 +111,8 @@ def turned_into_point(bench):
 
 
 def pose_of_turned(bench, K, axis, d, f, n, run, shape, torque):
-    """Columns of trajectory.csv: the axis -(sin a, 0, cos a), its quaternion, and the torque."""
+    """Checks columns of trajectory.csv: the quaternion of the tool with the axis -(sin a, 0, cos a) at the angle a, and
+    the torque."""
     table = run.table()
     turned = Rotation.from_quat(table.vectors("qx", "qy", "qz", "qw")).apply([0, 0, 1])
     bench.add(
@@ -163,8 +164,8 @@ def pose_of_turned(bench, K, axis, d, f, n, run, shape, torque):
 
 
 def contact_with_point(bench, at, axis, d, r, run, shape, touching, u):
-    """Columns of contacts.csv: the point of the file, its depth (r minus its distance from the axis), and its
-    gradient."""
+    """Checks the columns of contacts.csv: the point of the file, its depth (radius r minus its distance from the axis),
+    and the gradient of the depth."""
     k = np.flatnonzero(touching)
     sets = [
         (

@@ -1,5 +1,5 @@
-"""Scenes for the metrics of summary.json and the tables of a run: a tool moves along a path on springs, so that every
-row is known."""
+"""Known answers for the metrics of summary.json and the tables of a run: a tool moves along a given path on springs, so
+that every row is known."""
 import math
 
 import numpy as np
@@ -65,8 +65,10 @@ TOUCHES = {
 
 
 class Touches:
-    """Every row of TOUCHES by the formulas of the rendering: f = -K sum d u - B S v - (mu_s + mu_f |f_spring|) (v - S
-    v)."""
+    """Every row of the run TOUCHES by the formulas of the rendering:
+    f = -K sum d u - B S v - (mu_s + mu_f |f_spring|) (v - S v). The sum is over the springs in
+    contact that the reduction keeps, with the depth d and the direction u of each spring. f_spring is this sum times
+    -K, S is the sum of u u^T, and v is the velocity."""
 
     def __init__(self, dt=0.0005, K=1000.0, B=2.0, mu_s=1.0, mu_f=1.0):
         self.dt, self.t = dt, np.arange(1200) * dt
@@ -100,8 +102,9 @@ class Touches:
 
 @scene
 def touches(bench):
-    """A tool moves three times onto springs, with a vibration of 100 Hz perpendicular to them. Two of the touches
-    follow a time without contact that is long enough to count."""
+    """Checks the metrics of a tool that moves onto springs three times, with a vibration of 100 Hz perpendicular to
+    them. Two of the touches begin a landing, because they follow a sufficiently long time without contact.
+    """
     run, r = bench.run(bench.scenario("touches", **TOUCHES)), Touches()
     F, settled, landing, touching = norms(r.f), r.phases.settled, r.phases.landing, r.contact
     last = int(np.flatnonzero(touching)[-1])
@@ -367,8 +370,8 @@ def touches(bench):
 
 
 def touch_tables(bench, run, r):
-    """Columns of trajectory.csv, stiffness_tensor.csv, ratios.csv, contacts.csv and contact_trace.csv of the same
-    run."""
+    """Checks columns of trajectory.csv, stiffness_tensor.csv, ratios.csv, contacts.csv and contact_trace.csv of the run
+    TOUCHES."""
     rows, touching = "the formula", r.contact
     columns = [
         ("step", np.arange(1200.0), "0, 1, ...", EXACT, "from 1", np.arange(1200.0) + 1),

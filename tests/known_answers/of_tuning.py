@@ -1,4 +1,4 @@
-"""Scenes for the tables of tune: the eigenvalues of the sampled loop of a handle on one spring."""
+"""Known answers for the tables of tune: the eigenvalues of the sampled loop of a handle on one spring."""
 import json
 import math
 
@@ -10,8 +10,8 @@ from physics import SPRING, SUMMED, edge_of, held_loop
 
 @scene
 def tuned(bench):
-    """A handle on one spring with a delay of one sample: the largest stability limit of the sampled loop over B,
-    divided by the margin, and the neighbouring trials."""
+    """Checks the recommendation for a handle on one spring with a delay of one sample. The known stiffness is the
+    largest stability limit of the sampled loop over the damping B, divided by the margin."""
     m, b, T, delay = 0.1, 0.5, 0.001, 1
     base = bench.scenario(
         "tuned",
@@ -60,7 +60,7 @@ def tuned(bench):
     bench.add(
         "tune.csv:stiffness_N_per_m", K, edge(B) / 2, by, near, ("without the margin", edge(B))
     )
-    # B at the stiffness K; at constant zeta, B grows with the square root of the gain
+    # Damping B at the stiffness K. At constant zeta, B grows with the square root of the gain.
     at_K = 2 * zeta * math.sqrt(K * m)
     gain = edge_of(lambda g: loop(g * K, math.sqrt(g) * at_K), 1.0, 64.0)
     bench.add(
@@ -92,8 +92,9 @@ def tuned(bench):
 
 
 def tuned_margins(bench, K, at_K, by, delay, gain, law, loop, margin, table, zeta):
-    """Margins from the eigenvalues of the sampled loop: the gain and the delay at which an eigenvalue leaves the unit
-    circle, and the smallest damping ratio -Re s / |s| with s = ln z / T."""
+    """Checks margins by the eigenvalues z of the sampled loop: the gain and the delay at which an eigenvalue leaves the
+    unit circle, and the smallest damping ratio -Re s / |s| with s = ln z / T and the sampling period T.
+    """
     late = edge_of(lambda d: loop(K, at_K, d), 0.0, 8.0)
     z = np.linalg.eigvals(loop(K, at_K))
     s = np.log(z[np.abs(z) > 1e-9].astype(complex))
@@ -121,7 +122,7 @@ def tuned_margins(bench, K, at_K, by, delay, gain, law, loop, margin, table, zet
 
 
 def tuned_order(bench, law, printed, runs, table):
-    """The columns that are known for a single law, and the bounds as given."""
+    """Checks the columns that are known for a single law, and the bounds, which repeat the options."""
     bench.add(
         "tune.csv:algorithm",
         table["algorithm"],
@@ -175,7 +176,7 @@ def tuned_order(bench, law, printed, runs, table):
 
 
 def tuned_words(bench, law, m):
-    """The words of the answer: one law, limited by its loop alone, and the question as given."""
+    """Checks fields of the answer for one law that only its loop limits, and fields that repeat the options."""
     for name, known, naive in (
         ("feasible", True, False),
         ("lambda_max", 1.0, 2.0),
@@ -201,7 +202,8 @@ def tuned_words(bench, law, m):
 
 
 def tuned_choice(bench, K, base, trials, zeta):
-    """The row of the choice among the trials: its words as given, its metrics from a separate run."""
+    """Checks the row of the recommendation among the trials: its fields repeat the options, and its metrics equal the
+    metrics of a separate run."""
     own = next(
         row
         for row in trials.rows
@@ -250,10 +252,8 @@ def tuned_choice(bench, K, base, trials, zeta):
 
 
 def tuned_trials(bench, by, loop, m, trials):
-    """Each trial from its own eigenvalues: feasible below half the limit at its zeta, except in the interval that the
-    runs cannot resolve."""
-    # Each trial from its own eigenvalues: feasible below half the limit at its zeta, except in the interval that the
-    # runs cannot resolve.
+    """Checks each trial by eigenvalues. A trial is feasible below half the limit at its damping ratio zeta. Trials
+    within 2 % of this boundary are skipped, because runs cannot resolve them."""
     given = [row for row in trials.rows if row["feasible"] in ("true", "false")]
     edges = [
         edge_of(

@@ -1,11 +1,11 @@
-"""Scenes for the verdicts on claims."""
+"""Known answers for the verdicts on claims."""
 from answers import scene
 
 
 @scene
 def verdicts(bench):
-    """Verdicts on claims. Tests in C++ give the rules of claims numbers on both sides of their thresholds, for each
-    verdict."""
+    """Checks that a test in C++ covers each verdict on claims. The test gives the rules of claims numbers on both sides
+    of their thresholds."""
     for word, said, refused in (
         ("replicated", '{"T4", costs, {{"", replicated}', "not_replicated"),
         ("not replicated", '"1.reduced_mean=1.1 1.reduced_max=2", not_replicated', "replicated"),

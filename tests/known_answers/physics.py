@@ -1,4 +1,4 @@
-"""Functions shared by the scenes: filters and phases of a run, linear recurrences, and the classes of their motion."""
+"""Functions that the scenes share: filters and phases of a run, linear recurrences, and the classes of their motion."""
 import math
 
 import numpy as np
@@ -34,7 +34,8 @@ BINNED = Within(
 
 
 def high_pass(x, dt):
-    """Fourth-order Butterworth high-pass at 30 Hz, with zero state before the first sample."""
+    """Returns the rows of x after a fourth-order Butterworth high-pass at 30 Hz. The filter starts in the steady state
+    of the first row, so that its output starts at zero. `dt`: time step [s]."""
     sections = signal.butter(4, 30.0, "high", fs=1 / dt, output="sos")
     return signal.sosfilt(
         sections, x, axis=0, zi=signal.sosfilt_zi(sections)[:, :, None] * x[0][None, None, :]
@@ -42,7 +43,8 @@ def high_pass(x, dt):
 
 
 class Phases:
-    """Rows of landings and of settled contact, by their definitions."""
+    """Rows of landings and of settled contact, by their definitions. `contact`: for each row, true if it is in contact.
+    `dt`: time step [s]."""
 
     def __init__(self, contact, dt):
         rows, touches = round(0.05 / dt), np.flatnonzero(contact)
@@ -73,32 +75,34 @@ def step_matrix(K, B, M, dt):
 
 
 def bisected(holds, low, high, width=0.0):
-    """Returns the boundary between `low`, where the condition holds, and `high`, where it does not, to a relative width
-    or to rounding."""
+    """Returns the boundary between `low`, where the condition `holds` is true, and `high`, where it is false. The
+    bisection ends at the relative width `width`, or at the resolution of doubles."""
     while low < (middle := 0.5 * (low + high)) < high and high - low > width * high:
         low, high = (middle, high) if holds(middle) else (low, middle)
     return low
 
 
 def radius(matrix):
-    """Returns the spectral radius of a matrix: below 1, the motion decays."""
+    """Returns the spectral radius of a matrix. The motion decays if it is below 1."""
     return np.abs(np.linalg.eigvals(matrix)).max()
 
 
 def edge_of(loop, low, high):
-    """Returns the smallest value between low and high from which the motion does not decay. `loop` returns the matrix
-    for a value."""
+    """Returns the smallest value between `low` and `high` at which the motion no longer decays. `loop`: function from a
+    value to the matrix of the motion."""
     return bisected(lambda value: radius(loop(value)) < 1, low, high)
 
 
 def held_loop(m, b, T, K, B, delay=0, spring=0.0):
-    """Returns the exact linear map of the handle of an impedance device on a spring and damper whose force is held over
-    each period."""
+    """Returns the matrix of one sampling period T [s] for the handle of an impedance device at a wall of stiffness K
+    [N/m] and damping B [N s/m]. The force of the wall is held over each period and delayed by `delay` periods. `m`,
+    `b`: mass [kg] and viscous friction [N s/m] of the handle. `spring`: stiffness of a hand [N/m].
+    """
     whole = int(delay)
     part = delay - whole
     state = np.eye(
         3 + whole + (part > 0)
-    )  # state: x, v, x of the last sample, delayed forces (the newest first)
+    )  # state: x, v, x of the last sample, delayed forces (newest first)
     forces = np.vstack([(-K - B / T) * state[0] + B / T * state[2], state[3:]])
     A = np.array(
         [[0, 1, 0], [-spring / m, -b / m, 1 / m], [0, 0, 0]]
@@ -113,11 +117,11 @@ def held_loop(m, b, T, K, B, delay=0, spring=0.0):
 
 
 def motion_of(matrix, x, n=8000):
-    """Returns the speeds in n rows of step_matrix or held_loop from rest at x, or None if the motion leaves the default
-    bounds."""
+    """Returns the velocities [m/s] of n rows of the motion by step_matrix() or held_loop(), from rest at the position x
+    [m]. Returns None if the motion leaves the default bounds."""
     values, vectors = np.linalg.eig(matrix)
     start = np.zeros(len(matrix))
-    start[:3:2] = x  # the last sample also saw this position
+    start[:3:2] = x  # the previous sample has the same position
     parts = vectors * np.linalg.solve(vectors, start)
     with np.errstate(over="ignore", invalid="ignore"):
         powers = values[:, None] ** np.arange(n)
@@ -126,8 +130,8 @@ def motion_of(matrix, x, n=8000):
 
 
 def class_of(matrix, x, n=8000):
-    """Returns the class by the rules of `describe stability`: compares quarters of the run; the amplitude is the
-    largest speed."""
+    """Returns the class of the motion by the rules of `describe stability`. The rules compare the amplitudes of the
+    quarters of a run. The amplitude is the largest speed."""
     v = motion_of(matrix, x, n)
     if v is None:
         return "diverged"

@@ -1,12 +1,13 @@
-"""Linear loops of hand, device and contact, with numpy, from the description of the devices in the manual: maps of the
-state from one sample to the next, and random devices. Shares no code with hapbench."""
+"""Linear loops of hand, device and contact, computed with numpy from the description of the devices in the manual. The
+functions return the matrix that maps the state from one sample to the next, and random devices. This file shares no
+code with hapbench."""
 import numpy as np
 from scipy import signal
 from scipy.linalg import expm
 
 
 def map_of(step, n):
-    """The matrix of a linear function of n numbers."""
+    """Returns the matrix of the linear function `step` of n numbers."""
     return np.column_stack([step(unit) for unit in np.eye(n)])
 
 
@@ -15,7 +16,8 @@ def radius(A):
 
 
 def held(rate, inputs, t):
-    """Maps of state and constant inputs of z' = rate z + inputs u after t."""
+    """Returns the matrices P and Q of the exact solution z(t) = P z(0) + Q u of z' = rate z + inputs u, with inputs u
+    that are constant over the time t [s]."""
     n, m = rate.shape[0], inputs.shape[1]
     joint = np.zeros((n + m, n + m))
     joint[:n, :n], joint[:n, n:] = rate, inputs
@@ -24,7 +26,8 @@ def held(rate, inputs, t):
 
 
 class LowPass:
-    """Butterworth's filter of an input that is held over the period before its sample."""
+    """Butterworth low-pass of a sampled input. The input of a sample is constant over the period T [s] before this
+    sample. `given`: the fields cutoff_Hz and order of a scenario, or None for no filter."""
 
     def __init__(self, given, T):
         if given is None:
@@ -45,8 +48,9 @@ class LowPass:
 
 
 def sampled_hand(hand, across=True):
-    """Stiffness and damping of a hand whose force is held for a step, along the normal or (`across` false) along the
-    surface."""
+    """Returns stiffness [N/m] and damping [N s/m] of a hand whose force is sampled and held over a step; 0 for other
+    hands. The direction is the normal of the surface, or the surface itself if `across` is false.
+    """
     if hand["type"] == "impedance":
         return hand["stiffness_N_per_m"], hand["damping_N_s_per_m"]
     if hand["type"] == "drag":
@@ -57,7 +61,8 @@ def sampled_hand(hand, across=True):
 
 
 def damping_of(scene, K=None):
-    """Damping B of the rendering at a stiffness, by default at the scene's."""
+    """Returns the damping of the rendering [N s/m] at the stiffness K [N/m]. The default is the stiffness of the
+    scene."""
     r = scene["rendering"]
     if "damping_N_s_per_m" in r:
         return r["damping_N_s_per_m"]
@@ -66,7 +71,9 @@ def damping_of(scene, K=None):
 
 
 def impedance_map(scene, K, B=None, across=True):
-    """Handle, or motors and handle, moves exactly between samples; the wall acts on the measured position."""
+    """Returns the matrix of an impedance device at a wall of stiffness K [N/m] and damping B [N s/m]. Between samples,
+    the handle, or motors and handle, follow the exact solution. The force of the wall depends on the measured
+    position."""
     T, device = scene["time"]["step_s"], scene["device"]
     B = damping_of(scene) if B is None else B
     hand = scene["hand"]
@@ -106,7 +113,7 @@ def impedance_map(scene, K, B=None, across=True):
         z, last, of_position, of_velocity, forces = np.split(state, sizes[:-1])
         of_position, y = position.step(of_position, z[0])
         of_velocity, w = velocity.step(of_velocity, (z[0] - last[0]) / T)
-        forces = np.append(-K * y - B * w, forces)  # the newest first
+        forces = np.append(-K * y - B * w, forces)  # newest force first
         force_of_hand = -sampled_k * z[-2] - sampled_c * z[-1]
         last = [z[0]]
         for (of_state, of_input), force in ((before, forces[whole + 1]), (after, forces[whole])):
@@ -122,7 +129,9 @@ def leapfrog(x, v, f, M, dt):
 
 
 def admittance_map(scene, K, B=None, across=True):
-    """The virtual mass, then the servo of the carriage, then carriage and handle by the implicit midpoint rule."""
+    """Returns the matrix of an admittance device at a wall of stiffness K [N/m] and damping B [N s/m]. A step moves the
+    virtual mass, then computes the force of the servo on the carriage, then moves carriage and handle by the implicit
+    midpoint rule."""
     dt, r, device, hand = (scene[name] for name in ("time", "rendering", "device", "hand"))
     dt = dt["step_s"]
     servo, parts = device["servo"], device["mechanics"]
@@ -170,7 +179,7 @@ MAPS = {"impedance": impedance_map, "admittance": admittance_map, "ideal": ideal
 
 
 def between(random, low, high):
-    """A random number, even on a logarithmic scale."""
+    """Returns a random number between `low` and `high`. Its logarithm is uniformly distributed."""
     return float(np.exp(random.uniform(np.log(low), np.log(high))))
 
 
@@ -239,7 +248,9 @@ def random_device(random, kind):
 
 
 def edge_of(stable, low=1e-3, high=1e9):
-    """The value up to which `stable` holds, if it holds from `low` on and then at no value up to 20 times the edge."""
+    """Returns the largest value for which `stable` is true, or None if there is no single boundary below `high`. A
+    single boundary requires values (each 1.1 times the previous value) that are stable from `low` to the boundary and
+    unstable up to 20 times the boundary."""
     value, factor = low, 1.1
     while stable(value * factor):
         value *= factor

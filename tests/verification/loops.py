@@ -1,8 +1,8 @@
-"""Verification of linear limits: the eigenvalues of the loop of hand, device and contact, computed
-here with numpy from the description of the devices in the manual, against `limit` and against runs.
-Shares no code with hapbench.
+"""Verifies the linear limits that `limit` reports. Each limit is compared with eigenvalues of the loop of
+hand, device and contact, and with runs near the limit. The eigenvalues are computed here with numpy from the
+description of the devices in the manual. Shares no code with hapbench.
 
-    python3 tests/verification/loops.py PROGRAM [COUNT]    # COUNT random loops of each pair, default 2
+    python3 tests/verification/loops.py PROGRAM [COUNT]    # COUNT random loops per device and hand, default 2
 """
 import json
 import subprocess
@@ -17,16 +17,19 @@ from loop_models import MAPS, between, edge_of, radius, random_device, random_ha
 PROGRAM = Path(sys.argv[1]).resolve()
 COUNT = int(sys.argv[2]) if len(sys.argv) > 2 else 2
 RANDOM = np.random.default_rng(85)
-# `limit` bisects eigenvalues to 1e-11. A double eigenvalue is known to the square root of rounding, 1e-8.
+# Largest relative difference of a limit on a spring. `limit` bisects eigenvalues to 1e-11. Rounding changes a double
+# eigenvalue by the square root of the machine precision, 1e-8.
 SPRINGS_AGREE = 1e-7
-# The derivative of a rendered force is a difference with an error of 1e-7; the limit depends on it about linearly.
+# Largest relative difference of a limit on a surface. The derivative of a rendered force is a difference quotient with
+# an error of 1e-7. The limit depends on it about linearly.
 SURFACES_AGREE = 1e-5
-# K of the runs, relative to the limit. A run is long enough for an amplitude ratio of GROWN.
+# Runs have a stiffness K below and above the limit by the fraction BESIDE. A run takes about three times the number of
+# steps in which its amplitude changes by the factor GROWN. The run is skipped if this number exceeds MOST_STEPS.
 BESIDE, GROWN, MOST_STEPS = 0.05, 100.0, 200_000
 
 
 def random_scene(device, hand):
-    """One spring that pulls and pushes, along z."""
+    """Returns a scene with a bilateral spring along z, and with a random hand, device and rendering."""
     return {
         "name": f"{device}_{hand}",
         "time": {"step_s": float(RANDOM.choice([0.00025, 0.0005, 0.001])), "steps": 16},
@@ -65,7 +68,8 @@ def limit(folder, scene, low, high, *words):
 
 
 def grows(folder, scene, A, K):
-    """True if the amplitude of a run at K grows, False if it decays; None if that would take too many steps."""
+    """Returns True if the amplitude of a run at the stiffness K grows, and False if it decays. Returns None if the run
+    would take too many steps. `A`: matrix of the loop at K, which gives the number of steps."""
     steps = int(np.log(GROWN) / abs(np.log(radius(A)))) + 100
     if steps > MOST_STEPS:
         return None
@@ -92,7 +96,8 @@ def check(name, got, known, within, faults):
 
 
 def check_springs(folder, faults):
-    """Each device with each hand on a spring, and runs beside the limit."""
+    """Checks the limit of each device with each hand on a spring. Runs below and above the limit must decay and
+    grow."""
     pairs = [(device, hand) for device in MAPS for hand in ("none", "force", "impedance")]
     pairs.append(("impedance", "mass_spring_damper"))
     for device, hand in pairs:
@@ -120,7 +125,7 @@ def check_springs(folder, faults):
 
 
 def pressed(device, hand, tip, diameter):
-    """A tool that a hand presses on a plane."""
+    """Returns a scene in which a hand presses a tool on a plane. `diameter` of the tool [m]."""
     scene = random_scene(device, "none")
     scene.update(
         time={"step_s": 0.001, "duration_s": 2},
@@ -134,8 +139,9 @@ def pressed(device, hand, tip, diameter):
 
 
 def slope_of_flat_tip(K, F, radius_of_tip, spacing=0.0005):
-    """dF/dz of equal weights under a flat tip that F presses down by z: the depth of a point at rho from the axis
-    is min(z, r - rho), the nearer of bottom and side."""
+    """Returns dF/dz [N/m] of the mean force of all points under a flat tip, at the depth z to which the force F [N]
+    presses the tip. The depth of a point at the distance rho from the axis is min(z, r - rho), with the radius r of the
+    tip: the smaller of the distances to the bottom and to the side of the tip."""
     at = spacing * np.arange(-50, 51)
     rho = np.hypot(*np.meshgrid(at, at)).ravel()
     side = radius_of_tip - rho[rho <= radius_of_tip * (1 + 1e-12)]
@@ -147,7 +153,8 @@ def slope_of_flat_tip(K, F, radius_of_tip, spacing=0.0005):
 
 
 def check_surfaces(folder, faults):
-    """A flat tip, whose contact is softer than K, and a drag, whose damping along the normal is in the loop."""
+    """Checks the limit of a flat tip, whose contact stiffness is smaller than K, and of a drag, whose loop contains the
+    damping of the hand along the normal."""
     for F in (0.5, 0.8):
         scene = pressed("impedance", {"type": "force", "z_N": -F}, "flat", 0.004)
         scene["device"] = {
@@ -178,7 +185,7 @@ def check_surfaces(folder, faults):
         scene["environment"]["spacing_m"] = 0.0002
         scene["rendering"][
             "depth_model"
-        ] = "normal_projection"  # one depth at all points of a plane
+        ] = "normal_projection"  # all points of a plane have the same depth
         scene["device"] = {
             "type": "impedance",
             "handle_mass_kg": 0.2,

@@ -1,6 +1,6 @@
-"""Code verification: the observed order of convergence in the time step, compared with the formal order, for every
-integrator, device, hand and law. The exact motions are known in closed form or from an independent computation. Uses
-hapbench only for the runs.
+"""Code verification: compares the observed order of convergence in the time step with the formal order, for every
+integrator, device, hand and law. The exact motions are known in closed form or from an independent computation.
+hapbench only executes the runs.
 
   python3 tests/verification/orders.py PROGRAM           # recomputes every seventh row and compares it with the table
   python3 tests/verification/orders.py PROGRAM --write   # writes the table again
@@ -19,12 +19,14 @@ from scipy.linalg import expm
 
 PROGRAM = Path(sys.argv[1]).resolve()
 PAGE = Path(__file__).resolve().parent / "README.md"
-BETWEEN = " / "  # separates cases that share a line
+BETWEEN = " / "  # separates cases that share a line of the table
 BEGIN, END = "<!-- orders -->\n", "<!-- /orders -->\n"
 END_S = 0.02  # duration of a run [s]: 1.4 periods of the spring
-STEPS = [1e-3 / 2**i for i in range(6)]
+STEPS = [1e-3 / 2**i for i in range(6)]  # time steps [s]
+# Stiffness [N/m], mass [kg], initial position [m] and initial velocity [m/s].
 K, M, X0, V0 = 20000.0, 0.1, 1e-3, 0.2
-# Order without damping, and order with damping. Any force that is sampled and held over a step reduces the order to 1.
+# Formal order of each integrator, without damping and with damping. Any force that is sampled and held over a step
+# reduces the order to 1.
 FORMAL = {
     "leapfrog": (1, 1),
     "velocity_verlet": (2, 1),
@@ -33,11 +35,11 @@ FORMAL = {
     "implicit_midpoint": (2, 2),
     "event": (4, 4),
 }
-# For an error C h^p (1 + D h) with D h below 0.07 at the second-finest step, the observed order deviates by less than
-# log2(1.07) = 0.1.
+# Largest difference of observed and formal order. If the error at the step h is C h^p (1 + D h), and D h is below 0.07
+# at the second-finest step, the observed order differs from p by less than log2(1.07) = 0.1.
 WITHIN = 0.1
-NONLINEAR = {"static_coupling"}  # its spring softens, so that there is no closed form
-# Relative to the amplitude of the motion; smaller errors are not caused by the step.
+NONLINEAR = {"static_coupling"}  # laws without a closed form, because their spring softens
+# Smallest error that is used, relative to the amplitude of the motion. Smaller errors are not caused by the time step.
 ROUNDING = 1e-11
 
 
@@ -54,7 +56,7 @@ class Case:
 
 
 def linear(A, b=0.0, x=(X0, V0), t=END_S):
-    """Returns the state of x' = A x + b after the time t."""
+    """Returns the state of x' = A x + b at the time t [s]. `x`: state at the time 0."""
     n = len(x)
     joint = np.zeros((n + 1, n + 1))
     joint[:n, :n], joint[:n, n] = A, b
@@ -62,8 +64,9 @@ def linear(A, b=0.0, x=(X0, V0), t=END_S):
 
 
 def driven(K, B, force=0.0, k=0.0, b=0.0, amplitude=0.0, omega=0.0):
-    """Returns the motion of M under a hand with force + amplitude sin(omega t) - k x - b v. The sine adds two
-    states."""
+    """Returns a function that computes (position, velocity) of the mass M at END_S. The mass has a spring K and a
+    damper B, and the hand's force is force + amplitude sin(omega t) - k x - b v. The sine adds two states.
+    """
     A = np.array(
         [
             [0, 1, 0, 0],
@@ -76,8 +79,9 @@ def driven(K, B, force=0.0, k=0.0, b=0.0, amplitude=0.0, omega=0.0):
 
 
 def late(K, b, tau):
-    """Returns the motion M x'' = -b x' - K x(t - tau), with zero force before tau. The motions in successive intervals
-    of length tau form one linear system."""
+    """Returns a function that computes (position, velocity) at END_S for M x'' = -b x' - K x(t - tau), with a spring
+    force of zero before tau [s]. The motions in successive intervals of length tau form one linear system.
+    """
     whole, part = divmod(END_S, tau)
     begins = np.array([X0, V0])
     for n in range(1, int(whole) + 2):
@@ -92,11 +96,12 @@ MOTORS = {
     "motor_share": 0.4,
     "stiffness_N_per_m": 20000.0,
     "damping_N_s_per_m": 4.0,
-}  # device that acts on M through an elastic transmission
+}  # elastic transmission between motors and handle, which share the mass M
 
 
 def geared(K, B, force=0.0, k=0.0, b=0.0, amplitude=0.0, omega=0.0):
-    """Returns the motion of the motors as driven(), with the motors at the spring and the handle at the hand."""
+    """Returns a function that computes (position, velocity) of the motors at END_S. Spring and damper act on the
+    motors, and the force of the hand acts on the handle. Arguments: see driven()."""
     share, gear, loss = MOTORS.values()
     m, h = share * M, (1 - share) * M
     A = np.array(
@@ -152,18 +157,18 @@ HANDS = (
         {"force": 500.0 * 0.002, "k": 500.0, "b": 4.0},
     ),
 )
-GAP, BOUNCES = 4e-4, 32  # [m]
+GAP, BOUNCES = 4e-4, 32  # initial distance from the spring [m], number of starting phases
 
 
 def stiffness_of_bounce(phase):
-    """Returns a stiffness for which the bounce ends at an arbitrary point of a step. `phase` is the fraction of a step
-    by which the bounce begins later."""
+    """Returns a stiffness [N/m] that differs for each phase, so that the bounces end at different fractions of a step.
+    `phase`: fraction of a step by which the bounce begins later."""
     return K * (1.0 + 0.4 * (phase * 0.6180339887 * BOUNCES % 1.0))
 
 
 def bounce(step, phase):
-    """Returns the motion of a bounce off a unilateral spring without damping, which takes half a period: the tool
-    leaves with its initial speed."""
+    """Returns (position, velocity) at END_S after a bounce off a unilateral spring without damping. The contact lasts
+    half a period, and the tool leaves with its initial speed."""
     t2 = GAP / V0 + phase * step + math.pi / math.sqrt(stiffness_of_bounce(phase) / M)
     return np.array([-V0 * (END_S - t2), -V0])
 
@@ -259,9 +264,9 @@ def cases(laws):
     }
     for integrator, orders in FORMAL.items():
         finds = integrator == "event"
-        # At the onset of contact the force is continuous and its slope is not: methods that are of second order without
-        # damping stay of second order. Outside of contact, a leapfrog step equals a step of velocity Verlet, and so
-        # does the bounce.
+        # At the onset of contact, the force is continuous but its derivative is not, so that methods of second order
+        # keep this order. Leapfrog has second order too: without contact, its state equals the state of velocity
+        # Verlet, and the bounce begins and ends without contact.
         formal = orders[0] if finds else 1 if integrator == "implicit_euler" else 2
         yield Case(
             "switching",
@@ -276,7 +281,7 @@ def cases(laws):
 
 
 def last_row(content, step, rows):
-    """Returns the last row of trajectory.csv of a run."""
+    """Runs a scene and returns the last row of its trajectory.csv. `step`: time step [s]. `rows`: number of steps."""
     with tempfile.TemporaryDirectory(prefix="hapbench-orders-") as folder:
         file = Path(folder) / "scene.json"
         file.write_text(
@@ -296,8 +301,8 @@ def last_row(content, step, rows):
 
 
 def error_at(case, step, phase):
-    """Returns the distance of the last row from the exact motion: the square root of an energy, relative to the initial
-    energy."""
+    """Returns the relative error of the last row. It is the square root of a ratio of two energies: the energy formula
+    applied to the errors of position and velocity, divided by the initial energy."""
     row = last_row(case.scene | case.changes(step, phase), step, round(END_S / step) + 1)
     x, v = case.exact(step, phase)
     energy = lambda x, v: 0.5 * (K * x * x + M * v * v)
@@ -305,13 +310,14 @@ def error_at(case, step, phase):
 
 
 def row(case):
-    """Returns part, case, formal and observed order, the errors at the coarsest and the finest step, and the
-    verdict."""
+    """Returns a row of the table: part, case, formal and observed order, the errors at the coarsest and the finest
+    step, and the verdict."""
     errors = [
         max(error_at(case, step, i / case.phases) for i in range(case.phases)) for step in STEPS
     ]
     useful = [error for error in errors if error > ROUNDING]
-    # The largest error over a few starts scatters by a factor of up to 1.5: log2(1.5) / 3 over three steps.
+    # The largest error over the starting phases scatters by a factor of up to 1.5. Over three halvings, this changes
+    # the observed order by up to log2(1.5) / 3 = 0.2.
     halvings, within = (3, 0.3) if case.phases > 1 else (1, WITHIN)
     observed = math.log2(useful[-1 - halvings] / useful[-1]) / halvings
     return (
@@ -327,7 +333,7 @@ def row(case):
 
 
 def table_of(rows):
-    """Joins rows of a part that are equal except for their case in one line."""
+    """Returns the lines of the table. Rows that differ only in their case share a line."""
     cases_of = {}
     for part, case, *rest in rows:
         cases_of.setdefault((part, *rest), []).append(case)

@@ -1,19 +1,19 @@
-"""Random scenes, hand x device x law x tip x damping x delay: what `limit` and `tune` print, against runs and against
-the eigenvalues of the loop, which are computed here with numpy (loop_models.py). A tool with one tip is pressed on a
-plane, whose depths, forces and slopes have closed forms.
+"""Verifies the results of `limit` and `tune` on random scenes: hand x device x law x tip x damping x delay. The results
+are compared with runs, and with eigenvalues of the loop that loop_models.py computes with numpy. In each scene, a tool
+with one tip is pressed on a plane, so that depths, forces and slopes have closed forms.
 
     python3 tests/verification/scenes.py PROGRAM [--count N] [--first I] [--seed S] [--jobs J] [--tune] [--out FILE]
 
 Checks of each scene:
-- linear: the printed linear limit is a value at which an eigenvalue of the loop leaves the unit circle;
-- quote: a run at 0.9 of the printed value to quote is stable, a run at 1.1 of it is not unless the reason says that
-  runs are stable there, and the run at the first unstable value is not;
-- cause: what the reason says of a run (out of contact, at rest, vibrating) is so in this run;
-- tune (--tune): the eigenvalues of the recommendation are stable at K and at 2 K, a run of the recommended scenario is
-  stable, and the diagnosis of this run reports what `tune` printed, and no rule of low vibration.
+- linear: at the reported linear limit, an eigenvalue of the loop leaves the unit circle;
+- quote: a run at 0.9 times the quoted limit is stable; a run at 1.1 times the quoted limit is not stable, unless
+  `limit` reports stable runs beyond the quoted limit; a run at the first unstable value is not stable;
+- cause: the run that the reason names behaves as the reason states (out of contact, at rest, or vibrating);
+- tune (--tune): the loop of the recommendation is stable at K and at 2 K; a run of the recommended scenario is stable
+  and its diagnosis reports no rule of low vibration; a run or a loop confirms the constraint that `tune` names.
 
-With --out FILE, each scene is appended as one line of JSON; scenes in the file are not repeated. Exit status 1 if more
-than SHARE of the runs contradict what was printed, or if any other check fails.
+With --out FILE, each scene is appended as one line of JSON; scenes in the file are not repeated. The exit status is 1
+if more than the fraction SHARE of the runs contradicts `limit`, or if any other check fails.
 """
 import argparse
 import csv
@@ -31,18 +31,23 @@ from scipy.optimize import brentq
 
 from loop_models import MAPS, between, damping_of, radius, random_device, random_hand
 
-# `limit` states that at most 6 % of its stable interval may be unstable.
+# Largest fraction of runs that may contradict `limit`. `limit` states that at most 6 % of its stable interval may be
+# unstable.
 SHARE = 0.06
-# The derivative of a rendered force is a difference with an error of 1e-7; the limit depends on it about linearly. An
-# equilibrium that Newton's method ends at 1e-10 m changes the slope of a round tip by up to 1e-10 / 1e-5.
+# Largest relative difference of a linear limit. The derivative of a rendered force is a difference quotient with an
+# error of 1e-7. The limit depends on it about linearly. Newton's method finds an equilibrium to 1e-10 m, which changes
+# the slope of a round tip by up to 1e-10 / 1e-5.
 AGREE = 3e-5
-# An eigenvalue of a mode that moves freely is 1, and a double one is known to the square root of rounding.
+# Largest difference of an eigenvalue from 1 for a mode that moves freely. Rounding changes a double eigenvalue by the
+# square root of the machine precision.
 FREE = 1e-6
-# A run beside the limit grows by less than this in its duration: no verdict.
+# DURATION_S: duration of a run [s]. CUTOFF_HZ: cutoff of the filter for vibration. MOST_M_PER_S: largest velocity of
+# low vibration. UNSURE: factor around a threshold within which a run has no verdict.
 DURATION_S = 0.8
 CUTOFF_HZ, MOST_M_PER_S, UNSURE = 30.0, 1e-3, 1.3
 
-# Weights c of n contacts whose normals are parallel, in METHOD's terms: f = -K sum c d, and S = sum c along the normal.
+# Weight c of each contact for n contacts with parallel normals. With the depths d, the force is f = -K sum c d. The
+# stiffness ratio is S = sum c. None means that only the deepest contact has a force.
 LAWS = {
     "summation": lambda n: 1.0,
     "tandpasta": lambda n: 1.0,
@@ -59,7 +64,8 @@ RULES_OF_LOW_VIBRATION = {"buzz", "pop", "shake", "bounces", "chatter", "energy"
 
 
 class Contact:
-    """Points of a plane under a tip that is pressed in by z: depths, rendered force and its slope."""
+    """Points of a plane under a tip that is pressed in by z [m]: depths, rendered force, and the derivative of the
+    force."""
 
     def __init__(self, scene):
         tool, plane = scene["tool"], scene["environment"]
@@ -81,7 +87,7 @@ class Contact:
         )
 
     def depths(self, z, n):
-        """Depths and slopes of the first n points."""
+        """Returns the depths [m] of the n points nearest to the axis, and their derivatives with respect to z."""
         rho = self.rho[:n]
         if self.is_round:
             h = self.r - z
@@ -95,7 +101,8 @@ class Contact:
         return np.minimum(z, side), (z < side).astype(float)
 
     def force(self, z, n):
-        """Force and slope in units of K, and the stiffness ratio, of the first n points."""
+        """Returns (force / K [m], derivative of force / K with respect to z, stiffness ratio) for contact with the n
+        points nearest to the axis."""
         d, slope = self.depths(z, n)
         if LAWS[self.law] is None:
             i = d.argmax()
@@ -104,8 +111,9 @@ class Contact:
         return c * d.sum(), c * slope.sum(), c * n
 
     def equilibria(self, K, push, deepest):
-        """Slope in units of K, stiffness ratio, number of contacts and depth of every equilibrium of the force with
-        `push`, a function of the depth."""
+        """Returns (slope / K, stiffness ratio, number of contacts, depth [m]) of each equilibrium between rendered
+        force and hand. The slope is the derivative of the force with respect to the depth. `push`: force of the hand
+        [N] as a function of the depth. `deepest`: largest depth [m]."""
         edges = np.append(np.unique(self.begins), deepest)
         found = []
         for low, high in zip(edges, edges[1:]):
@@ -122,7 +130,8 @@ class Contact:
 
 
 def push_of(scene):
-    """Force of the hand on a tool that is pressed in by z, at the end of the run."""
+    """Returns the force of the hand [N], at the end of the run, as a function of the depth z [m] by which the tool is
+    pressed in."""
     hand, tool = scene["hand"], scene["tool"]
     last = lambda value: value["points"][-1][1] if isinstance(value, dict) else value
     if hand["type"] == "force":
@@ -133,7 +142,8 @@ def push_of(scene):
     # The position of a tool is the centre of its tip: for a round tip the centre of the ball.
     lowest = target - (tool["diameter_m"] / 2 if tool["tip"] == "round" else 0.0)
     k = hand["stiffness_N_per_m"]
-    if scene["device"]["type"] == "admittance":  # the hand displaces the handle from the tool
+    if scene["device"]["type"] == "admittance":
+        # The hand's spring is in series with the servo and the structure between virtual tool and handle.
         device = scene["device"]
         yielding = 1 / device["servo"]["stiffness_N_per_m"]
         yielding += 1 / device["mechanics"]["structure_stiffness_N_per_m"]
@@ -142,7 +152,8 @@ def push_of(scene):
 
 
 def loop_radius(scene, K, slope, ratio):
-    """Largest eigenvalue of the loop along the normal at a contact."""
+    """Returns the spectral radius of the loop along the normal, with the contact stiffness K `slope` and the contact
+    damping B `ratio`."""
     return radius(MAPS[scene["device"]["type"]](scene, K * slope, damping_of(scene, K) * ratio))
 
 
@@ -151,7 +162,7 @@ def is_stable(scene, K, slope, ratio):
 
 
 def random_scene(seed, i):
-    """Scene number i of a seed."""
+    """Returns the random scene with the number i of a seed."""
     random = np.random.default_rng([seed, i])
     kind = str(random.choice(["ideal", "admittance", "impedance", "impedance"]))
     hands = ["force", "push", "impedance", "drag"] + ["mass_spring_damper"] * (kind == "impedance")
@@ -175,7 +186,7 @@ def random_scene(seed, i):
             device["encoder_step_m"] = between(random, 1e-6, 3e-5)
 
     def over_time(first, last):
-        """Constant, or led from the first to the last value in a quarter of the run."""
+        """Returns the constant `last`, or waypoints from `first` to `last` over a quarter of the run."""
         points = [[0, first], [DURATION_S / 4, last]]
         moves = {"type": "waypoints", "points": points, "interpolation": "cosine"}
         return moves if random.random() < 0.7 else last
@@ -230,7 +241,7 @@ def random_scene(seed, i):
 
 
 class Bench:
-    """Commands of the program in a folder of one scene."""
+    """Executes commands of the program on one scene, in the folder of this scene."""
 
     def __init__(self, program, folder, scene):
         self.program, self.folder, self.scene = program, folder, scene
@@ -249,7 +260,8 @@ class Bench:
         return json.loads(done.stdout)
 
     def rows(self, K, file=None, overrides=()):
-        """trajectory.csv of a run with stiffness K, and its summary."""
+        """Returns (rows of trajectory.csv, summary) of a run at the stiffness K [N/m]; None keeps the stiffness of the
+        file."""
         words = ["run", file or self.file, "--set", "record.trajectory=true", "--set", "expect={}"]
         if K is not None:
             words += ["--set", f"rendering.stiffness_N_per_m={K!r}"]
@@ -261,7 +273,7 @@ class Bench:
 
 
 class Motion:
-    """The motion of the tool, or of the handle that carries it, in a run."""
+    """Motion of a run: motion of the handle on an impedance device, otherwise motion of the virtual tool."""
 
     def __init__(self, scene, rows):
         self.T = scene["time"]["step_s"]
@@ -275,7 +287,8 @@ class Motion:
 
     @staticmethod
     def is_led(scene):
-        """True if a script moves the tool: then the vibration of the handle decides by default."""
+        """Returns True if a script moves the tool. By default, the vibration of the handle then decides on
+        stability."""
         hand = scene["hand"]
         led = (hand.get("target", {}).get("z_m"), hand.get("z_N"), hand.get("force_N"))
         return hand["type"] == "drag" or any(isinstance(value, dict) for value in led)
@@ -285,25 +298,27 @@ class Motion:
         return slice(n * i // 4, n * (i + 1) // 4)
 
     def fast_part(self, v):
-        """Part of a velocity above 30 Hz, by the filter of the manual."""
+        """Returns the part of a velocity above 30 Hz, by the filter of the manual."""
         high = signal.butter(4, CUTOFF_HZ, "highpass", fs=1 / self.T, output="sos")
         return signal.sosfilt(high, v - v[0], axis=0)
 
     def vibration(self):
-        """rms of the handle's speed above 30 Hz from a quarter of the contact time on."""
+        """Returns the rms of the handle's velocity above 30 Hz [m/s]. The first quarter of the time after the first
+        touch is excluded."""
         begins = int(np.argmax(self.touches))
         moved = self.fast_part(self.handle)
         judged = moved[begins + (len(moved) - begins) // 4 :]
         return float(np.sqrt((judged**2).sum(axis=1).mean()))
 
     def grows(self):
-        """True if the amplitude above 30 Hz grows from each quarter to the next, to more than 1 mm/s."""
+        """Returns True if the amplitude of the velocity above 30 Hz grows from each quarter of the run to the next, to
+        more than 1 mm/s."""
         speed = np.linalg.norm(self.fast_part(self.v), axis=1)
         amplitude = [speed[self.quarter(i)].max() for i in range(4)]
         return amplitude[3] > MOST_M_PER_S and bool(np.all(np.diff(amplitude) > 0))
 
     def is_stable(self):
-        """True or False; None if the motion is near the border between both."""
+        """Returns True or False by the rule of stability; None if the motion is near a threshold of the rule."""
         if not self.completes or not self.touches.any():
             return False
         if self.is_scripted:
@@ -327,16 +342,18 @@ class Motion:
         return 1 - float(self.touches[self.quarter(3)].mean())
 
     def rests(self):
-        """True if the tool stands still to rounding, or is held between two counts of the encoder."""
+        """Returns True if the tool is at rest up to rounding in the last 200 steps."""
         last = np.linalg.norm(self.v[-200:], axis=1).max()
         return bool(last <= 1e-9 * np.linalg.norm(self.v, axis=1).max())
 
 
 def loops_of(scene, contact, push, K):
-    """Equilibria of a contact at K: slope, stiffness ratio, number of contacts, depth."""
+    """Returns (slope / K, stiffness ratio, number of contacts, depth [m]) of each equilibrium at the stiffness K
+    [N/m]."""
     if scene["hand"]["type"] != "drag":
         return contact.equilibria(K, push, 0.999 * contact.r)
-    # A dragged tool meets any number of points; with equal slopes only their number matters.
+    # During a drag, the number of contacts changes. All points have the same slope, so that only the number of contacts
+    # matters.
     z = push(0) / K
     if LAWS[contact.law] is None:
         return [(1.0, 1.0, 1, z)]
@@ -344,7 +361,7 @@ def loops_of(scene, contact, push, K):
 
 
 def check_linear(scene, row):
-    """Compares a linear limit with eigenvalues; returns a fault or None, and a note."""
+    """Compares a linear limit with eigenvalues. Returns (fault or None, note)."""
     printed = row["linear_limit"]
     contact, push = Contact(scene), push_of(scene)
     if radius(MAPS[scene["device"]["type"]](scene, 0.0, 0.0, False)) > 1 + FREE:
@@ -357,7 +374,8 @@ def check_linear(scene, row):
         return None, "no equilibrium at the limit"
     within = AGREE
     if not contact.is_round and not contact.projects:
-        # The slope jumps where the depth reaches the distance to the side. Differences of 1e-8 m blend both slopes.
+        # The slope of a flat tip jumps if its depth equals the distance of a point to the side. Differences over 1e-8 m
+        # mix the slopes on both sides of the jump.
         within += 2e-8 / min(z for *_, z in at_limit)
     below, above = (
         loops_of(scene, contact, push, printed * (1 + sign * within)) for sign in (-1, 1)
@@ -368,7 +386,7 @@ def check_linear(scene, row):
             scene, printed * (1 + within), *after.get(n, (slope, ratio))
         ):
             return None, "agrees"
-    # At the limit the equilibrium may go over to another set of contacts.
+    # At the limit, the equilibrium may change to another set of contacts.
     stable = [is_stable(scene, printed * (1 - within), s, q) for s, q, *_ in below]
     unstable = [not is_stable(scene, printed * (1 + within), s, q) for s, q, *_ in above]
     if any(stable) and any(unstable) and {n for *_, n, _ in below} != after.keys():
@@ -378,10 +396,11 @@ def check_linear(scene, row):
 
 
 def check_cause(scene, bench, row):
-    """Checks what the reason of the quoted limit says of a run; returns a fault or None, and the kind of the cause."""
+    """Checks the statement about a run in the reason of the quoted limit. Returns (fault or None, kind of the
+    cause)."""
     reason = row["quoted_reason"]
     if next_run := re.search(r"simulated limit: the run at [0-9.e+-]+ is (\w+)", reason):
-        # check_quote() runs this value.
+        # check_quote() checks the run at this value.
         return None, f"simulated limit: {next_run[1]}"
     found = re.search(r"the run at ([0-9.e+-]+) (.*)", reason)
     if not found:
@@ -409,12 +428,12 @@ def check_cause(scene, bench, row):
     if "gains and loses" in says:
         points = rows["colliding"][motion.quarter(3)]
         return None, f"contact points change ({'count' if np.ptp(points) else 'not the count'})"
-    # "shows no growth in its duration": it is stable by the rule, in unbroken contact, and not at rest.
+    # A run that "shows no growth in its duration" is stable by the rule and not at rest. It must not lose contact.
     return (f"{reason}: out of contact" if motion.share_away() > 0 else None), "no growth"
 
 
 def check_quote(scene, bench, row):
-    """Runs beside the value to quote; returns the contradictions and the number of runs."""
+    """Checks runs near the quoted limit. Returns (contradictions, number of runs)."""
     quoted, faults, runs = row["quoted_limit"], [], 0
     if quoted is None:
         return faults, runs
@@ -438,7 +457,7 @@ def check_quote(scene, bench, row):
 
 
 def check_tune(scene, bench):
-    """Checks a recommendation; returns the faults and a note."""
+    """Checks the recommendation of `tune`. Returns (faults, note)."""
     answer = bench.json("tune", bench.file, "--damping-ratio", "0.1:1", "--jobs", 1, out="tune")
     law = answer["algorithms"][0]
     if not law["feasible"]:
@@ -447,12 +466,12 @@ def check_tune(scene, bench):
     K, zeta, faults = law["stiffness_N_per_m"], law["damping_ratio"], []
     chosen = json.loads(json.dumps(scene))
     chosen["rendering"].pop("damping_N_s_per_m", None)
-    mass = tuned["rendering"]["mass_kg"]  # searched on an admittance device
+    mass = tuned["rendering"]["mass_kg"]  # `tune` searches it on an admittance device
     chosen["rendering"].update(stiffness_N_per_m=K, damping_ratio=zeta, mass_kg=mass)
     contact, push = Contact(chosen), push_of(chosen)
     at_K = loops_of(chosen, contact, push, K)
     for gain in (1, 2):
-        # `tune` requires stable eigenvalues up to 2 K with the contact at K.
+        # `tune` requires a stable loop up to 2 K, with the contacts of the equilibrium at K.
         stable = [is_stable(chosen, gain * K, s, q) for s, q, *_ in at_K]
         if law["linear_limit_N_per_m"] is not None and stable and not any(stable):
             faults.append(
@@ -473,7 +492,7 @@ def check_tune(scene, bench):
 
 
 def hand_in(text):
-    """Overrides of the hand that `tune` names, such as "a hand of 0.1 kg and 100 N/m"."""
+    """Returns --set overrides for the hand that a text of `tune` names, such as "a hand of 0.1 kg and 100 N/m"."""
     found = re.search(r"a hand of (?:([0-9.]+) kg and )?([0-9.]+) N/m", text)
     if not found:
         return []
@@ -482,7 +501,8 @@ def hand_in(text):
 
 
 def check_binding(scene, bench, law, zeta):
-    """Checks what binds the recommendation, in the run or the loop that is named; returns a fault or None."""
+    """Checks the constraint that limits the recommendation, by the run or the loop that `tune` names. Returns a fault
+    or None. `law`: answer of `tune` for the law. `zeta`: damping ratio."""
     why, binding = law["why"], law["binding"]
     with (bench.folder / "tune" / "tune_trials.csv").open(encoding="utf-8") as file:
         trials = [
@@ -492,7 +512,7 @@ def check_binding(scene, bench, law, zeta):
         ]
     above = [K for K in trials if K > law["stiffness_N_per_m"]]
     if re.search(r"^at [0-9.e+]+ N/m", why):
-        return None  # a verification refuted another zeta and K, which are named with a few digits
+        return None  # the text concerns another zeta and K, and rounds them to a few digits
     if not above or binding == "range":
         return None
     K = min(above)
@@ -548,7 +568,7 @@ def known_results(file):
 
 
 def summary_of(results):
-    """Prints what was checked and what failed; returns the exit status."""
+    """Prints the checks and their faults. Returns the exit status."""
     runs = sum(r["runs"] for r in results)
     contradictions = [(r["i"], text) for r in results for text in r["contradictions"]]
     faults = [(r["i"], text) for r in results for text in r["faults"]]

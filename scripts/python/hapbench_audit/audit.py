@@ -1,5 +1,5 @@
-"""The audit of a log: metrics of clock, energy, force and stiffness, the limit of a device, the diagnosis, and the
-quantities that the log does not determine."""
+"""Computes the audit of a log: metrics of clock, energy, force and stiffness, the stiffness limit of a device, the
+diagnosis, and a list of the quantities that the log does not determine."""
 import numpy as np
 from hapbench_import.stroke import likely_unit
 
@@ -14,7 +14,8 @@ from .stiffness import FEWEST, contradicting, evidence_of, springs_of
 
 
 def audit_log(log, device=None):
-    """Returns (numbers for the JSON, Contacts, spectrum). `device`: a preset or FILE.json."""
+    """Returns (numbers for audit.json, Contacts, spectrum_of()). `device`: a device preset or the name of a device
+    file; None computes no stiffness limit."""
     contacts = contacts_of(log)
     clock, port = clock_of(log), Port(log, contacts)
     force, spectrum = force_of(log, contacts), spectrum_of(log, contacts)
@@ -43,13 +44,14 @@ def audit_log(log, device=None):
 
 
 def loop_interval(log):
-    """Returns the mean time between two new positions or forces [s]: the period of the loop if the loop is slower than
-    the log."""
+    """Returns the period of the control loop [s]: the interval between rows, times the number of rows over which each
+    position or each force is repeated (the larger of both numbers; 1 without repetition)."""
     return log.interval * max([1.0] + [one.rows for one in (log.held, log.held_force) if one])
 
 
 def energy_by_contact(log, contacts, every):
-    """Returns the mean energies over the contacts, and the contact that created the most energy."""
+    """Returns the created energy per contact [J] and per second in contact [W], and the contact that created the most
+    energy. Contacts with unknown created energy are not part of the sums."""
     known = [one for one in every if one["created_J"] is not None]
     seconds = contacts.in_contact.sum() * log.interval
     created = sum(one["created_J"] for one in known)
@@ -63,7 +65,8 @@ def energy_by_contact(log, contacts, every):
 
 
 def each_contact(log, contacts):
-    """Returns time, force and spring of each contact."""
+    """Returns for each contact its start and end [s], its number of rows, its largest force [N], and whether the log
+    contains both its touch and its release."""
     found = []
     for first, after in contacts.runs.tolist():
         rows = np.arange(first, after)
@@ -81,8 +84,9 @@ def each_contact(log, contacts):
 
 
 def with_springs(log, contacts, every):
-    """Adds `spring` to the numbers of each contact and returns the spring of the log, or None. If the contacts are too
-    short, the rows of the longest stretch of contacts determine the spring together."""
+    """Sets `spring` of each contact in `every`, and returns the spring of the whole log for the JSON, or None. If no
+    contact determines a stiffness and no contact contradicts a spring, the rows of the longest sequence of contacts
+    (Contacts.stretches) determine the spring together."""
     evidences = [
         evidence_of_run(log, contacts, np.arange(first, after)) if after - first >= FEWEST else None
         for first, after in contacts.runs.tolist()
@@ -107,7 +111,7 @@ def evidence_of_run(log, contacts, rows):
 
 
 def known_spring(spring):
-    """The spring if it has a stiffness, or None."""
+    """Returns the spring if it has a stiffness, otherwise None."""
     return spring if has_stiffness(spring) else None
 
 
@@ -116,14 +120,16 @@ def has_stiffness(spring):
 
 
 def stiffness_range(every):
-    """Returns the smallest and largest stiffness of the contacts that determine a stiffness."""
+    """Returns the smallest and the largest stiffness [N/m] of the contacts that determine a stiffness, or None if no
+    contact determines a stiffness."""
     values = [one["spring"]["stiffness_N_per_m"] for one in every if has_stiffness(one["spring"])]
     return [min(values), max(values)] if values else None
 
 
 def measured_lag(log, contacts):
-    """Compares a measured force with the commanded force. Returns the delay in rows, at which the correlation is
-    largest, and the gain."""
+    """Compares the measured force with the commanded force. Returns the delay [s] at which their cross-correlation is
+    largest, and the gain at this delay. Returns None without a measured force or without contact.
+    """
     if log.measured is None or not contacts.in_contact.any():
         return None
     a, b = log.force - log.force.mean(axis=0), log.measured - log.measured.mean(axis=0)
@@ -137,7 +143,7 @@ def measured_lag(log, contacts):
 
 
 def doubts(log, audit):
-    """Returns warnings about units and signs that are probably wrong."""
+    """Returns warnings about units and signs that are probably wrong, and about contacts with different stiffnesses."""
     found = []
     speeds = np.linalg.norm(np.diff(log.position, axis=0), axis=1) / np.diff(log.time)
     fast = float(np.percentile(speeds, 90))
@@ -162,12 +168,12 @@ def doubts(log, audit):
 
 
 def disagreement(springs):
-    """A warning if no stiffness lies in the intervals of most contacts."""
+    """Returns a warning if no stiffness lies in the intervals of more than three quarters of the contacts."""
     if len(springs) < 2:
         return []
     ends = np.array([one["stiffness_interval"] for one in springs])
     values = [one["stiffness_N_per_m"] for one in springs]
-    # Relative differences of the stiffness below this are ignored, such as the effect of the sampling of a velocity.
+    # Stiffness differences up to the fraction `share` do not count. The sampling of a velocity alone can cause them.
     share = 0.02
     common = max(
         np.sum((ends[:, 0] <= (1.0 + share) * x) & (x * (1.0 - share) <= ends[:, 1]))
@@ -182,85 +188,8 @@ def disagreement(springs):
 
 
 def missing(log, audit, device):
-    """What the log cannot show, and what would."""
-    found = []
-    if not len(audit["contacts"]):
-        found.append("contact: no row has a force")
-    if audit["stiffness"] is None and audit["contacts"]:
-        whys = [
-            one["spring"]["why"]
-            for one in audit["contacts"]
-            if one["spring"] and "why" in one["spring"]
-        ]
-        span = stiffness_range(audit["contacts"])
-        if span and span[1] > span[0] and not whys:
-            whys = [f"the contacts have {span[0]:.4g} to {span[1]:.4g} N/m"]
-        why = max(whys, key=whys.count) if whys else f"no contact has {FEWEST} rows"
-        attempt = "" if "rigid" in why else "; tap, and press to several depths at several speeds"
-        found.append(f"stiffness: {why}{attempt}")
-    elif audit["stiffness"] and audit["stiffness"].get("why_no_damping"):
-        found.append(
-            f"damping: {audit['stiffness']['why_no_damping']}; taps and quick presses, more digits, or a column of "
-            "velocities"
-        )
-    elif audit["stiffness"] and audit["stiffness"]["delay_s"] is None:
-        found.append("delay: the log does not separate it from damping; taps and quick presses")
-    if device is None:
-        found.append("whether the device can render this stiffness: --device FILE.json or a preset")
-    elif audit["device"] is None:
-        found.append("the limit of the device: it needs the stiffness of a contact")
-    if log.contacts is None:
-        found.append(
-            "whether force steps are changes of contacts: a column with the number of contacts"
-        )
-    if log.measured is None:
-        found.append(
-            "whether the device renders the force: a column of the measured force (measured=...)"
-        )
-    if log.turn is not None:
-        turned = float((log.turn[0].inv() * log.turn).magnitude().max())
-        if turned > 0.01:
-            found.append(
-                f"energy of rotation: the tool turns by up to {turned:.3g} rad, and the log has no torque"
-            )
-    if audit["metrics"]["force_mean_in_contact_N"] is None and audit["contacts"]:
-        found.append("vibration: there is less than 1/30 s of contact after the landings")
-    if audit["energy"]["net_created_J"] is None:
-        found.append(
-            "created energy: the log begins in contact, and without a stiffness the energy stored there is unknown; "
-            "a log that begins without contact"
-        )
-    if audit["clock"]["rate_Hz"] <= 60.0:
-        found.append("vibration above 30 Hz: a log of more than 60 Hz")
-    return found
-
-
-def missing_of_spring(audit):
-    """Returns which of stiffness, damping and delay the log does not determine, and what would determine it."""
-    if audit["stiffness"] is None and audit["contacts"]:
-        whys = [
-            one["spring"]["why"]
-            for one in audit["contacts"]
-            if one["spring"] and "why" in one["spring"]
-        ]
-        span = stiffness_range(audit["contacts"])
-        if span and span[1] > span[0] and not whys:
-            whys = [f"the contacts have {span[0]:.4g} to {span[1]:.4g} N/m"]
-        why = max(whys, key=whys.count) if whys else f"no contact has {FEWEST} rows"
-        attempt = "" if "rigid" in why else "; tap, and press to several depths at several speeds"
-        return [f"stiffness: {why}{attempt}"]
-    if audit["stiffness"] and audit["stiffness"].get("why_no_damping"):
-        return [
-            f"damping: {audit['stiffness']['why_no_damping']}; taps and quick presses, more digits, or a column of "
-            "velocities"
-        ]
-    if audit["stiffness"] and audit["stiffness"]["delay_s"] is None:
-        return ["delay: the log does not separate it from damping; taps and quick presses"]
-    return []
-
-
-def missing(log, audit, device):
-    """Returns what the log cannot determine, and which column or test would determine it."""
+    """Returns a text for each quantity that the log does not determine. The text names the column or the test that
+    would determine the quantity."""
     found = [] if len(audit["contacts"]) else ["contact: no row has a force"]
     found += missing_of_spring(audit)
     if device is None:
@@ -294,9 +223,11 @@ def missing(log, audit, device):
 
 
 def missing_of_spring(audit):
-    """Returns which of stiffness, damping and delay the log does not determine, and what would determine it."""
+    """Returns a text for the first of stiffness, damping and delay that the log does not determine. The text names the
+    test that would determine the quantity."""
     if audit["stiffness"] is None and audit["contacts"]:
-        # The contact in which the tool moves furthest comes closest to a stiffness.
+        # Reports the reason of the contact with the longest travel, because this contact is the closest to determining
+        # a stiffness.
         springs = [one["spring"] for one in audit["contacts"] if one["spring"]]
         furthest = max(
             (one for one in springs if "why" in one),

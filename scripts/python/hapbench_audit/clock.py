@@ -1,16 +1,18 @@
-"""The clock of a log: rate, jitter, missing rows, and values that are held over several rows."""
+"""Statistics of the times of a log: rate, jitter, missing rows, and the number of rows that repeat a position or a
+force."""
 import numpy as np
 
 from .log import LONG_INTERVALS
 
-# Largest rate of a loop of force or contact [Hz]; above it, the clock probably has other units.
+# Largest plausible rate of a haptic or contact loop [Hz]. Above this rate, the times of the log are probably not in
+# seconds.
 FASTEST_HZ = 1e5
-# Standard deviation, relative to the interval, above which the clock causes a warning.
+# Largest standard deviation of the time steps without a warning, as a fraction of the mean interval.
 JITTER = 0.05
 
 
 def clock_of(log):
-    """A dictionary of numbers."""
+    """Returns the statistics of the clock for the JSON. Names of quantities with a unit end in the unit."""
     steps, interval, missing = np.diff(log.time), log.interval, log.missing
     usual = steps[missing == 0]
     return {

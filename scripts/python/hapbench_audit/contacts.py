@@ -1,20 +1,24 @@
-"""Contacts of a log, from touch to release, and the rows of landings and of settled contact by the rules of `run`."""
+"""Finds the contacts of a log, each from touch to release. Separates landings from settled contact by the rules of
+`run`: a landing is the first 0.05 s after a touch that follows at least 0.05 s without contact."""
 from dataclasses import dataclass
 
 import numpy as np
 
 from .log import LONG_INTERVALS
 
-SETTLING = 0.05  # [s], as metrics.settling_s of a scenario
-SOME_ZEROS = 0.01  # share of rows without force from which any force is a contact
-FAR = 3.0  # standard deviations of noise
-TOUCH_SHARE = 0.05  # of the 99th percentile of the force; where the force is never zero
+SETTLING = 0.05  # duration of a landing [s]; equals the default of metrics.settling_s of a scenario
+# Smallest fraction of rows without force for the rule that any force is a contact.
+SOME_ZEROS = 0.01
+FAR = 3.0  # margin of the contact thresholds above the noise, as a multiple of the rms noise
+# Threshold of release as a fraction of the 99th percentile of the force. It applies if fewer than the fraction
+# SOME_ZEROS of the rows have zero force.
+TOUCH_SHARE = 0.05
 
 
 @dataclass
 class Contacts:
-    in_contact: np.ndarray  # for each row
-    runs: np.ndarray  # for each contact, the first row and the row after the last
+    in_contact: np.ndarray  # for each row, true if it is in contact
+    runs: np.ndarray  # for each contact, the first row and the row after the last row
     # (first contact, contact after the last) of each sequence of contacts separated by less than SETTLING
     stretches: list
     # First row of each contact that begins after at least SETTLING without contact.
@@ -29,12 +33,12 @@ class Contacts:
 
     @property
     def lost(self):
-        """Number of contacts that were lost for less than SETTLING."""
+        """Number of losses of contact that last less than SETTLING."""
         return sum(after - first - 1 for first, after in self.stretches)
 
 
 def contacts_of(log):
-    """Finds the contacts by Log.touch, or by the rule that fits the log."""
+    """Returns the Contacts of a log, by the rule of rows_in_contact()."""
     size = np.linalg.norm(log.force, axis=1)
     in_contact, threshold, rule = rows_in_contact(log, size)
     interval = log.interval
@@ -43,9 +47,9 @@ def contacts_of(log):
     settling = round(SETTLING / interval)
     landings, stretches, before = [], [], -settling - 1
     for number, (first, after) in enumerate(runs.tolist()):
-        # After a gap of the clock, the time without contact is unknown.
         away = first - before if before >= 0 else settling
         new = away >= settling and (away > 0 or number == 0)
+        # The time without contact is unknown across a gap of the clock. A gap therefore begins a new sequence.
         if new or gap[before - 1 : first].any():
             stretches.append([number, number + 1])
         else:
@@ -70,7 +74,8 @@ def contacts_of(log):
 
 
 def rows_in_contact(log, size):
-    """Returns (in contact by row, threshold [N], the rule in words)."""
+    """Returns (for each row, true if it is in contact; threshold of the force at a touch [N]; description of the rule).
+    `size`: magnitude of the force of each row [N]."""
     if log.touch is not None:
         return size > log.touch, log.touch, f"force above {log.touch:g} N (touch_N)"
     if log.contacts is not None:
@@ -78,7 +83,8 @@ def rows_in_contact(log, size):
     if np.mean(size == 0.0) >= SOME_ZEROS or not size.any():
         return size > 0.0, 0.0, "any force"
     release = TOUCH_SHARE * float(np.percentile(size, 99))
-    # Rows below have noise only. Noise must neither touch nor lose contact.
+    # Rows with a force below `release` contain only noise. The distance between both thresholds prevents noise from
+    # beginning or ending a contact.
     noise = float(np.sqrt(np.mean(size[size < release] ** 2))) if (size < release).any() else 0.0
     release = max(release, FAR * noise)
     touch = release + 2.0 * FAR * noise / np.sqrt(log.axes)
@@ -92,13 +98,16 @@ def rows_in_contact(log, size):
 
 
 def between(values, low, high):
-    """True from a value above `high` until a value below `low`."""
+    """Returns for each value whether it is part of a contact, with hysteresis: a contact begins above `high` and ends
+    below `low`."""
     event = np.where((values > high) | (values < low), np.arange(len(values)), 0)
     return values[np.maximum.accumulate(event)] > high
 
 
 def runs_of(flags, gap):
-    """Returns the first row, and the row after the last, of each run of True. A gap between two rows ends a run."""
+    """Returns the first row, and the row after the last row, of each sequence of consecutive True flags. A gap between
+    two rows ends a sequence. `flags`: one for each row. `gap`: one for each interval between rows.
+    """
     edges = np.diff(np.concatenate([[False], flags, [False]]).astype(int))
     starts, ends = np.flatnonzero(edges == 1), np.flatnonzero(edges == -1)
     cuts = np.flatnonzero(gap & flags[1:] & flags[:-1]) + 1

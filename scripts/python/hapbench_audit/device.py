@@ -8,10 +8,12 @@ MOST_DELAYS = 5  # largest number of delays for which the limit is computed
 
 
 def device_limit(device, interval, contact):
-    """Returns limit and frequency of the loop of the device [SI units] at the period `interval` [s], with the contact's
-    stiffness, damping and delay, and the range of the limit over the dampings and delays that the log allows. Returns
-    None if the contact has no stiffness. If the log does not determine damping or delay, the limit itself is None.
-    """
+    """Returns the comparison of a contact's stiffness with the linear limit of a device, for the JSON. The control loop
+    has the period `interval` [s] and the damping and delay of the contact. Returns None if the contact has no
+    stiffness.
+
+    If the log does not determine damping or delay, `linear_limit_N_per_m` is None. `linear_limit_interval` is the range
+    of the limit over all dampings and delays that the log allows."""
     if not contact:
         return None
     stiffness, loops = contact["stiffness_N_per_m"], contact["loops"]
@@ -67,7 +69,9 @@ def device_limit(device, interval, contact):
 
 
 def loop_of(device, interval, stiffness, damping, delay):
-    """Returns the closed loop of the device at a wall."""
+    """Returns the linear analysis of a device that renders a wall, computed by the program. Arguments: period
+    `interval` [s], stiffness [N/m], damping [N s/m], and delay [s] in addition to the delay of the device.
+    """
     answer = asked_of_program(
         "knows devices and their linear limits",
         "audit",

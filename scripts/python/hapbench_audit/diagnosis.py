@@ -1,4 +1,5 @@
-"""The diagnosis of a log, with the texts and thresholds of the diagnosis of `run`, and advice for another engine."""
+"""Diagnoses a log with the rules of the diagnosis of `run`: the same texts and thresholds, but advice that applies to
+any engine."""
 import json
 import math
 from functools import lru_cache
@@ -11,31 +12,34 @@ from .force import CUTOFF
 from .normal import main_direction
 from .text import HAMMERS, expected_text
 
-AT_LIMIT = 0.999  # fraction of the largest force from which a row counts as saturated
-CONSTANT = 0.9  # fraction of the rows at the largest force from which the force counts as constant
-FLAT = 20  # number of rows at the largest force from which this force counts as a limit
-# Vibration relative to the mean force; the threshold of the rule "edge" of the program.
+AT_LIMIT = 0.999  # fraction of the log's largest force from which a force may be saturated
+CONSTANT = 0.9  # fraction of saturated rows from which the force counts as constant instead
+FLAT = 20  # smallest number of saturated rows for which the largest force counts as a limit
+# Ratio of the rms vibration to the mean force above which the force vibrates; equals kMaxBuzz of the program.
 HAS_BUZZ = 0.1
-GAIN_MARGIN = 2.0
-NOISE = 4.0  # standard deviations: normal errors beyond are 1 of 16 000
+GAIN_MARGIN = 2.0  # linear limit divided by the stiffness that the advice recommends
+# Smallest force of a reversal, in standard deviations of the noise. Of 16 000 normal errors, one is larger.
+NOISE = 4.0
 
 
 @lru_cache
 def rules():
-    """Returns the rules of the program by name: number, unit, threshold, and sentence `says` (with {} for the
-    number)."""
+    """Returns the rules of the program by name. Each rule has a unit, a threshold, and a sentence `says` in which {}
+    stands for the number of the rule."""
     answer = asked_of_program("has the rules of the diagnosis", "describe", "diagnosis", "--json")
     return {rule["rule"]: rule for rule in json.loads(answer)}
 
 
 class Findings:
-    """The rules whose number is above the threshold, in the order of the program."""
+    """The rules whose number exceeds the threshold, in the order of rules()."""
 
     def __init__(self):
         self._found = {}
 
     def add(self, name, value, attempt, more=""):
-        """`value`: number of the rule, or None if the log does not show it."""
+        """Adds the rule `name` if its number `value` exceeds the threshold. `value` is None if the log does not
+        determine it. `attempt`: advice. `more`: text that is appended to the sentence of the rule.
+        """
         rule = rules()[name]
         if value is None or not value > rule["threshold"]:
             return
@@ -57,7 +61,7 @@ def share(value, of):
 
 
 def findings_of(log, contacts, audit):
-    """Returns the findings as a list for the JSON. `audit`: the numbers measured so far."""
+    """Returns the findings as a list for the JSON. `audit`: the numbers of audit_log() that the rules use."""
     found, force = Findings(), audit["metrics"]
     mean, device = force["force_mean_in_contact_N"], audit["device"]
     vibration = share(force["force_rms_above_30Hz_N"], mean)
@@ -99,7 +103,8 @@ def energy_text(energy):
 
 
 def buzz_text(buzz):
-    """The strongest oscillation that the rule counts."""
+    """Returns frequency and amplitude of the strongest oscillation above CUTOFF as a text; empty if no oscillation is
+    above CUTOFF."""
     fast = [one for one in buzz if one["frequency_Hz"] > CUTOFF]
     return (
         f", at {fast[0]['frequency_Hz']:.0f} Hz with {fast[0]['amplitude_N']:.3g} N" if fast else ""
@@ -205,7 +210,8 @@ def against_pop(log, contacts, audit):
 
 
 def travel_share(log, contacts, row):
-    """Motion along the force in the row, as a share of the travel of all rows in contact."""
+    """Returns the displacement along the force from the row before to `row`, as a fraction of the travel of all rows in
+    contact."""
     rows = np.flatnonzero(contacts.in_contact)
     place = log.position @ main_direction(log.force[rows])
     travel = float(np.ptp(place[rows]))
@@ -213,15 +219,16 @@ def travel_share(log, contacts, row):
 
 
 def share_of_largest(log, row):
-    """The force step at the row as a share of the largest force of the log."""
+    """Returns the force step from the row before to `row`, as a fraction of the largest force of the log."""
     size = float(np.linalg.norm(log.force, axis=1).max())
     return float(np.linalg.norm(log.force[row] - log.force[row - 1])) / size
 
 
 def motion_at(log, stiffness, row):
-    """(largest motion in one row [m], force that the stiffness makes of it [N] or None) of the rows that cause the
-    force
-    step at a row, with any delay that the log allows."""
+    """Returns the motion that can cause the force step at `row`: (largest displacement from one row to the next [m],
+    largest force change that the stiffness causes by such a displacement [N]). The rows go back from `row` by the
+    longest delay that the log allows, plus the rows of a held position. The force change is None without a
+    stiffness."""
     delay = 0 if not stiffness else round(stiffness["delay_interval_s"][1] / log.interval)
     held = 1 if log.held is None else round(log.held.rows)
     steps = np.diff(log.position[max(row - delay - held, 0) : row + 1], axis=0)
@@ -235,8 +242,9 @@ def motion_at(log, stiffness, row):
 
 
 def reversals_per_s(log, contacts, audit):
-    """Reversals of the force per second of settled contact, without reversals of a force that is as small as its
-    noise: what spring and damper leave unexplained in most rows."""
+    """Returns the number of force reversals per second of settled contact. A reversal counts only if both forces exceed
+    NOISE times the noise. The noise is the median of `noise_N` over the contacts (see evidence_of_rows()).
+    """
     settled, force = contacts.settled, log.force
     seconds = audit["metrics"]["settled_s"]
     if audit["metrics"]["force_reversals_per_s"] is None:
@@ -251,7 +259,8 @@ def reversals_per_s(log, contacts, audit):
 
 
 def encoder_share(audit, mean):
-    """Force that one step of the position causes through the damping, divided by the mean force."""
+    """Returns the force that one resolution step of the position causes through the damping, divided by the mean force.
+    Returns None if the damping is not known and positive, or if the position has full precision."""
     stiffness, step = audit["stiffness"], audit["clock"]["position_resolution_m"]
     damping = stiffness and stiffness.get("damping_N_s_per_m")
     if not damping or damping <= 0.0 or not step:
@@ -268,8 +277,9 @@ def against_encoder(audit):
 
 
 def saturated_share(log, contacts, stiffness):
-    """Share of the rows in contact at the largest force; None if too few rows are there to be a limit, or if nearly
-    all are there: the force is then constant. A force that is constant because the tool rests is at no limit.
+    """Returns the fraction of the rows in contact that are saturated: the force stays at its largest value in
+    consecutive rows, although the tool moves. Returns None for fewer than FLAT saturated rows, because the largest
+    force is then no limit. Returns None from the fraction CONSTANT on, because the force is then constant.
     """
     size = np.linalg.norm(log.force, axis=1)
     rows = np.flatnonzero(contacts.in_contact)
@@ -277,10 +287,11 @@ def saturated_share(log, contacts, stiffness):
         return None
     normal = np.array(stiffness["direction"]) if stiffness else main_direction(log.force[rows])
     place, resolution = log.position @ normal, float(np.abs(normal) @ log.quantum_m)
-    # The share of the travel within which the force of a spring changes by less than its rows differ here.
+    # Smallest travel [m] of saturated rows. Over a shorter travel, the force of a spring changes by less than the
+    # fraction 1 - AT_LIMIT of its range, or the position changes by at most two steps of its resolution.
     least = max((1.0 - AT_LIMIT) * float(np.ptp(place[rows])), 2.0 * resolution)
     at = contacts.in_contact & (size >= AT_LIMIT * size.max())
-    # A limit cuts off peaks: consecutive rows then have the same force.
+    # A limit cuts off the peaks of the force, so that consecutive rows have the same force.
     flat = at[1:] & at[:-1] & (np.abs(np.diff(size)) <= 1e-6 * size.max())
     count = 0
     for first, after in runs_of(flat, np.zeros(len(flat) - 1, bool)).tolist():
@@ -304,7 +315,8 @@ def lag_text(stiffness):
 
 
 def half_hold(stiffness, interval):
-    """Returns the damping that dissipates the energy created by holding a spring force over an interval [N s/m]."""
+    """Returns K T / 2 [N s/m] for the stiffness K and the interval T [s]. This damping dissipates the energy that is
+    created by holding the force of a spring over an interval."""
     return 0.5 * stiffness["stiffness_N_per_m"] * interval
 
 

@@ -1,12 +1,12 @@
-"""Work of the force on the tool, Σ f_k · (p_(k+1) − p_k), over the log and over each contact. Positive work is
-energy that the rendering gives to the hand."""
+"""Work of the force on the tool, Σ f_k · (p_(k+1) − p_k), over the log and over each contact. f_k and p_k are force [N]
+and position [m] of row k. Positive work is energy that the rendering gives to the hand."""
 import numpy as np
 
 
 class Port:
-    """Work at the port of a log. `held`: the force of a row acts until the next row, as a device holds it. `path`: the
-    force changes linearly between rows (trapezoidal rule). `error`: largest effect of the resolution of the log.
-    """
+    """Work of the force on the tool in each interval between two rows [J]; 0 in gaps of the clock. `held`: the force of
+    a row acts until the next row, as on a device that holds the force. `path`: the force changes linearly between rows
+    (trapezoidal rule)."""
 
     def __init__(self, log, contacts):
         moved, f = np.diff(log.position, axis=0), log.force
@@ -20,7 +20,8 @@ class Port:
         self._last = np.abs(f) @ (0.5 * log.quantum_m)
 
     def error(self, first, after):
-        """Largest error of the work from row `first` to row `after` [J]."""
+        """Returns the largest error of the held work from row `first` to row `after` [J]. The cause is the resolution
+        of positions and forces in the log."""
         last = min(after, len(self._last) - 1)
         return float(
             self._of_positions[first + 1 : after].sum()
@@ -35,8 +36,9 @@ def work(force, way):
 
 
 def stored_at(log, contacts, row, spring):
-    """Returns the energy stored in the spring at a row where the log, or the clock after a gap, begins in contact [J].
-    Returns 0 for other rows, and None if the stiffness is unknown."""
+    """Returns the energy in the contact's spring [J] at a row in contact whose touch is unknown: the first row of the
+    log, or the first row after a gap of the clock. Returns 0 for any other row, and None if the stiffness is
+    unknown."""
     if not contacts.in_contact[row] or (row > 0 and not contacts.gap[row - 1]):
         return 0.0
     stiffness = (spring or {}).get("stiffness_N_per_m", 0.0)
@@ -44,13 +46,14 @@ def stored_at(log, contacts, row, spring):
 
 
 def created(given, stored):
-    """Returns the energy given to the hand beyond the energy stored at the start; None if the stored energy is
-    unknown."""
+    """Returns the created energy [J]: the maximum over time of the work given to the hand minus the stored energy at
+    the start, and at least 0. Returns None if the stored energy is unknown. `given`: accumulated work [J].
+    """
     return None if stored is None else float(max(given.max() - stored, 0.0))
 
 
 def energy_of(log, port, stored):
-    """Returns the numbers of the whole log. `stored`: stored_at() the first row."""
+    """Returns the energies of the whole log for the JSON. `stored`: stored_at() of the first row [J]."""
     held = np.concatenate([[0.0], np.cumsum(port.held)])
     path = np.concatenate([[0.0], np.cumsum(port.path)])
     worst = int(np.argmax(held))
@@ -69,11 +72,12 @@ def energy_of(log, port, stored):
 
 
 def contact_energy(port, first, after, stored):
-    """Returns the numbers of one contact. If the work given to the hand exceeds the energy `stored` at the start at any
-    time, the excess is created energy."""
+    """Returns the energies of the contact in the rows from `first` to before `after`, for the JSON. `stored`: energy in
+    the contact's spring at the first row [J]. Work given to the hand beyond `stored`, at any time, is created
+    energy."""
     last = min(after, len(port.held))
     given = np.cumsum(port.held[first:last]) if last > first else np.zeros(1)
-    # The path begins and ends outside of the contact, where the force is zero.
+    # The trapezoidal rule begins at the row before the contact and ends at the row after it, where the force is zero.
     path = np.cumsum(port.path[max(first - 1, 0) : last]) if last > first else np.zeros(1)
     return {
         "work_J": float(given[-1]),

@@ -1,11 +1,11 @@
-"""Bounds on the numbers of an audit, for checks in continuous integration."""
+"""Compares the numbers of an audit with bounds (option --expect), for checks in continuous integration."""
 import math
 
 from hapbench_command import fail, finite_number, quoted, require_name
 
 
 def metrics_of(audit):
-    """Returns all numbers of an audit by name; None for a number without a value."""
+    """Returns all numbers of an audit by name. The value is None if the log does not determine the number."""
     found = {
         name: value
         for section in ("clock", "metrics", "energy")
@@ -27,8 +27,8 @@ def metrics_of(audit):
 
 
 def expectations(words, audit):
-    """Returns each bound "metric=max" or "metric=min:max" with the value and True if the bound is met. A missing value
-    does not meet a bound."""
+    """Returns for each bound, "metric=max" or "metric=min:max", the metric, its value, the bounds, and True if the
+    value is within the bounds. A missing value does not meet a bound."""
     metrics, found = metrics_of(audit), []
     for word in words:
         name, equals, bound = word.partition("=")

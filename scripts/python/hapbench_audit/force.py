@@ -1,4 +1,5 @@
-"""Steps, vibration and frequencies of the force. The metrics have the names and definitions of `run`."""
+"""Computes metrics of the force: steps, vibration and frequencies. The metrics have the names and definitions of the
+metrics of `run`."""
 import math
 
 import numpy as np
@@ -7,22 +8,27 @@ from scipy.signal import sosfilt
 from .contacts import SETTLING
 
 CUTOFF = 30.0  # cutoff of the high-pass filter [Hz]; equals kVibrationCutoff of the program
-LEAST_SETTLED = 1.0 / CUTOFF  # shortest settled contact that has metrics [s]
-STEP_SHARE = 0.1  # steps above this fraction of the mean force are counted
-MOST_PEAKS = 3
-SMALLEST_PEAK = 0.1  # of the amplitude of the strongest peak
-LOWEST_PEAK = 10.0  # [Hz]; voluntary motion of a hand is slower
-HARMONIC = 0.02  # relative: multiples of a stronger peak
-LEAST_PEAK = 0.01  # amplitude of the strongest peak, as a share of the mean force
-SHORTEST_SPECTRUM = 64  # rows
-LEAST_PERIODS = 6.0  # of an oscillation: two in the middle third of a contact
-LASTING = 0.5  # of the amplitude that remains in the middle third
-FALSE_ALARM = 0.01  # probability that noise has a peak in a log
+LEAST_SETTLED = 1.0 / CUTOFF  # shortest total time of settled contact with metrics [s]
+STEP_SHARE = 0.1  # force steps above this fraction of the mean force are counted
+MOST_PEAKS = 3  # largest number of spectral peaks that are reported
+# Smallest amplitude of a peak, as a fraction of the amplitude of the strongest peak.
+SMALLEST_PEAK = 0.1
+LOWEST_PEAK = 10.0  # lowest frequency of a peak [Hz]; voluntary motion of a hand is slower
+# Relative tolerance of the frequencies that count as multiples of another frequency.
+HARMONIC = 0.02
+LEAST_PEAK = 0.01  # smallest amplitude of the strongest peak, as a fraction of the mean force
+SHORTEST_SPECTRUM = 64  # smallest number of rows of a spectrum
+# Smallest number of periods of an oscillation in a contact: two in its middle third.
+LEAST_PERIODS = 6.0
+# Smallest amplitude in the middle third of a contact, as a fraction of the amplitude in the whole contact.
+LASTING = 0.5
+FALSE_ALARM = 0.01  # probability that noise alone causes a peak in a log
 
 
 def high_pass(rate):
-    """Returns the second-order sections of a prewarped Butterworth high-pass of order 4, as class HighPass of the
-    program; None if the rate is 60 Hz or less."""
+    """Returns the second-order sections of a Butterworth high-pass of order 4 with the cutoff frequency CUTOFF. The
+    design is prewarped, like the class HighPass of the program. Returns None for a `rate` of 60 Hz or less.
+    """
     if rate <= 2.0 * CUTOFF:
         return None
     k, sections = math.tan(math.pi * CUTOFF / rate), []
@@ -34,15 +40,16 @@ def high_pass(rate):
 
 
 def filtered(sections, values):
-    """Filters rows of components. The filter starts in the steady state of the first row."""
+    """Returns the filtered columns of `values`, with one row per sample. The filter starts in the steady state of the
+    first row, so that a constant input gives zero."""
     state = np.zeros((2, 2, values.shape[1]))
     state[0, 0], state[0, 1] = -sections[0, 0] * values[0], sections[0, 0] * values[0]
     return sosfilt(sections, values, axis=0, zi=state)[0]
 
 
 def even(log, contacts):
-    """Returns (force, settled rows, landing rows) at equidistant times. If the clock is irregular or rows are missing,
-    the force is interpolated linearly between rows."""
+    """Returns (force [N], flags of settled contact, flags of landings) at equidistant times. If the clock is irregular
+    or rows are missing, the force is interpolated linearly between rows."""
     interval, steps = log.interval, np.diff(log.time)
     if np.abs(steps - interval).max() <= 0.05 * interval:
         return log.force, contacts.settled, contacts.landing
@@ -54,7 +61,7 @@ def even(log, contacts):
 
 
 def force_of(log, contacts):
-    """Metrics of the force. Steps across missing rows are not counted."""
+    """Returns the metrics of the force for the JSON. Force steps across missing rows are not counted."""
     interval = log.interval
     size = np.linalg.norm(log.force, axis=1)
     change = np.diff(log.force, axis=0, prepend=log.force[:1])
@@ -97,8 +104,8 @@ def nearest_rank(values, fraction):
 
 
 def lost_per_s(log, contacts):
-    """Returns the number of contacts that were lost for less than SETTLING, per second from first touch to final
-    release."""
+    """Returns the number of losses of contact that last less than SETTLING, per second. The time counts from the first
+    touch to the last release of each sequence of contacts. Returns None without contact."""
     if not len(contacts.runs):
         return None
     seconds = sum(
@@ -109,8 +116,8 @@ def lost_per_s(log, contacts):
 
 
 def rms_above_cutoff(log, contacts):
-    """Root mean square of the force above 30 Hz over settled rows. The filter starts in the steady state of the first
-    settled row after each landing."""
+    """Returns the root mean square of the force above 30 Hz [N] over all settled rows, or None if the rate is too low.
+    The filter starts in the steady state of the first settled row after each landing."""
     sections = high_pass(1.0 / log.interval)
     if sections is None:
         return None
@@ -128,8 +135,9 @@ def rms_above_cutoff(log, contacts):
 
 
 def longest_stretch(log, contacts):
-    """Returns the first row, and the row after the last, of the longest time in contact. Landings are excluded if
-    enough rows remain."""
+    """Returns the first row, and the row after the last row, of the longest sequence of contacts (Contacts.stretches),
+    or None without contact. The first SETTLING seconds are excluded if the sequence is longer than three times
+    SETTLING."""
     if not contacts.stretches:
         return None
     spans = [
@@ -142,8 +150,8 @@ def longest_stretch(log, contacts):
 
 
 def spectrum_of(log, contacts):
-    """Returns (frequencies [Hz], amplitudes [N], duration [s]) of the force minus its mean in the longest contact, with
-    a Hann window; None if there are too few rows."""
+    """Returns (frequencies [Hz], amplitudes [N], duration [s]) of the force minus its mean in the rows of
+    longest_stretch(), with a Hann window. Returns None for fewer than SHORTEST_SPECTRUM rows."""
     span = longest_stretch(log, contacts)
     if span is None or span[1] - span[0] < SHORTEST_SPECTRUM:
         return None
@@ -161,24 +169,26 @@ def spectrum_of(log, contacts):
 
 
 def is_same(frequency, other, resolution):
-    """Returns True if a frequency equals another frequency, or a multiple of it, within the resolution."""
+    """Returns True if a frequency equals the other frequency, or a multiple of it, within the resolution [Hz] or within
+    HARMONIC."""
     times = max(round(frequency / other), 1)
     return abs(frequency - times * other) <= max(resolution, HARMONIC * frequency)
 
 
 def peaks_of(log, contacts, spectrum, mean):
-    """The strongest oscillations above LOWEST_PEAK, largest first: frequency and amplitude. A peak stands out from the
-    median of its neighbourhood, is no multiple of a stronger one, and lasts: it is there in the middle of the contact
-    too."""
+    """Returns frequency [Hz] and amplitude [N] of the strongest oscillations above LOWEST_PEAK, strongest first. A peak
+    exceeds the median amplitude of its neighbourhood, is no multiple of a stronger peak, and persists in the middle
+    third of the contact. `mean`: mean force in contact [N]."""
     if spectrum is None or not mean:
         return []
     frequency, amplitude, seconds = spectrum
     resolution = 4.0 / seconds  # width of a peak of the Hann window
     above = frequency > max(LOWEST_PEAK, LEAST_PERIODS / seconds)
     if log.held_force is not None:
-        # Holding a force repeats its spectrum around the rate of the loop.
+        # A held force repeats its spectrum around multiples of the loop's rate. Frequencies above half of this rate are
+        # such copies.
         above &= frequency <= 0.5 / (log.interval * log.held_force.rows)
-    # The spectrum of noise exceeds its median r times with the probability 2^(-r^2).
+    # At each frequency, the amplitude of white noise exceeds r times its median with the probability 2^(-r^2).
     stands_out = math.sqrt(math.log2(seconds * frequency[-1] / FALSE_ALARM))
     top = np.r_[
         False, (amplitude[1:-1] > amplitude[:-2]) & (amplitude[1:-1] >= amplitude[2:]), False
@@ -198,7 +208,8 @@ def peaks_of(log, contacts, spectrum, mean):
         ):
             continue
         if i == len(frequency) - 1:
-            # At half the rate both halves of the spectrum are one line.
+            # At half the sampling rate, the lines of the positive and the negative frequency coincide, which doubles
+            # the amplitude.
             size = 0.5 * amplitude[i]
         else:
             size = amplitude_at(log, first, after, frequency[i])
@@ -209,8 +220,9 @@ def peaks_of(log, contacts, spectrum, mean):
 
 
 def amplitude_at(log, first, after, frequency):
-    """Amplitude [N] of an oscillation in these rows, by least squares at the times of the rows beside a slow force. The
-    weights are a Hann window."""
+    """Returns the amplitude [N] of an oscillation at `frequency` [Hz] in the rows from `first` to before `after`. It
+    follows from a least-squares fit of a sine and a slow quadratic change of the force. The weights are a Hann
+    window."""
     time = log.time[first:after] - log.time[first]
     angle = 2.0 * math.pi * frequency * time
     slow = time / time[-1] - 0.5

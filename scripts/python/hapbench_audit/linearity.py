@@ -1,17 +1,20 @@
-"""Whether the force of a contact grows linearly with the depth."""
+"""Measures whether the force of a contact grows linearly with the depth."""
 import numpy as np
 
-FEWEST = 10  # rows of each half
+FEWEST = 10  # smallest number of rows in each half of the travel
 
 
 def median_linearity(contacts):
-    """Median of linearity() over (Motion, Fit) of contacts, or None."""
+    """Returns the median of linearity() over the contacts, each a pair (Motion, Fit), or None if no contact has a
+    value."""
     found = [one for one in (linearity(*contact) for contact in contacts) if one is not None]
     return float(np.median(found)) if found else None
 
 
 def linearity(motion, fit):
-    """Stiffness of the deeper half of the travel divided by the stiffness of the other half, or None; 1: linear."""
+    """Returns the stiffness in the deeper half of the travel divided by the stiffness in the shallower half: 1 for a
+    linear spring. Returns None if a half has too few rows or no travel, or if the shallower half has no positive
+    stiffness."""
     keep = motion.known(fit.model.delay)
     before = motion.rows[keep] - fit.model.delay
     place = motion.place[before]
@@ -22,6 +25,6 @@ def linearity(motion, fit):
         if half.sum() < FEWEST or np.ptp(place[half]) == 0.0:
             return None
         slopes.append(-np.polyfit(place[half] - middle, force[half], 1)[0])
-    # The force points out of the surface, so deeper is the smaller position.
+    # The force points out of the surface, so that the deeper half has the smaller positions.
     deep, shallow = slopes
     return float(deep / shallow) if shallow > 0.0 else None

@@ -1,4 +1,5 @@
-"""A log of any engine: times, positions and forces in SI units, and the other quantities that its columns hold."""
+"""Reads the log of any engine: times, positions and forces in SI units, and further quantities if the log has columns
+for them."""
 import re
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -13,15 +14,19 @@ from hapbench_import.recording import EXACT, Recording, open_recording
 from hapbench_import.samples import read_samples
 from hapbench_import.stroke import resolution_of
 
-FEWEST = 20  # samples
-LONG_INTERVALS = 10.0  # median intervals; a longer gap ends a contact
-LATEST_START = 1e6  # first time that is kept [s]
-FASTEST = 5.0  # of a hand [m/s]
-CLEAR = 0.25  # intervals: half of the error at which a row more or less is as likely
-SEVERAL = 20  # steps
-MOST_MISSING = 50  # rows that are counted in a gap, as many as the longest delay has
-FOLLOWED = 0.05  # share of a stamp's error by which the mean clock follows it
-# Names of the first column of each quantity in usual logs: lower case, without units, signs and blanks.
+FEWEST = 20  # smallest number of samples of a log
+LONG_INTERVALS = 10.0  # number of mean intervals; a longer time step is a gap, which ends a contact
+LATEST_START = 1e6  # start of a log [s] from which on its times are counted from its first row
+FASTEST = 5.0  # largest plausible speed of a hand [m/s]
+# Largest error of a time step, in intervals, for which its number of missing rows is clear. At an error of 0.5, two
+# numbers of missing rows fit equally well.
+CLEAR = 0.25
+SEVERAL = 20  # number of time steps over which the mean interval is measured
+# Largest number of missing rows that are counted between two rows; equals the longest delay of a model [rows].
+MOST_MISSING = 50
+FOLLOWED = 0.05  # smallest fraction of a time stamp's error by which the mean clock is corrected
+# Usual names of the first column of each quantity. Names are in lower case, without units and without any character
+# other than letters and digits.
 USUAL = {
     "time": "time times t ts timestamp stamp secs simtime headerstamp clock",
     "position": "px posx positionx poseposition posepositionx tipx toolx tcpx eex hipx pos0 p0 position0 x",
@@ -31,7 +36,7 @@ USUAL = {
     "contacts": "colliding contacts ncontacts ncon numcontacts contactcount",
     "orientation": "qw qx quatw quatx orientationw orientationx poseorientationx",
 }
-# Usual names in a log of one axis.
+# Further usual names for a log of one axis.
 ALONE = {"position": "position pos x y z", "force": "force f", "velocity": "velocity vel v"}
 ALONE["measured"] = "measured measuredforce forcemeasured"
 TOUCH = "touch_N="  # prefix of the field touch_N in --set
@@ -42,15 +47,15 @@ ALL = [name for name in QUANTITIES] + list(EXTRA)
 @dataclass
 class Log:
     file: str
-    time: np.ndarray  # [s], increasing
-    position: np.ndarray  # rows of x, y, z of the tool [m]
-    force: np.ndarray  # on the tool [N]; held, or continuous, from row to row
-    turn: object = None  # Rotation of the tool in each row, or None
-    velocity: np.ndarray | None = None  # [m/s]
-    measured: np.ndarray | None = None  # force that a sensor measured [N]
+    time: np.ndarray  # times of the rows [s], increasing
+    position: np.ndarray  # position of the tool: x, y, z in each row [m]
+    force: np.ndarray  # force on the tool: x, y, z in each row [N]
+    turn: object = None  # orientation of the tool in each row, a Rotation, or None
+    velocity: np.ndarray | None = None  # velocity of the tool: x, y, z in each row [m/s]
+    measured: np.ndarray | None = None  # force of a sensor: x, y, z in each row [N]
     contacts: np.ndarray | None = None  # number of contacts in each row
     axes: int = 3  # 1 for a log of one axis
-    # Columns by quantity, in the form of `import stroke`.
+    # Columns that were read, by quantity, in the format of `import stroke`.
     columns: dict = field(default_factory=dict)
     columns_not_read: list = field(default_factory=list)
     scales: dict = field(default_factory=dict)  # factors to SI units by quantity
@@ -66,7 +71,7 @@ class Log:
 
     @cached_property
     def interval(self):
-        """Mean time between consecutive rows [s], without the steps over missing rows."""
+        """Mean time between consecutive rows [s]. Steps over missing rows are not part of the mean."""
         steps = np.diff(self.time)
         mean = (self.time[-1] - self.time[0]) / len(steps)
         off = self.time - self.time[0] - np.arange(len(self.time)) * mean
@@ -76,24 +81,24 @@ class Log:
 
     @cached_property
     def missing(self):
-        """Rows that are missing between each row and the next."""
+        """Number of missing rows between each row and the next row."""
         return missing_rows(np.diff(self.time))
 
     @cached_property
     def counted(self):
-        """Numbers of the rows, with missing rows, but for those of long gaps."""
+        """Row numbers that also count missing rows, but at most MOST_MISSING missing rows in each gap."""
         return np.append(0, np.cumsum(1 + np.minimum(self.missing, MOST_MISSING)))
 
     @cached_property
     def interval_error(self):
-        """Relative error of the interval, from the jitter of the first and the last row."""
+        """Relative error of `interval`: three standard deviations of the jitter, divided by the duration of the log."""
         steps = np.diff(self.time)
         jitter = float(np.std(steps[self.missing == 0]))
         return 3.0 * jitter / float(self.time[-1] - self.time[0])
 
 
 def read_log(options):
-    """Reads the log that the command line names (__main__)."""
+    """Returns the Log of the file that the user named. `options`: the parsed command line of __main__."""
     layout, wanted, touch = layout_of(options)
     log = log_of(open_recording(options.log, layout), layout, wanted)
     log.touch = touch
@@ -101,8 +106,8 @@ def read_log(options):
 
 
 def layout_of(options):
-    """Returns (options of an import, names of columns by quantity of EXTRA, force above which a row is in contact or
-    None)."""
+    """Returns (options of an import; names of the columns that the user gave for quantities of EXTRA; force above which
+    a row is in contact [N], or None)."""
     touches = [word for word in options.set if word.startswith(TOUCH)]
     own = [word for word in options.columns if word.partition("=")[0] in EXTRA]
     asked = SimpleNamespace(
@@ -124,7 +129,7 @@ def layout_of(options):
 
 
 def touch_of(word):
-    """Parses the value of the field touch_N [N]."""
+    """Returns the force [N] in a word such as "touch_N=0.1". Fails if it is no number >= 0."""
     force = finite_number(word.removeprefix(TOUCH).encode("utf-8", "surrogateescape"))
     if not force >= 0.0:
         fail(f"--set: got {quoted(word)}; allowed: touch_N=FORCE, a number >= 0")
@@ -132,8 +137,9 @@ def touch_of(word):
 
 
 def log_of_table(table, columns, scale, force_by_tool, touch):
-    """Returns the log in a mapping of names to arrays, such as a Table or a pandas.DataFrame. `columns` and `scale`: by
-    quantity, like the options of the command line."""
+    """Returns the Log of a mapping from column names to arrays, such as a Table or a pandas.DataFrame. `columns` and
+    `scale`: column and factor to SI units by quantity, like the options of the command line. `force_by_tool`: true if
+    the forces act on the object. `touch`: Log.touch [N]."""
     asked = SimpleNamespace(
         log=None,
         columns=[f"{quantity}={column}" for quantity, column in columns.items()],
@@ -149,7 +155,7 @@ def log_of_table(table, columns, scale, force_by_tool, touch):
 
 
 def recording_of(table):
-    """Returns the table's columns of numbers as a Recording."""
+    """Returns the numeric columns of the table as a Recording."""
     columns = {str(name): np.asarray(table[name]) for name in table}
     numeric = {
         name: (values - values[0] if is_large(values) else values).astype(float)
@@ -164,16 +170,16 @@ def recording_of(table):
 
 
 def is_large(values):
-    """Returns True if the values are integers too large for a double, such as nanoseconds since 1970. Times of this
-    kind are taken relative to the first row."""
+    """Returns True for integers that a double cannot represent exactly, such as nanoseconds since 1970. The caller
+    makes such values relative to the first row."""
     return (
         np.issubdtype(values.dtype, np.integer) and len(values) > 0 and abs(int(values[-1])) > EXACT
     )
 
 
 def log_of(recording, options, wanted):
-    """Builds a Log from a recording. `options`: the options of an import. `wanted`: names of columns by quantity of
-    EXTRA."""
+    """Returns the Log of a recording. `options`: the options of an import. `wanted`: names of the columns that the user
+    gave for quantities of EXTRA."""
     recording, axes = with_usual_columns(recording, options)
     read = read_samples(recording, options)
     samples, kept = read.samples, read.kept
@@ -229,22 +235,24 @@ def log_of(recording, options, wanted):
 
 
 def missing_rows(steps):
-    """Rows that are missing in each step of a clock: steps are whole numbers of intervals, but for jitter.
+    """Returns the number of missing rows in each time step of a clock. Without jitter, each step is a whole number of
+    intervals.
 
-    Either each interval has its own error, or each time stamp of an even clock. In the second case, errors of stamps
-    do not add up, and a step is measured from the mean clock of the rows before it. The case that leaves smaller errors
-    counts.
-    """
+    There are two models of jitter. In the first model, each interval has an independent error. In the second model,
+    each time stamp of a regular clock has an independent error. These errors do not add up over the steps, so that each
+    step is measured from the mean clock of the earlier rows. The function uses the model with the smaller mean square
+    error."""
     interval = float(np.median(steps))
     found = np.maximum(np.rint(steps / interval).astype(int) - 1, 0)
     errors = steps / interval - found - 1.0
     if np.abs(errors).max() <= CLEAR:
         return found
-    # The errors of stamps matter less over several steps, few of which have missing rows.
+    # Errors of time stamps affect the mean of several steps less than a single step. The median ignores the few groups
+    # of steps that contain missing rows.
     several = min(SEVERAL, len(steps))
     time = np.append(0.0, np.cumsum(steps))
     interval = float(np.median(time[several:] - time[:-several])) / several
-    for _ in range(2):  # the second time with the mean interval of the first
+    for _ in range(2):  # the second iteration uses the mean interval of the first
         found = np.maximum(np.rint(steps / interval).astype(int) - 1, 0)
         by_step = steps / interval - found - 1.0
         followed, by_clock = of_mean_clock((steps / interval).tolist())
@@ -252,14 +260,17 @@ def missing_rows(steps):
         if np.mean(by_clock**2) == error:
             found = followed
         interval = float(time[-1]) / (len(steps) + int(found.sum()))
-    # Errors as large as those of random times: only a step of more than two intervals is longer than jitter makes it.
+    # If the errors are as large as the errors of random times, jitter explains all steps up to two intervals. Only
+    # longer steps then contain missing rows.
     longest = 2.0 * float(time[-1]) / len(steps)
     return np.where(steps > longest, found, 0) if error > CLEAR**2 else found
 
 
 def of_mean_clock(steps):
-    """(missing rows, errors) of steps in intervals, each measured from the mean clock of the rows before."""
-    found, errors, late = [], [], 0.0  # `late`: the last stamp, relative to the mean clock
+    """Returns (number of missing rows, error [intervals]) of each step. Each step is measured from the mean clock of
+    the earlier rows. `steps`: time steps in intervals."""
+    # `late`: last time stamp minus the mean clock, in intervals.
+    found, errors, late = [], [], 0.0
     for row, step in enumerate(steps):
         rows = max(round(step + late), 1)
         error = step + late - rows
@@ -271,7 +282,8 @@ def of_mean_clock(steps):
 
 
 def held_of(log, values):
-    """The Hold of values, or None. Missing rows count in the rhythm."""
+    """Returns the Hold of `values`, or None if the log does not repeat values over several rows. Missing rows count as
+    rows."""
     rows = log.counted
     whole = np.arange(rows[-1] + 1)
     found = hold_of(values[np.searchsorted(rows, whole, side="right") - 1])
@@ -289,7 +301,8 @@ def times_of(read):
 
 
 def vector(values, frame):
-    """Returns rows of three components in the frame of the scene. Components that a log of one axis lacks are 0."""
+    """Returns rows of three components in the frame of the scene, or None without values. Components that a log of one
+    axis lacks are 0. `frame`: matrix by which each row is multiplied from the right."""
     if values is None:
         return None
     return np.pad(values, ((0, 0), (0, 3 - values.shape[1]))) @ frame
@@ -312,7 +325,7 @@ class UsualNames:
         for name, bare, unit in zip(names.names, names.bare, names.units):
             for text in (name, bare, bare.removesuffix(f"_{unit.text}") if unit else bare):
                 key = key_of(text)
-                for ending in ("", "mpers", "m", "s", "n"):  # units of SI in names such as px_m
+                for ending in ("", "mpers", "m", "s", "n"):  # endings of SI units, as in px_m
                     if ending == "" or re.search(r"_(m|s|N|m_per_s)$", text):
                         self._keys.setdefault(key.removesuffix(ending) or key, name)
 
@@ -321,8 +334,9 @@ class UsualNames:
 
 
 def with_usual_columns(recording, options):
-    """Completes options.columns by usual names. Returns (recording, number of axes). A log of one axis gets columns of
-    zeros for the missing axes."""
+    """Adds to options.columns the columns with usual names, for quantities that the user did not name. Returns
+    (recording, number of axes). For a log of one axis, the recording gets columns of zeros for the missing axes.
+    """
     names = Names(recording)
     usual = UsualNames(names)
     parts = {"position": ("px", "py", "pz"), "force": ("mfx", "mfy", "mfz")}
@@ -363,7 +377,8 @@ def with_usual_columns(recording, options):
 
 
 def of_one_axis(usual):
-    """A hint for a log whose columns have the usual names of the y or z axis alone; else empty."""
+    """Returns a hint if the log has usual names of position and force for the y axis or for the z axis: the option that
+    reads the log as a log of one axis. Returns an empty text for other logs."""
     for axis in "yz":
         found = usual.find(f"p{axis} pos{axis} position{axis}"), usual.find(f"f{axis} force{axis}")
         if all(found):
@@ -372,7 +387,8 @@ def of_one_axis(usual):
 
 
 def alone_columns(names, options, parts):
-    """Returns for each quantity its only column; None for a quantity with three columns."""
+    """Returns the column of each quantity of `parts` that has only one column, by quantity. The value is None for a
+    quantity with three columns."""
     found = {
         quantity: names.find(
             "", options.columns[quantity], ("_x", ".x", "x", "[0]", "_0", ".0", "0")
@@ -384,7 +400,8 @@ def alone_columns(names, options, parts):
         if column is None:
             names.unknown(quantity, options.columns[quantity])
     numbers = [column for column, by_number in found.values() if by_number]
-    # If every number stood for three columns, the columns would overlap or lie beyond the last column.
+    # A number usually names the first of three columns. It names a single column if the columns would otherwise overlap
+    # or lie beyond the last column.
     are_alone = len(numbers) > 0 and (
         max(numbers) + 3 > len(names.names)
         or (len(numbers) == 2 and abs(numbers[0] - numbers[1]) < 3)
@@ -422,8 +439,8 @@ def with_zeros(recording, count):
 
 
 def extra_columns(names, quantity, word, axes):
-    """Returns the columns of a quantity of EXTRA, by the name that the user gave or by a usual name; None if there are
-    none."""
+    """Returns the columns of a quantity of EXTRA, or None if the log has no such columns. `word`: name or number that
+    the user gave; None searches for a usual name. `axes`: number of axes of the log."""
     if word is not None:
         column, by_number = names.find(quantity, [word], ("_x", ".x", "x", "[0]", "_0", ".0", "0"))
         if column is None:

@@ -1,5 +1,6 @@
-"""Models of a contact's force, and their least-squares fits. A model is a spring and a damper at the position `delay`
-rows earlier. Models differ in the way in which the engine may compute the velocity."""
+"""Models of a contact's force, and their least-squares fits. A model is a spring and a damper at the position and the
+velocity `delay` rows earlier. Models differ in the delay and in the method by which the engine may compute the
+velocity."""
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -10,20 +11,24 @@ from scipy.stats import t as student
 
 from .log import MOST_MISSING
 
-MOST_DELAY = MOST_MISSING  # rows
-FEWEST = 10  # rows of a fit
-JITTER = 1e-3  # of the interval: below, both clocks give the same velocities
-LONGEST_MEMORY = 1000  # rows
+MOST_DELAY = MOST_MISSING  # longest delay of a model [rows]
+FEWEST = 10  # smallest number of rows of a fit
+# Largest jitter, as a fraction of the interval, for which logged times and a constant time step give nearly the same
+# velocities.
+JITTER = 1e-3
+LONGEST_MEMORY = 1000  # largest lag of the autocorrelation of residuals [rows]
 LOW_PASSES = (1, 2, 4, 8, 16)  # time constants of a filtered velocity [rows]
-LOW_PASS = "low-pass "  # begins their kinds
-EVEN = "even "  # begins the kinds of a clock without jitter
-LOOP = "loop "  # begins the kinds of a loop that is slower than the positions of the log
-BEFORE = MOST_DELAY + 10 * max(LOW_PASSES)  # rows that a filter needs to forget how it started
-BLOCKS = 10  # of the jackknife
-AT_ONCE = (
-    20_000  # numbers of a column that are computed together: they stay in the cache of a processor
-)
-COLLINEAR = 1e-9  # smallest share of a column that the other columns do not explain
+LOW_PASS = "low-pass "  # prefix of the kinds of filtered velocities
+EVEN = "even "  # prefix of the kinds of velocities that assume a constant time step
+# Prefix of the kinds of velocities in a control loop that is slower than the positions of the log.
+LOOP = "loop "
+# Rows before the fitted rows that are needed: the longest delay, and the decay of a filter's initial state.
+BEFORE = MOST_DELAY + 10 * max(LOW_PASSES)
+BLOCKS = 10  # number of blocks of the jackknife
+# Largest number of values per column that are processed together, so that they fit in the processor's cache.
+AT_ONCE = 20_000
+# Smallest fraction of a column that is independent of the other columns. Below it, the columns are collinear.
+COLLINEAR = 1e-9
 
 
 @dataclass(frozen=True, order=True)
@@ -35,12 +40,14 @@ class Model:
 @dataclass
 class Fit:
     model: Model
-    values: np.ndarray  # coefficients of the columns: position, velocity, (sign of the velocity)
-    halves: np.ndarray  # half-widths of 95 % intervals
-    squares: float  # sum of squared residuals
-    explained: float  # explained fraction of the variance
-    rows: int
-    independent: float  # number of independent rows: rows divided by the memory of the residuals
+    # Coefficients of the columns: minus stiffness [N/m], minus damping [N s/m], and for dry friction the coefficient of
+    # the sign of the velocity [N].
+    values: np.ndarray
+    halves: np.ndarray  # half-widths of the 95 % intervals of `values`
+    squares: float  # sum of squared residuals [N^2]
+    explained: float  # fraction of the variance of the force that the model explains
+    rows: int  # number of rows of the fit
+    independent: float  # number of independent rows: `rows` divided by memory() of the residuals
     # Root mean square of the part of the velocity that is not proportional to the position [m/s].
     speed: float
 
@@ -54,12 +61,13 @@ class Fit:
 
 
 class Motion:
-    """Position and velocities along a direction around some rows of a log."""
+    """Position and velocities along a direction for some rows of a log, and for the earlier rows that delays and
+    filters need. The force along the direction is for the rows themselves."""
 
     def __init__(self, log, rows, direction):
         self.first = max(int(rows[0]) - BEFORE, 0)
         part = slice(self.first, min(int(rows[-1]) + 2, len(log.time)))
-        # Rows by the clock: a row that is missing keeps its number, so that a delay counts it.
+        # Row numbers that also count missing rows, so that a delay of a number of rows is always the same time.
         counted = log.counted[part] - log.counted[part.start]
         place, at = log.position[part] @ direction, np.arange(counted[-1] + 1)
         last = np.searchsorted(counted, at, side="right") - 1
@@ -69,11 +77,11 @@ class Motion:
         }
         self.force = log.force[rows] @ direction
         self.rows = counted[rows - self.first]
-        # Rows whose position or difference of positions would need a missing row.
+        # True for rows whose position, or difference to a neighbouring position, depends on a missing row.
         absent = counted[last] != at
         self.unknown = absent | np.append(False, absent[:-1]) | np.append(absent[1:], False)
-        self.fits = {}  # by model and whether it has the sign of the velocity
-        # A delay of more than half of a contact would make most of its force of positions before the contact.
+        self.fits = {}  # cache of fit_of(): Fit by (Model, with_sign)
+        # With a delay longer than half of the contact, most forces would depend on positions before the contact.
         half = int(self.rows[-1] - self.rows[0] + 1) // 2
         self.most = min(MOST_DELAY, half, max(int(self.rows[-1]) - FEWEST, 0))
         self.interval = log.interval * (1.0 if log.held is None else log.held.rows)
@@ -84,18 +92,19 @@ class Motion:
         }
 
     def sampling_of(self, kind, within):
-        """Returns the mean square error of a velocity that only approximates the engine's velocity [m^2/s^2]."""
+        """Returns the mean square error [m^2/s^2] of the velocity `kind` in the rows `within`, as an approximation of
+        the velocity that the engine uses. The error of a logged velocity is 0."""
         if kind == "logged":
             return 0.0
         backward = self.speeds["backward"][within]
-        # At touch, the acceleration changes between two rows, which causes an error of half the difference of the
-        # velocities.
+        # At touch, the acceleration changes between two rows. The error is then half the difference between the central
+        # and the backward velocity.
         change = np.abs(self.speeds["central"][within] - backward).max()
         found = (0.5 * change) ** 2 / len(backward)
         constant = low_pass_of(kind)
         if constant:
-            # The time constant differs by at most half the distance to the next time constant. Position and velocity
-            # absorb most of the error.
+            # The time constant of the engine differs by at most half the distance to the next modelled time constant.
+            # The fit of position and velocity absorbs most of this error; only the remaining error counts.
             kinds = (f"{LOW_PASS}{constant // 2}" if constant > 1 else "backward", kind)
             near, own = (self.speeds[one][within] for one in kinds)
             place = self.place[within]
@@ -107,7 +116,8 @@ class Motion:
         return float(found)
 
     def rounding(self, kind, stiffness, damping):
-        """Mean square of the force that the resolution of the position causes in a model with this velocity [N^2]."""
+        """Returns the mean square of the force error [N^2] that the resolution of the position causes in a model with
+        the velocity `kind`."""
         of_speed = damping / self.interval
         kind = without_clock(kind)[1]
         if kind == "logged":
@@ -124,26 +134,29 @@ class Motion:
         return gain * self.resolution**2 / 12.0
 
     def delays_of(self, kind):
-        """Delays of a velocity. A forward difference stands for an implicit step: with a delay it would equal a backward
-        difference with one row less."""
+        """Returns the delays [rows] of the models with the velocity `kind`. A forward difference represents an implicit
+        step and has the delay 0 only. With a delay of d rows, its velocity would equal the velocity of a backward
+        difference with a delay of d - 1 rows."""
         return np.arange(1 if kind.endswith("forward") else self.most + 1)
 
     def models(self):
-        """All models."""
+        """Returns all models: each velocity with each of its delays."""
         return [
             Model(delay, kind) for kind in self.speeds for delay in self.delays_of(kind).tolist()
         ]
 
     def usable(self):
-        """Returns True for rows whose delayed row exists in every model. The first velocity has no row before it."""
+        """Returns True for rows whose delayed row exists for every delay. The first row is never a delayed row, because
+        its velocity would need an earlier row."""
         return self.rows > self.most
 
     def known(self, delay):
-        """True for usable rows whose delayed row is in the log."""
+        """Returns True for usable rows whose delayed row is not affected by missing rows."""
         return self.usable() & ~self.unknown[np.maximum(self.rows - delay, 0)]
 
     def columns(self, model, with_sign=False):
-        """Centred columns and force of the known rows."""
+        """Returns (matrix, force) of the known rows, each column minus its mean. The columns of the matrix are the
+        delayed position, the delayed velocity, and `with_sign` the sign of the delayed velocity."""
         keep = self.known(model.delay)
         before = self.rows[keep] - model.delay
         x, v, f = self.place[before], self.speeds[model.kind][before], self.force[keep]
@@ -155,20 +168,20 @@ class Motion:
 
 
 def without_clock(kind):
-    """(EVEN, LOOP or nothing, the rest of the kind)."""
+    """Returns (prefix of the kind: EVEN, LOOP or an empty text; kind without the prefix)."""
     clock = next((one for one in (EVEN, LOOP) if kind.startswith(one)), "")
     return clock, kind.removeprefix(clock)
 
 
 def low_pass_of(kind):
-    """Time constant of a backward difference [rows]; 0: not filtered."""
+    """Returns the time constant of a filtered backward difference [rows]; 0 if the velocity is not filtered."""
     kind = without_clock(kind)[1]
     return int(kind.removeprefix(LOW_PASS)) if kind.startswith(LOW_PASS) else 0
 
 
 def speeds(log, part, place, direction):
-    """Returns the velocities along the direction in these rows, keyed by the method by which an engine may compute
-    them."""
+    """Returns the velocities [m/s] along the direction in the rows `part`, by kind: the method by which an engine may
+    compute them. `place`: positions of these rows along the direction [m]."""
     time = log.time[part]
     fresh = np.arange(len(place)) if log.held is None else np.flatnonzero(log.held.fresh[part])
     if len(fresh) < 3:
@@ -184,13 +197,13 @@ def speeds(log, part, place, direction):
         # The engine may assume a constant step, even if the clock of the log has jitter.
         found |= differences(np.diff(place[fresh]) / even, sample, EVEN)
     if log.held is None and log.held_force is not None:
-        # The engine knows the positions of the rows with a new force only.
+        # The engine reads positions only in the rows with a new force.
         found |= loop_speeds(log, part, place)
     return found
 
 
 def loop_speeds(log, part, place):
-    """Velocities by kind from the positions of the rows in which the force is new."""
+    """Returns velocities [m/s] by kind, computed from the positions of the rows in which the force is new."""
     fresh = np.flatnonzero(log.held_force.fresh[part])
     if len(fresh) < 3:
         return {}
@@ -199,8 +212,8 @@ def loop_speeds(log, part, place):
 
 
 def differences(rates, sample, clock):
-    """Returns velocities by kind, computed from the differences between samples [m/s]. `sample`: number of each row's
-    sample."""
+    """Returns velocities [m/s] by kind. `rates`: differences between consecutive samples divided by the time between
+    them [m/s]. `sample`: number of the current sample in each row. `clock`: prefix of the kinds."""
     backward = np.concatenate([rates[:1], rates])
     forward = np.concatenate([rates, rates[-1:]])
     found = {
@@ -217,13 +230,17 @@ def differences(rates, sample, clock):
 
 
 def five_point(rates):
-    """Derivatives of fourth order from differences of consecutive samples: (8 (x1 - x-1) - (x2 - x-2)) / 12."""
+    """Returns the derivative at each sample k by the difference formula of fourth order. With the sampling period T,
+    the formula is (8 (x_(k+1) - x_(k-1)) - (x_(k+2) - x_(k-2))) / (12 T). `rates`:
+    (x_(k+1) - x_k) / T."""
     padded = np.concatenate([rates[:1], rates[:1], rates, rates[-1:], rates[-1:]])
     return (7.0 * (padded[1:-2] + padded[2:-1]) - padded[:-3] - padded[3:]) / 12.0
 
 
 def neighbours_of(model, kinds):
-    """Models whose velocity is one step of approximation away, between which the velocity of an engine may lie."""
+    """Returns the models with the same delay and a neighbouring approximation of the velocity: the next smaller or
+    larger time constant of a filter, or the other one of central and five-point difference. The velocity of an engine
+    may lie between both approximations."""
     clock, kind = without_clock(model.kind)
     constant = low_pass_of(kind)
     if constant:
@@ -240,15 +257,16 @@ def neighbours_of(model, kinds):
 class Residual:
     """The part of the force that a model leaves unexplained. Mean squares are per row [N^2]."""
 
-    mean_square: float
+    mean_square: float  # of the residuals
     rounding: float  # mean square that the resolution of the position may cause
     sampling: float  # mean square that the sampling of the velocity may cause
-    total: float  # mean square of the force less its mean
-    damping: float  # [N s/m]
+    total: float  # mean square of the force minus its mean
+    damping: float  # of the least-squares fit [N s/m]
 
 
 def residuals_of(motion):
-    """Residual by Model, without models whose columns are collinear. Computes several delays at once."""
+    """Returns the Residual of each Model, without models whose columns are collinear. Several delays are computed
+    together."""
     keep = motion.usable()
     rows, force = motion.rows[keep], motion.force[keep]
     if len(rows) < FEWEST:
@@ -272,20 +290,20 @@ def residuals_of(motion):
 
 
 def residuals(motion):
-    """(Residual by Model, Model with the smallest residual or None)."""
+    """Returns (Residual by Model, Model with the smallest mean square or None)."""
     found = residuals_of(motion)
     return found, min(found, key=lambda model: found[model].mean_square, default=None)
 
 
 def centred(values, known):
-    """The values less their means over the known values of each row; 0 where they are unknown."""
+    """Returns the values minus the mean of the known values of the same array row; 0 for unknown values."""
     count = np.maximum(known.sum(axis=1, keepdims=True), 1)
     return (values - (values * known).sum(axis=1, keepdims=True) / count) * known
 
 
 def residuals_of_kind(motion, kind, delays, place, speed, force, known):
-    """Residual by Model of some delays, by Gram and Schmidt. `place`, `speed`, `force`: centred columns, a row per
-    delay; 0 where they are not `known`."""
+    """Returns the Residual by Model of the velocity `kind` for some delays, by Gram-Schmidt orthogonalization. `place`,
+    `speed`, `force`: centred values, with one array row per delay; 0 where `known` is false."""
 
     def dot(a, b):
         return np.einsum("ij,ij->i", a, b)
@@ -333,7 +351,8 @@ def factors(matrix):
 
 
 def fit_of(motion, model, with_sign=False):
-    """The Fit of a model; None where its columns are collinear. The motion keeps the fits that were made."""
+    """Returns the Fit of a model, or None if the columns are collinear. The motion caches the fits. `with_sign`: see
+    Motion.columns()."""
     key = model, with_sign
     if key not in motion.fits:
         motion.fits[key] = new_fit(motion, model, with_sign)
@@ -341,11 +360,11 @@ def fit_of(motion, model, with_sign=False):
 
 
 def new_fit(motion, model, with_sign):
-    """The Fit of fit_of().
+    """Computes the Fit that fit_of() returns.
 
-    Each interval is the larger of two: the least-squares interval with the memory of the residuals, and the interval of
-    a jackknife over consecutive blocks, which also covers residuals that are correlated with the motion.
-    """
+    Each interval is the larger of two intervals: the least-squares interval with the memory() of the residuals, and the
+    interval of a jackknife over consecutive blocks. The jackknife also covers residuals that are correlated with the
+    motion."""
     matrix, target = motion.columns(model, with_sign)
     found = factors(matrix)
     if found is None:
@@ -374,7 +393,9 @@ def new_fit(motion, model, with_sign):
 
 
 def jackknife(q, inverse, residual):
-    """Returns half-widths of 95 % intervals from fits that each omit one of BLOCKS consecutive blocks."""
+    """Returns the half-widths of 95 % intervals by the jackknife: each fit omits one of BLOCKS blocks of consecutive
+    rows. `q`: orthonormal columns of factors(). `inverse`: inverse of the triangular matrix r of factors().
+    """
     count = min(BLOCKS, len(residual) // 4)
     sizes = np.full(count, len(residual) // count)
     sizes[: len(residual) % count] += 1
@@ -389,17 +410,18 @@ def jackknife(q, inverse, residual):
 
 @lru_cache
 def quantile_95(freedom):
-    """Half-width of the 95 % interval of Student's distribution."""
+    """Returns the half-width of the 95 % interval of Student's t distribution. `freedom`: degrees of freedom."""
     return float(student.ppf(0.975, freedom))
 
 
 def memory(residual):
-    """Rows that one independent residual stands for: 1 + 2 times the sum of the autocorrelations above 0.05."""
+    """Returns the number of rows per independent residual: 1 + 2 times the sum of the autocorrelations, up to the first
+    autocorrelation below 0.05."""
     power = float(residual @ residual)
     lags = min(len(residual) // 4, LONGEST_MEMORY)
     if power == 0.0 or lags < 2:
         return 1.0
-    # Autocorrelations by the spectrum; zeros keep the ends from overlapping.
+    # The autocorrelations follow from the power spectrum. Padding with zeros prevents the two ends from overlapping.
     size = next_fast_len(len(residual) + lags, real=True)
     spectrum = np.abs(rfft(residual / np.sqrt(power), size)) ** 2
     correlations = irfft(spectrum, size)[1:lags]

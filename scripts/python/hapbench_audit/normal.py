@@ -1,4 +1,5 @@
-"""The normal of the surface that a tool touches: of a contact with friction, the force is not along it."""
+"""Estimates the normal of the surface that a tool touches. In a contact with friction, the force is not along the
+normal."""
 import math
 
 import numpy as np
@@ -6,34 +7,40 @@ from scipy.optimize import least_squares
 
 from .models import Motion, residuals
 
-FEWEST_COUNTS = 10  # travel in steps of the position's resolution
-EXACTLY = 1e-9  # share of the variance: an engine whose law the model is leaves less unexplained
-TILTS = 8  # steps of the search for the normal
-MOST_ROWS = 500  # of the search
-SEARCHED = ("logged", "backward", "central", "low-pass 4")  # velocities of the search
-FEWEST_NEW = 15  # of these, rows with a new force above 0 and below the largest force
-BLOCKS = 10  # of rows
-AS_GOOD = 0.5  # times the unexplained share: a normal is better than another
-SLOW = 0.2  # of the median speed: below, the direction of sliding is uncertain
-MOST_FRICTION = 1.0  # coefficient
-KNOWN_TILT = 0.05  # error of a normal, as a tangent: it changes a stiffness by 1 - cos = 0.1 %
-EXPLAINED_REST = 0.25  # of the squares of the force across the normal: friction explains the others
-MOST_EVALUATIONS = 50
+FEWEST_COUNTS = 10  # smallest travel, in steps of the position's resolution
+# Largest unexplained fraction of the variance for which the model is the exact law of the engine.
+EXACTLY = 1e-9
+TILTS = 8  # largest number of iterations of the search for the normal
+MOST_ROWS = 500  # largest number of rows of the search
+SEARCHED = ("logged", "backward", "central", "low-pass 4")  # kinds of velocities in the search
+# Smallest number of rows with a new force that is above 0 and below the largest force.
+FEWEST_NEW = 15
+BLOCKS = 10  # number of residuals that count as independent
+AS_GOOD = 0.5  # a normal is better if it reduces the unexplained fraction below this factor
+# Fraction of the median speed below which the direction of sliding is uncertain.
+SLOW = 0.2
+MOST_FRICTION = 1.0  # largest coefficient of friction
+# Largest error of a normal, as the tangent of an angle. Such an error changes a stiffness by 1 - cos = 0.1 %.
+KNOWN_TILT = 0.05
+# Largest fraction of the sum of squared tangential forces that friction leaves unexplained.
+EXPLAINED_REST = 0.25
+MOST_EVALUATIONS = 50  # largest number of evaluations in the search by friction
 
 
 def main_direction(force):
-    """Unit vector along which the forces are largest, pointing with them."""
+    """Returns the unit vector along which the sum of squared forces is largest, with the sign of the mean force."""
     _, vectors = np.linalg.eigh(force.T @ force)
     direction = vectors[:, -1]
     return direction if (force @ direction).sum() >= 0.0 else -direction
 
 
 def normal_of(log, rows, direction, motion):
-    """(normal, Motion along it, Motion along another normal that explains the force about as well or None) of a surface
-    over which the tool slides with friction. Without friction, the normal is the main direction of the force.
+    """Returns (normal, Motion along the normal, other Motion or None) of a surface over which the tool slides with
+    friction. The other Motion is along another normal that explains the force about as well. `direction`: main
+    direction of the force, which is the normal if there is no friction. `motion`: Motion along this direction.
 
-    A force that depends on the depth has its gradient along the normal. The force along the normal is free of friction.
-    """
+    A force that depends on the depth has its gradient along the normal. The force along the normal contains no
+    friction."""
     same = direction, motion, None
     known, best = residuals(motion)
     if best is None:
@@ -53,7 +60,7 @@ def normal_of(log, rows, direction, motion):
         normal = gradient
         if is_found:
             break
-    # Beyond, friction would be larger than the normal force.
+    # If the angle between normal and force exceeded 45 degrees, friction would be larger than the normal force.
     if normal @ direction < math.sqrt(0.5):
         return same
     other = Motion(log, rows, normal)
@@ -67,9 +74,9 @@ def normal_of(log, rows, direction, motion):
 
 
 def normal_by_friction(log, rows, direction):
-    """The normal for which the rest of the force is friction, mu times the normal force against the sliding, or None
-    where the log does not determine it: nothing slides, or it slides along one straight line. It needs no stiffness and
-    no delay."""
+    """Returns the normal for which the tangential force is friction: the coefficient mu times the normal force, against
+    the sliding direction. Returns None if the log does not determine this normal, for example if the tool does not
+    slide or slides along a straight line. The method needs neither stiffness nor delay."""
     velocity = sliding_velocity(log, rows)
     if velocity is None:
         return None
@@ -93,7 +100,7 @@ def normal_by_friction(log, rows, direction):
         return (sideways + values[2] * along[:, None] * sliding).ravel()
 
     found = least_squares(rest, [0.0, 0.0, 0.1], max_nfev=MOST_EVALUATIONS)
-    # Blocks of rows share what is no noise: as many independent residuals as there are blocks.
+    # Residuals of neighbouring rows are correlated, so that only BLOCKS residuals count as independent.
     variance = 2.0 * found.cost / max(BLOCKS - 3, 1)
     error = np.sqrt(variance * np.diag(np.linalg.pinv(found.jac.T @ found.jac)))[:2].max()
     before = np.sum((force - np.outer(force @ direction, direction)) ** 2)
@@ -103,8 +110,9 @@ def normal_by_friction(log, rows, direction):
 
 
 def sliding_velocity(log, rows):
-    """Velocities of the rows over a time in which the position moves by many steps of its resolution; None for a
-    position that does not."""
+    """Returns the velocities of the rows [m/s]. They are differences over a time in which the position moves by many
+    steps of its resolution, unless the log has velocities. Returns None if the position moves too little.
+    """
     if log.velocity is not None:
         return log.velocity[rows]
     position, most = log.position, len(rows) // 8
@@ -122,8 +130,9 @@ def sliding_velocity(log, rows):
 
 
 def gradient_of(log, rows, normal, space, model):
-    """(direction in which the force along `normal` grows the most, Model), or (None, None). `space`: Motion along each
-    axis. `model`: None for the best one."""
+    """Returns (direction, Model), or (None, None). The direction is the unit vector of the gradient of the force
+    component along `normal`, with the sign of `normal`. `space`: Motion along the x, y and z axis. `model`: Model of
+    the fit; None searches the best Model."""
     keep = space[0].usable()
     force = (log.force[rows] @ normal)[keep]
     some = np.linspace(0, keep.sum() - 1, min(keep.sum(), MOST_ROWS)).astype(int)
@@ -144,7 +153,7 @@ def gradient_of(log, rows, normal, space, model):
         residual = force - columns / sizes @ slopes
         best = min(best, (float(residual @ residual), one, slopes / sizes), key=lambda it: it[0])
     _, model, slopes = best
-    # Components in which the tool does not move keep their share of the direction of the force.
+    # Components along which the tool does not move keep their values in `normal`.
     gradient, size = normal.copy(), np.linalg.norm(slopes[::2])
     if not size > 0.0:
         return None, None

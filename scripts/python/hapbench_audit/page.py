@@ -1,4 +1,4 @@
-"""The HTML page of an audit, in the style of `hapbench report`."""
+"""Builds the HTML page of an audit, in the style of `hapbench report`."""
 from pathlib import Path
 
 from hapbench_import.stroke import columns_text
@@ -14,7 +14,7 @@ MOST_CONTACTS = 200  # largest number of contacts in the table of the page; audi
 
 
 def page_of(log, audit, drawing, line):
-    """Returns the page. `line`: the command line that made the page."""
+    """Returns the page as a text. `drawing`: the Drawing of the audit. `line`: the command line that made the page."""
     sections = (
         ("summary", "Summary", "Summary", summary(log, audit)),
         ("warnings", "Warnings", "Warnings", listed(map(text, audit["warnings"]))),
@@ -64,7 +64,7 @@ def diagnosis(audit):
 
 
 def curves(drawing):
-    """Draws each panel on light and on dark ground."""
+    """Returns the HTML of all panels. Each panel is drawn on a light and on a dark background."""
 
     def drawn(title, part):
         return run_report.drawing(

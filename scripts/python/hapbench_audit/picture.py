@@ -1,18 +1,19 @@
-"""The picture of an audit: force and energy over time, force against position, and the spectrum of the force."""
+"""Draws the picture of an audit: force and energy over time, force against position, and the spectrum of the force."""
 import numpy as np
 from hapbench_looks import SERIES
 from hapbench_style import SETTINGS, curve, lettered, panels, picture, plt
 
 from .energy import Port
 
-SPANS = 1200  # number of time spans of a curve
+SPANS = 1200  # number of intervals of a curve; each shows its smallest and its largest value
 MOST_POINTS = 4000  # largest number of points of force against position
 MOST_SHADED = 200  # largest number of shaded contacts
-SMALL = 5e-5  # a smaller travel is drawn in micrometres [m]
+SMALL = 5e-5  # travel below which positions are drawn in micrometres [m]
 
 
 class Drawing:
-    """The panels of an audit, in the colours of a `paper`, light or dark."""
+    """Draws the panels of an audit. Each panel is a method that draws on `ax` in the given colours, for light or dark
+    background."""
 
     def __init__(self, log, audit, contacts, spectrum):
         self.log, self.audit, self.contacts, self.spectrum = log, audit, contacts, spectrum
@@ -131,7 +132,7 @@ def colours_of(dark=False):
 
 
 def draw(drawing, kind="svg"):
-    """Returns the bytes of the picture with all panels."""
+    """Returns the bytes of the picture with all panels. `kind`: file format."""
     with plt.rc_context(SETTINGS):
         parts = drawing.panels()
         figure, grid = panels(2, 2, 4.6)

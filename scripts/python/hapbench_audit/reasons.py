@@ -1,12 +1,14 @@
-"""Why a contact has no stiffness, in words."""
+"""Texts that state why the log does not determine the stiffness of a contact."""
 import numpy as np
 
 EXTREMES = 10.0  # standard deviations between the extremes of a million normal errors
-LEAST_CHANGE = 0.01  # of the largest force
+LEAST_CHANGE = 0.01  # smallest change of the force, as a fraction of the largest force
 
 
 def no_travel_text(travel, resolution, force, noise):
-    """Why a tool that rests along the force has no stiffness; a lower bound of it, if the force changes."""
+    """Returns the reason why a contact has no stiffness if the tool rests along the force. If the force changes, the
+    text gives a lower bound of the stiffness. `travel` and `resolution` of the position [m]; `noise`: standard
+    deviation of the force [N]."""
     moves = f"moves by {travel:.3g} m only" if travel > 1e-12 else "does not move"
     if resolution:
         moves += f", {travel / resolution:.3g} steps of its resolution"
@@ -21,7 +23,9 @@ def no_travel_text(travel, resolution, force, noise):
 
 
 def why_unknown(best, stiffness, delays, interval):
-    """`stiffness`: the Estimate, or None if a stiffness of zero is possible."""
+    """Returns the reason why fits do not determine the stiffness. `best`: Fit of the best model. `stiffness`: its
+    Estimate, or None if a stiffness of zero is possible. `delays`: possible delays [rows]. `interval`: time of a row
+    [s]."""
     if stiffness is None or stiffness.low <= 0.0:
         text = (
             "the log does not bound the stiffness (position and velocity explain "

@@ -1,4 +1,4 @@
-"""Stiffness, damping and delay that a log determines, for each contact and combined over the contacts."""
+"""Estimates stiffness, damping and delay from a log, for each contact and combined over the contacts."""
 import math
 from dataclasses import dataclass, field, replace
 
@@ -18,50 +18,56 @@ from .normal import (
 )
 from .reasons import no_travel_text, why_unknown
 
-FEWEST = 20  # rows of a contact
-LANDING = 10.0  # residuals of a landing by residuals of the rest: an impact is more than a spring
-EXACT = 0.01  # of the largest change of the force: residuals of a landing that is no impact
-EXPLAINED = 0.5  # share of the variance that a spring must explain
-UNSURE = 0.05  # share of 95 % intervals that do not hold the truth
-WELL_KNOWN = 0.25  # half-width of the interval as a share: values known worse are not stated
-UNLIKELY = 5.0  # logarithm of a likelihood ratio: models below it are as good as the best one
-SAMPLED = (
-    # Relative change of a value by sampling that is allowed: (2 pi f T)^2 / 6 at 17 Hz and 1 kHz.
-    2e-3
-)
-MOST_TRIED = 60  # models with negative damping before one without
-CERTAIN = 20.0  # the logarithm that one contact contributes at most
-SIMILAR = 0.1  # share by which mean squares must differ: the residuals are no white noise
-MOST_EXCUSED = 2.0  # times the smallest mean square: what the sampling of a velocity excuses
-NEGLIGIBLE = 1e-12  # share of the variance that rounding may leave unexplained
-TYPICAL = 10.0  # times the unexplained share of a typical contact
-DRY_GAIN = 0.7  # the sign of the velocity must lower the sum of squares below this share
-DRY_SHARE = 0.02  # and be at least this share of the mean force
-AT_LIMIT = 0.999  # of the largest force
+FEWEST = 20  # smallest number of rows of a contact
+# Largest ratio of rms residuals, landing to settled contact, for a landing that the model explains. An impact has a
+# larger ratio.
+LANDING = 10.0
+# Rms residual of a landing, as a fraction of the range of the force, up to which the model always explains the landing.
+EXACT = 0.01
+EXPLAINED = 0.5  # smallest fraction of the variance of the force that a spring must explain
+UNSURE = 0.05  # fraction of 95 % intervals that do not contain the true value
+# Largest half-width of an interval, as a fraction of the value. Values with wider intervals are not reported.
+WELL_KNOWN = 0.25
+# Log-likelihood of the best model minus the log-likelihood of another model, up to which both count as equally good.
+UNLIKELY = 5.0
+# Relative change of a coefficient that the sampling of the motion may cause: (2 pi f T)^2 / 6 for a motion of f = 17 Hz
+# at the sampling period T = 1 ms.
+SAMPLED = 2e-3
+MOST_TRIED = 60  # largest number of models in the search for a model without negative damping
+CERTAIN = 20.0  # largest log-likelihood difference that one contact contributes
+# Relative difference of mean squares that does not count, because the residuals are not white noise.
+SIMILAR = 0.1
+# Largest factor above the smallest mean square that the sampling of a velocity can explain.
+MOST_EXCUSED = 2.0
+NEGLIGIBLE = 1e-12  # fraction of the variance that rounding may leave unexplained
+# Largest unexplained fraction of a well explained contact, relative to the fraction of a typical contact.
+TYPICAL = 10.0
+DRY_GAIN = 0.7  # dry friction must reduce the sum of squared residuals below this fraction
+DRY_SHARE = 0.02  # smallest dry friction, as a fraction of the mean force
+AT_LIMIT = 0.999  # fraction of the largest force from which a force may be limited
 
 
 @dataclass
 class Evidence:
-    """What one contact contributes to the choice of each model."""
+    """Results of one contact that are needed to select the models of the log."""
 
     motion: object  # Motion along the fitted direction, or None
-    found: dict  # numbers for the JSON
-    likelihood: dict = field(default_factory=dict)  # logarithm below the best model, by Model
-    dampings: dict = field(default_factory=dict)  # of least squares, by Model [N s/m]
-    systematic: float = (
-        0.0  # share of the best model's squared residuals that is no noise from row to row
-    )
+    found: dict  # numbers of the contact for the JSON
+    # Log-likelihood of the best Model minus the log-likelihood, by Model.
+    likelihood: dict = field(default_factory=dict)
+    dampings: dict = field(default_factory=dict)  # least-squares damping by Model [N s/m]
+    # Fraction of the best model's squared residuals that is not white noise.
+    systematic: float = 0.0
     place: np.ndarray | None = None  # positions of the rows along the direction [m]
-    resolution: float = 0.0  # [m]
-    rows: np.ndarray | None = None  # row numbers
-    other: object = (
-        None  # Motion along another normal that explains the force about as well, or None
-    )
+    resolution: float = 0.0  # resolution of the position along the direction [m]
+    rows: np.ndarray | None = None  # numbers of the rows in the log
+    # Motion along another normal that explains the force about as well, or None.
+    other: object = None
 
 
 def evidence_of(log, rows, settled):
     """Returns the Evidence of the contact in these rows. `settled`: the rows after a landing. The rows of the landing
-    are used only if the best model explains them nearly as well as the settled rows."""
+    are used if explains_landing() is true, or if there are too few settled rows."""
     rows, settled = pushing(log, rows), pushing(log, settled)
     if len(rows) < FEWEST_NEW:
         return Evidence(
@@ -87,12 +93,12 @@ def explains_landing(evidence, rows, settled):
 
 
 def unexplained(evidence):
-    """Returns the fraction of the variance of the force that no model explains; 1 for a contact without a spring."""
+    """Returns the fraction of the variance of the force that no model explains; 1 if a spring was not fitted."""
     return 1.0 - evidence.found.get("explained", 0.0)
 
 
 def pushing(log, rows):
-    """Returns the rows whose force is new in this row, not zero, and not limited to the largest force of the log."""
+    """Returns the rows whose force is new, not zero, and not limited to the largest force of the log."""
     size = np.linalg.norm(log.force, axis=1)
     flat = np.append(np.abs(np.diff(size)) <= 1e-6 * size.max(), False)
     at_limit = (size >= AT_LIMIT * size.max()) & (flat | np.append(False, flat[:-1]))
@@ -114,8 +120,9 @@ def evidence_of_rows(log, rows, given=None):
     )
     place = log.position[rows] @ direction
     resolution, travel = float(np.abs(direction) @ log.quantum_m), float(np.ptp(place))
-    # What neither the motion nor the rows before and after explain, in most rows. 1.4826 times the median is the
-    # standard deviation of normal errors, and second differences of white noise have 6 times its variance.
+    # The noise of the force is the part that neither the model nor neighbouring rows explain. 1.4826 times the median
+    # absolute value is the standard deviation of normal errors. Second differences of white noise have 6 times its
+    # variance.
     changes = np.diff(force @ direction, 2) / math.sqrt(6.0)
     found = {
         "direction": direction.tolist(),
@@ -174,7 +181,8 @@ def likelihoods(motion, found, best):
     independent = fit_of(motion, best).independent
 
     def below(one):
-        # The effect of rounding is known exactly; the error of a sampled velocity is known only roughly.
+        # The effect of rounding is known exactly. The error of a sampled velocity is known only roughly, so that its
+        # effect is limited to MOST_EXCUSED.
         usual = least.mean_square + share * (one.sampling - least.sampling)
         usual = min(max(usual, least.mean_square), MOST_EXCUSED * least.mean_square)
         usual += share * max(one.rounding - least.rounding, 0.0) + floor
@@ -184,7 +192,8 @@ def likelihoods(motion, found, best):
 
 
 def systematic_share(motion, residual):
-    """Share of the squared residuals that is no noise: second differences of white noise have 6 times its variance."""
+    """Returns the fraction of the squared residuals that is not white noise. Second differences of white noise have 6
+    times its variance."""
     power = float(residual @ residual) / len(residual)
     if len(residual) < 3 or power <= NEGLIGIBLE * float(np.var(motion.force)):
         return 0.0
@@ -192,20 +201,21 @@ def systematic_share(motion, residual):
 
 
 def residual_of(motion, model):
-    """Force less the force of a model [N], of the rows that every model explains."""
+    """Returns the force minus the force of a model [N], for the rows known() at the delay of the model."""
     matrix, target = motion.columns(model)
     return target - matrix @ np.linalg.lstsq(matrix, target, rcond=None)[0]
 
 
 def as_good(log, evidences):
-    """Models that explain all contacts nearly as well as the best one, the best first. A contact that is too short for
-    a long delay counts as with its longest."""
+    """Returns the models that explain all contacts about as well as the best model, best model first. If a contact is
+    too short for the delay of a model, its longest delay is used. Models with negative damping are omitted if other
+    models are as good."""
     models = sorted({model for one in evidences for model in one.likelihood})
     if not models:
         return []
 
-    # A law that is no spring and damper leaves the same residuals in each contact: contacts are then no independent
-    # evidence. With a correlation of s between them, n contacts weigh as n / (1 + (n - 1) s) do.
+    # If the law of the engine is not a spring and a damper, all contacts have similar residuals and are not
+    # independent. With a correlation s between contacts, n contacts count as n / (1 + (n - 1) s) independent contacts.
     alike = float(np.mean([one.systematic for one in evidences]))
     weight = 1.0 / (1.0 + (len(evidences) - 1) * alike)
 
@@ -224,15 +234,17 @@ def as_good(log, evidences):
     calm = [model for model in found if not is_negative(log, evidences, model)]
     if calm:
         return calm
-    # If no model fits well, neither negative damping nor the next model without negative damping is certain.
+    # All models in `found` have negative damping. If no model fits well, this can be wrong, so that the best model
+    # without negative damping is added.
     near = [m for m in order if scores[m] <= least + 0.5 * CERTAIN * len(evidences)]
     best = next((m for m in near[:MOST_TRIED] if not is_negative(log, evidences, m)), None)
     return found if best is None else [*found, best]
 
 
 def is_negative(log, evidences, model):
-    """True if the damping of a model is negative in most contacts. A delay d of a stiffness K looks like a damping of
-    -K d: of this, a quarter of the damping of one row is zero."""
+    """Returns True if the damping of a model is negative in most contacts, at the 95 % level. Dampings between -K T / 4
+    and 0 count as zero, with the stiffness K and the sampling period T of the position. A delay d that the model lacks
+    changes its damping by -K d."""
 
     def negative(one):
         if one.dampings[model] >= 0.0:
@@ -247,7 +259,7 @@ def is_negative(log, evidences, model):
     negatives = 0
     for number, one in enumerate(having, start=1):
         negatives += negative(one)
-        # The contacts that are left may no longer make most of them negative, or need not.
+        # Stops if the remaining contacts cannot change the result.
         if 2 * negatives > len(having) or 2 * (negatives + len(having) - number) <= len(having):
             break
     return 2 * negatives > len(having)
@@ -260,9 +272,9 @@ def well_explained(evidences):
 
 
 def with_shared_normal(log, evidences):
-    """The evidences, where contacts use a normal of all contacts if it explains them better: the normal of the contact
-    that a spring explains best, or the normal by the friction in all contacts. Most logs have one flat surface.
-    """
+    """Returns the evidences. A contact uses a normal shared by all contacts if this normal explains it better. The
+    shared normal is the normal of the contact that a spring explains best, or the normal by the friction in all
+    contacts. Most logs have one flat surface."""
     known = [one for one in evidences if one is not None and one.likelihood]
     if log.axes == 1 or len(known) < 2:
         return evidences
@@ -285,7 +297,8 @@ def with_shared_normal(log, evidences):
 
 @dataclass
 class Estimate:
-    """A number with its 95 % interval over several models; the first model is the best."""
+    """A value with its interval. The value belongs to the best model. The interval contains the 95 % intervals of all
+    models that are as good."""
 
     value: float
     low: float
@@ -297,7 +310,8 @@ class Estimate:
 
 
 def numbers_of(log, evidence, models):
-    """Numbers for the JSON of one contact, with intervals over these models; `why`: why it has no stiffness."""
+    """Returns the estimates of one contact, with intervals over these models. If the contact has no stiffness, `why` is
+    the reason."""
     usable = [model for model in models if model in evidence.likelihood]
     unbounded = unbounded_by(evidence, usable)
     if unbounded is not None:
@@ -327,7 +341,7 @@ def numbers_of(log, evidence, models):
     damping = spanned(
         best.damping, fits, lambda fit: (fit.damping, damping_half(log, evidence, fit))
     )
-    # Slow motion determines only B - K d.
+    # Slow motion determines only B - K d, with the damping B, the stiffness K and the delay d.
     slow = spanned(
         best.damping - best.stiffness * best.model.delay * interval,
         fits,
@@ -354,7 +368,9 @@ def numbers_of(log, evidence, models):
 
 
 def unbounded_by(evidence, models):
-    """The best Fit, if one of the models allows a stiffness of zero; else None. Further models then matter no more."""
+    """Returns the best Fit if one of the models allows a stiffness of zero; otherwise None. The search ends at the
+    first model of this kind, because further models cannot bound the stiffness. Returns None if the contact has dry
+    friction."""
     best = None
     for model in models:
         fit = fit_of(evidence.motion, model)
@@ -370,7 +386,7 @@ def unbounded_by(evidence, models):
 
 
 def along_other_normal(evidence, fits):
-    """The fits along the other normal, if there is one."""
+    """Returns the fits of the same models along the other normal, or an empty list without another normal."""
     if evidence.other is None:
         return []
     found = [fit_of(evidence.other, fit.model) for fit in fits]
@@ -378,7 +394,8 @@ def along_other_normal(evidence, fits):
 
 
 def widened(motion, fit, with_sign):
-    """The fit with intervals that contain the distance to the fits of neighbouring velocities."""
+    """Returns the fit with wider intervals. The wider intervals also contain the sampling error and the distance to the
+    fits of neighbours_of()."""
     halves = fit.halves
     near = [fit_of(motion, model, with_sign) for model in neighbours_of(fit.model, motion.speeds)]
     distances = [np.abs(one.values - fit.values) for one in near if one is not None]
@@ -392,15 +409,16 @@ def widened(motion, fit, with_sign):
 
 
 def likely(fits):
-    """Returns the first fit without negative damping, which is an effect of a delay; if there is none, the first
-    fit."""
+    """Returns the first fit with positive stiffness and without negative damping, or the first fit if there is none.
+    Negative damping is an effect of a delay that the model lacks."""
     return next(
         (fit for fit in fits if fit.stiffness > 0.0 and fit.damping + fit.halves[1] >= 0.0), fits[0]
     )
 
 
 def spanned(value, fits, ends):
-    """Returns the Estimate whose interval contains the intervals of all fits."""
+    """Returns the Estimate whose interval contains the intervals of all fits. `ends`: function that returns (value,
+    half-width of the interval) of a fit."""
     pairs = [ends(fit) for fit in fits]
     return Estimate(
         float(value),
@@ -410,8 +428,9 @@ def spanned(value, fits, ends):
 
 
 def noise_share(evidence, fit, interval):
-    """Returns the fraction of the residuals' variance that the resolution of the position may have caused, at most 1.
-    An engine that renders the resolved position leaves no residuals."""
+    """Returns the variance of the residuals divided by the variance that the resolution of the position causes, at most
+    1. The ratio is 0 for an engine that renders the rounded position, because the residuals are then zero.
+    """
     q = evidence.resolution
     if q == 0.0:
         return 0.0
@@ -434,7 +453,8 @@ def damping_half(log, evidence, fit):
     )
     if log.velocity is not None or q == 0.0:
         return half
-    # A difference of two rounded positions has the variance q^2/6 and the covariance q^2/12 with the position.
+    # With the resolution q, a difference of two rounded positions has the variance q^2/6, and the covariance q^2/12
+    # with the position.
     bias = (
         abs(fit.damping) * (q / interval) ** 2 / 6.0 + abs(fit.stiffness) * q**2 / 12.0 / interval
     )
@@ -442,7 +462,8 @@ def damping_half(log, evidence, fit):
 
 
 def dry_friction(motion, best):
-    """Returns True if the sign of the velocity explains much of the residual of spring and damper."""
+    """Returns True if the sign of the velocity explains much of the residual of spring and damper. `best`: Fit without
+    dry friction."""
     if best.explained >= 1.0 - 1e-6:
         return False
     fit = fit_of(motion, best.model, True)
@@ -454,9 +475,9 @@ def dry_friction(motion, best):
 
 
 def combined(estimates):
-    """Returns the weighted median of the estimates, with weights of the inverse squared interval widths. The half-width
-    of its interval is the larger of two values: the median half-width, and the value that follows from the scatter of
-    the estimates."""
+    """Returns (Estimate, index of the estimate nearest to it). Its value is the weighted median of the estimates, with
+    the inverse squared half-widths of the intervals as weights. The half-width of its interval is the larger of two
+    values: the median half-width, and the value that follows from the scatter of the estimates."""
     values = np.array([one.value for one in estimates])
     halves = np.array([max(one.half, 1e-9 * abs(one.value), 1e-300) for one in estimates])
     weights = halves**-2.0
@@ -481,7 +502,7 @@ def weighted_median(values, weights):
 
 
 def stated(log, numbers):
-    """Returns the JSON of one contact's numbers_of()."""
+    """Returns the JSON of one contact. `numbers`: result of numbers_of()."""
     found = {key: numbers[key] for key in ("why", "apparent_stiffness_N_per_m") if key in numbers}
     if "stiffness" not in numbers or "why" in numbers:
         return found
@@ -491,7 +512,8 @@ def stated(log, numbers):
 
 
 def values_of(log, stiffness, damping, slow, numbers):
-    """Returns the JSON of estimates. Delay and damping are None if the log does not determine them."""
+    """Returns the JSON of the estimates. Delay and damping are None if the log does not determine them. `slow`:
+    Estimate of damping minus stiffness times delay [N s/m]."""
     first, last = numbers["delay_rows_interval"]
     is_known = first == last
     found = {
@@ -523,9 +545,9 @@ def values_of(log, stiffness, damping, slow, numbers):
 
 
 def springs_of(log, evidences):
-    """Returns (JSON of each contact, JSON of the log or None). `evidences`: for each contact, None for a contact with
-    too few rows. All contacts share one delay: if one contact excludes a delay, the delay is excluded for all.
-    """
+    """Returns (JSON of each contact, JSON of the log or None). `evidences`: for each contact; None for a contact with
+    too few rows. All contacts share one set of models: as_good() excludes a delay for all contacts by the sum of their
+    log-likelihoods."""
     evidences = with_shared_normal(log, evidences)
     known = [one for one in evidences if one is not None and one.likelihood]
     models = as_good(log, well_explained(known))
@@ -556,15 +578,17 @@ def springs_of(log, evidences):
 
 
 def shows_no_spring(each):
-    """True if more contacts contradict a spring than have a stiffness, or so few have one that the errors of 95 %
-    intervals explain them."""
+    """Returns True if more contacts contradict a spring than have a stiffness. Also returns True if at most the
+    fraction UNSURE of the contacts has a stiffness: so few values can be errors of 95 % intervals.
+    """
     known = [one for one in each if one]
     good = sum("stiffness_N_per_m" in one for one in known)
     return contradicting(each) > good or good <= UNSURE * len(known)
 
 
 def contradicting(each):
-    """Number of contacts that are no spring: most of the force does not follow the motion, or nothing moves."""
+    """Returns the number of contacts that contradict a spring: most of the force does not follow the motion, the force
+    grows along its own direction, or the tool does not move."""
     return sum(
         one.get("explained", 1.0) < EXPLAINED
         or "apparent_stiffness_N_per_m" in one

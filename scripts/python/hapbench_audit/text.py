@@ -1,9 +1,9 @@
-"""An audit as rows of a table (subject, quantity, numbers in words), and the lines below the table."""
+"""Formats an audit as rows of a table (subject, quantity, text), and the lines below the table."""
 from hapbench_import.text_table import counted
 from hapbench_report.markup import rounded_up
 
 
-HAMMERS = 1.0  # threshold of contacts lost per second
+HAMMERS = 1.0  # number of contact losses per second above which the tool hammers
 
 
 def number(value, digits=3, none="-"):
@@ -20,7 +20,7 @@ def millijoules(value, error=None):
 
 
 def rows_of(audit):
-    """(subject, quantity, text) of each number."""
+    """Returns (subject, quantity, text) of each row of the table."""
     return [
         (subject, quantity, text)
         for subject, rows in (
@@ -94,7 +94,7 @@ def energy_rows(energy):
     worst = energy["worst_contact"]
     if worst is None:
         return rows
-    if worst["created_J"] < worst["error_J"]:  # then the mean of the contacts is not known either
+    if worst["created_J"] < worst["error_J"]:  # the mean of the contacts is not known then
         return rows
     return [
         *rows,
@@ -175,7 +175,8 @@ def stiffness_rows(audit):
 
 
 def few_text(known, count):
-    """Says so if less than half of the contacts determine the stiffness."""
+    """Returns a text with the number of contacts that determine the stiffness, if they are less than half; otherwise an
+    empty text."""
     return f", from {known} of {counted(count, 'contact')}" if 1 <= 2 * known < count else ""
 
 
