@@ -246,17 +246,17 @@ def as_dots(svg):
     radii = dict(DISC.findall(svg))
 
     def dots(group):
-        clip, look, uses, name, own = group.groups(default="")
-        if len(set(re.findall(r"#\w+|style=[^/]*", uses))) > (2 if own else 1) or not (look or own):
+        clip, css, uses, name, own = group.groups(default="")
+        if len(set(re.findall(r"#\w+|style=[^/]*", uses))) > (2 if own else 1) or not (css or own):
             return group[0]
-        look = dict(item.split(": ") for item in (look or own).rstrip("; ").split("; "))
-        fill, stroke = look.pop("fill", "#000000"), look.pop("stroke", "none")
+        css = dict(item.split(": ") for item in (css or own).rstrip("; ").split("; "))
+        fill, stroke = css.pop("fill", "#000000"), css.pop("stroke", "none")
         if name not in radii or stroke not in ("none", fill):
             return group[0]
         width = 2 * float(radii[name]) + (
-            float(look.pop("stroke-width", 1)) if stroke == fill else 0
+            float(css.pop("stroke-width", 1)) if stroke == fill else 0
         )
-        opacity = look.get("fill-opacity", look.get("opacity", "1"))
+        opacity = css.get("fill-opacity", css.get("opacity", "1"))
         places = "".join(f"M{x} {y}h0" for x, y in re.findall(r'x="([^"]*)" y="([^"]*)"', uses))
         return (
             f'<path d="{places}"{clip} style="fill: none; stroke: {fill}; stroke-opacity: '

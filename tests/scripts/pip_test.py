@@ -4,7 +4,6 @@ import os
 import shutil
 import sys
 import unittest
-from pathlib import Path
 
 from fixture import ENVIRONMENT, PROGRAM, SOURCE, must, ran, scratch_folder
 
