@@ -6,13 +6,19 @@
 #include <optional>
 #include <vector>
 
+#include "scenarios/input/text_lines.hpp"
 #include "scenarios/program/digits.hpp"
 #include "scenarios/program/limit/text.hpp"
 #include "scenarios/program/run_table.hpp"
 #include "scenarios/program/text.hpp"
 #include "scenarios/program/tune/columns.hpp"
+#include "scenarios/run/diagnosis.hpp"
 
 namespace hapbench {
+std::string low_vibration_rules() {
+  return fmt::format("{}", fmt::join(names_of(diagnosis_rules(/*low_vibration=*/true), &Diagnosed::rule), ", "));
+}
+
 namespace {
 
 std::string limits_text(const Tuning& tuning) {
@@ -21,8 +27,8 @@ std::string limits_text(const Tuning& tuning) {
                   tuning.ranges.damping_ratio ? ", with damping B = 2 zeta sqrt(K m)" : "");
   if (!tuning.question.allow_vibration)
     text +=
-        ". The run at K has low vibration: none of the rules buzz, pop, shake, bounces, chatter and energy applies "
-        "(\"hapbench describe diagnosis\")";
+        fmt::format(". The run at K has low vibration: none of the rules {} applies (\"hapbench describe diagnosis\")",
+                    low_vibration_rules());
   for (const auto& [name, bound] : tuning.question.limits) {
     if (bound.min) text += fmt::format(". At K {} >= {:g}", name, *bound.min);
     if (bound.max) text += fmt::format(". At K {} <= {:g}", name, *bound.max);

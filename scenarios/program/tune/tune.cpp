@@ -139,11 +139,8 @@ void add_tune(CommandLine& line) {
   add_table(command, options.output);
   command.footer(fmt::format(
       "Requirements: the scenario's run and the runs of each family are stable at K and at margin x K, the linear "
-      "limit "
-      "is at least margin x K, every --bound holds at K, and a force is rendered. Unless --allow-vibration is given, "
-      "the "
-      "scenario's run has low vibration: none of the rules buzz, pop, shake, bounces, chatter and energy applies "
-      "(\"hapbench describe diagnosis\").\n\n"
+      "limit is at least margin x K, every --bound holds at K, and a force is rendered. Unless --allow-vibration is "
+      "given, the scenario's run has low vibration: none of the rules {} applies (\"hapbench describe diagnosis\").\n\n"
       "Result: K, zeta and law, the binding constraint, the margins that are left, and the expected metrics with "
       "their errors. {} verification samples between K and margin x K check the choice. If nothing is feasible, tune "
       "names the bound to relax, with a value that a second search confirms, or the run that fails and the option that "
@@ -152,7 +149,7 @@ void add_tune(CommandLine& line) {
       "tune_trials.csv one row per trial. They replace the files of an earlier tune in the same folder.\n\n"
       "Time: seconds to minutes; a search for a law ends after {} runs.\n\n"
       "Exit status: 0 also if nothing is feasible; 2 bad input; 130 stopped by Ctrl-C.",
-      kVerificationSamples + kSamplesNearLimit, kMaxTuneRuns));
+      low_vibration_rules(), kVerificationSamples + kSamplesNearLimit, kMaxTuneRuns));
 }
 
 }  // namespace hapbench
