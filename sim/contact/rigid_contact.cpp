@@ -15,7 +15,7 @@ namespace {
 constexpr double kAtRest = 1e-12;
 constexpr int kMaxMoves = 200;
 /// A half-space is violated if a point is outside by more than this [m].
-constexpr double kRounding = 1e-16;
+constexpr double kPlaneRounding = 1e-16;
 constexpr std::size_t kMaxWorking = 24;
 
 /// Two points of two segments or of a segment and a triangle, as fractions and positions.
@@ -148,7 +148,7 @@ bool RigidContact::project(const Vec3& wanted, Vec3& result) const {
     if ((multipliers.array() < 0.0).any()) return false;
     const Vec3 candidate = wanted + used.transpose() * multipliers;
     for (std::size_t i = 0; i < n; ++i)
-      if (plane(i).normal.dot(candidate) < plane(i).offset - 10.0 * kRounding) return false;
+      if (plane(i).normal.dot(candidate) < plane(i).offset - 10.0 * kPlaneRounding) return false;
     result = candidate;
     return true;
   };
@@ -170,7 +170,7 @@ Vec3 RigidContact::nearest_in_half_spaces(const Vec3& wanted) {
   working_.clear();
   Vec3 result = wanted;
   while (working_.size() < kMaxWorking) {
-    double worst = -kRounding;
+    double worst = -kPlaneRounding;
     std::size_t add = half_spaces_.size();
     for (std::size_t i = 0; i < half_spaces_.size(); ++i) {
       const double room = half_spaces_[i].normal.dot(result) - half_spaces_[i].offset;
