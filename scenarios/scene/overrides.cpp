@@ -58,13 +58,13 @@ void apply_override(Json& json, const std::string& text) {
 }
 
 bool keeps_run_unchanged(std::string_view override) {
-  constexpr std::string_view kSections[] = {"expect", "record", "name", "description", "source"};
+  constexpr std::string_view kWithoutEffect[] = {"expect", "record", "name", "description", "source"};
   // These fields add or remove metrics. `record.every` also selects the steps that the ideal-trajectory metrics
   // use.
   constexpr std::string_view kMeasured[] = {"record.energy", "record.ideal_trajectory", "record.torque",
                                             "record.every"};
   const std::string_view path = overridden_path(override), section = path.substr(0, path.find('.'));
-  return std::ranges::count(kSections, section) > 0 && std::ranges::count(kMeasured, path) == 0;
+  return std::ranges::count(kWithoutEffect, section) > 0 && std::ranges::count(kMeasured, path) == 0;
 }
 
 void relax_expectations(Json& expect) {
