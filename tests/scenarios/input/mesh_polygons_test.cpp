@@ -81,7 +81,7 @@ TEST(MeshPolygons, MayHaveCornersOnALine) {
   for (int start = 0; start < 6; ++start) {
     std::vector<std::string> faces = {"4 5 7 6", "0 4 6 2", "1 3 7 5"};
     for (Words* face : {&bottom, &front, &back}) {
-      std::ranges::rotate(*face, face->begin() + 1);
+      std::rotate(face->begin(), face->begin() + 1, face->end());
       faces.push_back(fmt::format("{}", fmt::join(*face, " ")));
     }
     for (const auto& [name, text] : boxes(faces, more)) {
