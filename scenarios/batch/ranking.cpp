@@ -51,8 +51,14 @@ RankingEntry ranking_entry(const Ranking& ranking, std::size_t s, std::size_t a,
   for (const std::size_t k : ranking.common[s]) {
     const Metric* metric = find_metric(ranking.runs[first + k].metrics, entry.metric);
     if (metric == nullptr || ranking.failed[first + k]) continue;
-    if (const auto value = number_of(metric->value)) numbers.push_back(*value);
-    if (const auto tolerance = metric->tolerance()) tolerances.push_back(*tolerance);
+    const auto value = number_of(metric->value);
+    if (value) numbers.push_back(*value);
+    if (const auto tolerance = metric->tolerance(); tolerance && !ranking.estimated_error)
+      tolerances.push_back(*tolerance);
+    if (!value || !ranking.estimated_error) continue;
+    const auto error = ranking.estimated_error(first + k, entry.metric);
+    entry.has_known_error = entry.has_known_error && error;
+    if (error) tolerances.push_back(*error);
   }
   if (!numbers.empty()) entry.mean = mean_of(numbers);
   if (!tolerances.empty()) entry.tolerance = mean_of(tolerances);
@@ -83,7 +89,7 @@ std::optional<std::uint64_t> rank_of(const Ranking& ranking, std::size_t s, std:
 }
 
 /// Removes the ranks in scenario s for metric m that the errors do not allow: the rank of an algorithm whose mean is
-/// only bounded, and all ranks if they are equal.
+/// only bounded or has an unknown error, and all ranks if they are equal.
 void remove_unfounded_ranks(Ranking& ranking, std::size_t s, std::size_t m) {
   std::set<std::uint64_t> ranks;
   const std::size_t first = s * ranking.algorithms.size();
@@ -92,7 +98,7 @@ void remove_unfounded_ranks(Ranking& ranking, std::size_t s, std::size_t m) {
   };
   for (std::size_t a = 0; a < ranking.algorithms.size(); ++a) {
     RankingEntry& own = entry(a);
-    if (own.failed == 0 && is_only_bounded({own.mean, own.tolerance})) own.rank.reset();
+    if (own.failed == 0 && (!own.has_known_error || is_only_bounded({own.mean, own.tolerance}))) own.rank.reset();
     if (own.rank) ranks.insert(*own.rank);
   }
   for (std::size_t a = 0; a < ranking.algorithms.size() && ranks.size() < 2; ++a) entry(a).rank.reset();
@@ -164,10 +170,11 @@ bool have_reference(std::span<const Result> runs) {
 }
 
 Ranking rank_comparison(const Comparison& comparison, std::span<const Result> reports,
-                        const std::vector<std::string>& metrics) {
+                        const std::vector<std::string>& metrics, const EstimatedError& estimated_error) {
   const std::span<const std::string_view> defaults =
       have_reference(reports) ? std::span<const std::string_view>(kFidelityMetrics) : kDefaultMetrics;
   Ranking ranking{comparison.names, comparison.algorithms, metrics, {}, comparison.seeds, reports, {}};
+  ranking.estimated_error = estimated_error;
   if (metrics.empty()) ranking.metrics.assign(defaults.begin(), defaults.end());
   // Find out for each metric whether smaller or larger values are better.
   for (const std::string& name : ranking.metrics) {

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -29,11 +30,12 @@ struct RankingEntry {
   std::optional<double> spread = {};
   /// Error of the mean: mean of the errors of the runs' numbers; empty if no error is known.
   std::optional<double> tolerance = {};
+  bool has_known_error = true;  ///< false if Ranking::estimated_error has no value for one of the runs
   /// 1 + the number of better algorithms. Algorithms without failures come first, in the order of their means
   /// (is_less()). Algorithms without failures and without a mean come after them: for example, a tool that is thrown
   /// out at once has no settled force. Algorithms with failures follow, in the order of their number of failed seeds.
   /// Empty if no algorithm has the metric, if neither smaller nor larger values are better, if only a bound of the mean
-  /// is known (is_only_bounded()), or if all algorithms would have the same rank.
+  /// is known (is_only_bounded()) or its error is unknown, or if all algorithms would have the same rank.
   std::optional<std::uint64_t> rank = {};
   std::uint64_t common_seeds = 1;
   Better better = Better::less;
@@ -48,6 +50,9 @@ struct LawRankingEntry {
   std::vector<std::string> fails;   ///< scenarios in which it failed for at least one seed
 };
 
+/// Returns the estimated error of a metric of a run, by the index of the run; an empty value if it is unknown.
+using EstimatedError = std::function<std::optional<double>(std::size_t run, const std::string& metric)>;
+
 /// The runs of a comparison and their ranking. rank() computes all members from `depends_on_seed` on.
 struct Ranking {
   std::vector<std::string> scenarios, algorithms, metrics;
@@ -58,6 +63,8 @@ struct Ranking {
   /// For each scenario: true if the reference force is the force of rigid contact. The algorithm kSharesReference
   /// renders by the same constraints, so that its fidelity metrics get no rank.
   std::vector<bool> is_rigid_reference = {};
+  /// Errors of the metrics; empty: the errors are the tolerances of the metrics.
+  EstimatedError estimated_error = {};
 
   std::vector<bool> depends_on_seed = {};  ///< for each scenario: true if runs with different seeds differ
   /// For each scenario, the seeds over which means are computed. These are the seeds for which all algorithms
@@ -102,8 +109,9 @@ bool have_reference(std::span<const Result> runs);
 
 /// Ranks the algorithms of a finished comparison by `metrics`, which are names of summary.json. Without
 /// metrics, uses kFidelityMetrics if every run has a reference force, else kDefaultMetrics. A run has failed if
-/// its outcome is a failure, or is not among the outcomes that its scenario expects.
+/// its outcome is a failure, or is not among the outcomes that its scenario expects. With `estimated_error`, the ranks
+/// also respect these errors.
 Ranking rank_comparison(const Comparison& comparison, std::span<const Result> reports,
-                        const std::vector<std::string>& metrics);
+                        const std::vector<std::string>& metrics, const EstimatedError& estimated_error = {});
 
 }  // namespace hapbench

@@ -176,7 +176,16 @@ int compare(const CompareOptions& given, ProgramContext& context) {
   const std::vector<Result> reports = run_all(
       comparison.scenes, timed, [&](std::size_t run) { return out / comparison.folder(run); }, comparison.length);
   // Rank the algorithms and write the results of all runs.
-  const Ranking league = rank_comparison(comparison, reports, ranks ? options.metrics : printed_metrics(reports));
+  // With --errors, first repeat the runs with finer steps and spacings: their errors decide which ranks are equal.
+  std::optional<FinerRuns> finer;
+  if (options.errors) finer.emplace(comparison, reports, jobs);
+  EstimatedError estimated_error;
+  if (finer)
+    estimated_error = [&finer](std::size_t run, const std::string& metric) {
+      return finer->known_error(run, metric).sum();
+    };
+  const Ranking league =
+      rank_comparison(comparison, reports, ranks ? options.metrics : printed_metrics(reports), estimated_error);
   write_runs(comparison, reports, context, report);
   report.json() = summaries_json(comparison, reports, ranks);
   if (ranks || options.errors) report.json() = {{"runs", std::move(report.json())}};
@@ -185,12 +194,8 @@ int compare(const CompareOptions& given, ProgramContext& context) {
   } else {
     report_runs(reports, league, options.errors, layout, report);
   }
-  if (options.errors) {
-    // Repeat the runs with finer steps and spacings for the errors of their metrics.
-    const FinerRuns finer(comparison, reports, jobs);
-    for (std::size_t s = 0; s < league.scenarios.size(); ++s)
-      report_errors(league, finer, s, ranks || layout.in_full(), report, layout);
-  }
+  for (std::size_t s = 0; finer && s < league.scenarios.size(); ++s)
+    report_errors(league, *finer, s, ranks || layout.in_full(), report, layout);
   if (options.time) report_times(comparison, reports, jobs, layout, report);
   report.say(fmt::format("\nresults in {}\n", out.string()));
   judge(comparison, reports, report);
@@ -207,12 +212,12 @@ void add_compare(CommandLine& line) {
               "scenario files, names of bundled scenarios, or of groups of scenarios");
   add_algorithms(command, options.question.algorithms, "all");
   command.add("--seeds <n>", options.question.seeds,
-              "repeat each run n times, repetition k with the scenario's seed + k (default: 1)",
+              "repeat each run n times, with the scenario's seed, seed + 1, and so on (default: 1)",
               {.range = {{1, 10'000}}});
   command.add(
       "--jitter <m>", options.question.jitter,
-      "shift the start by a random vector of this length [m], the same for all laws; needed for a spread over seeds "
-      "if nothing else is random");
+      "shift the start by this length [m], in one random direction per seed for all laws; needed for a spread over "
+      "seeds if nothing else is random");
   command.add("--by <metric,...>", options.metrics,
               "metrics of the ranking, or time; smaller is better, except for success rates (default: " +
                   fmt::format("{}", fmt::join(kDefaultMetrics, ", ")) +
@@ -223,28 +228,28 @@ void add_compare(CommandLine& line) {
               "render the log of a haptic loop with each law instead of the scenario's motion (scenarios/LOOP.md)");
   command.flag(
       "--errors", options.errors,
-      "repeat all runs at half and a quarter of the time step and of the point spacing, to print the errors of the "
-      "metrics and the order that is significant at these errors; about 9 times the work");
+      "repeat all runs at half and a quarter of the time step and of the point spacing, to print the error of each "
+      "metric and which differences between laws are larger than these errors; about 9 times the work");
   command.flag(
       "--time", options.time,
-      "also measure the processor time of a step with each law, and rank the laws by it; one run at a time, without "
-      "observers, the smallest of five repetitions; writes comparison_timing.csv");
+      "also measure the processor time of a step with each law (smallest of five repetitions, without metrics and "
+      "files, one run at a time), and rank the laws by it (like --by time); writes comparison_timing.csv");
   add_table(command, options.output);
-  command.flag(
-      "--full", options.full,
-      "make all steps of runs that fail; otherwise such a run ends when it has failed for good, and its metrics "
-      "are empty");
+  command.flag("--full", options.full,
+               "make all steps of runs that otherwise end early and have empty metrics (see Failed run)");
   command.footer(
       "Ranking: printed for several scenarios, for several seeds, or with --by. The rank of a law is 1 + the number "
-      "of laws whose mean is better by more than 0.1 % and by more than the errors of both; the spread over seeds does "
-      "not count. Laws with a failed run rank last.\n\n"
+      "of laws whose mean is better by more than 0.1 % and by more than the sum of the errors of both means (the "
+      "errors that the definitions of the metrics allow); the spread over seeds does not count. Laws with a failed "
+      "run rank last.\n\n"
       "Failed run: it diverges, passes through the surface, loses contact or never touches, sticks, is not dragged "
-      "along, or does not end as its scenario expects. It ends when it has failed for good (hapbench describe \"early "
-      "end\").\n\n"
+      "along, or does not end as its scenario expects. A run that diverges, passes through the surface or leaves it "
+      "for good ends early, at this moment, and its metrics are empty (hapbench describe \"early end\").\n\n"
       "Files: comparison.csv (one row per run), ranking.csv (one row per scenario, law and metric), and each run in "
-      "OUT/[SCENARIO/]ALGORITHM[/seed_K]; the parts in brackets exist if there are several. An earlier comparison of "
-      "the same scenarios in the folder is removed, other files stay.\n\n"
-      "Exit status: 0 also if laws fail, except: 3 if a run diverges and its scenario does not expect that.");
+      "OUT/[SCENARIO/]ALGORITHM[/seed_K], with SCENARIO for several scenarios and seed_K for several seeds. An "
+      "earlier comparison of the same scenarios in the folder is removed, other files stay.\n\n"
+      "Exit status: 3 if a run diverges and its scenario does not expect that; otherwise 0, also if laws fail in "
+      "another way; 2 bad input.");
 }
 
 }  // namespace hapbench

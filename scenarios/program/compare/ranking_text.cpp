@@ -159,10 +159,11 @@ void report_ranking_text(const Ranking& league, const Layout& layout, Report& re
   report.say("\n");
   if (is_ranked(league))
     report.say(layout.wrapped(
-        std::string(
-            "rank: 1 is best; algorithms share a rank if their means differ by at most 0.1 % or the errors of the "
-            "metric; no rank (-): only a bound of the number is known (<=), or all ranks would be equal") +
-            (league.seeds > 1 ? "; the spread over the seeds does not count" : ""),
+        fmt::format("rank: 1 is best; algorithms share a rank if their means differ by at most 0.1 % or by at most the "
+                    "sum of their errors{}; no rank (-): the error is not smaller than the number (<=) or unknown, or "
+                    "all ranks would be equal{}",
+                    league.estimated_error ? ", which are estimated below" : "",
+                    league.seeds > 1 ? "; the spread over the seeds does not count" : ""),
         0));
   report.say(unranked_text(league, layout));
   report.say(verdict(league, report.folder().string(), layout));

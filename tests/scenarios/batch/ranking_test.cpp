@@ -12,8 +12,9 @@ namespace {
 using Values = std::vector<std::optional<double>>;
 
 /// Ranks one scene and one metric, with a value for each algorithm and seed. A negative value stands for a run that
-/// diverged. The error of each number is `error`.
-Ranking rank_comparison(const Values& values, Better better = Better::less, std::size_t seeds = 1, double error = 0.0) {
+/// diverged. The error of each number is `error`, unless `estimated` returns one.
+Ranking rank_comparison(const Values& values, Better better = Better::less, std::size_t seeds = 1, double error = 0.0,
+                        const EstimatedError& estimated = {}) {
   Ranking league{{"scene"}, {}, {"force_max_N"}, {better}, seeds, {}, {}};
   for (std::size_t a = 0; a < values.size() / seeds; ++a) league.algorithms.push_back("law_" + std::to_string(a));
   std::vector<Result> runs;
@@ -25,6 +26,7 @@ Ranking rank_comparison(const Values& values, Better better = Better::less, std:
     Section(run.metrics, "").metric("force_max_N", "N", "", value, better).within(0.0, error);
   }
   league.runs = runs;
+  league.estimated_error = estimated;
   league.rank();
   league.runs = {};
   return league;
@@ -63,6 +65,19 @@ std::vector<std::size_t> ranks(const Ranking& league) {
 }
 
 using Ranks = std::vector<std::size_t>;
+
+/// The ranks of `compare --errors` must agree with the significant order that it prints.
+TEST(Ranking, RespectsEstimatedErrors) {
+  const auto ranks_with = [](std::vector<std::optional<double>> errors) {
+    return ranks(rank_comparison({1.0, 1.3, 1.5}, Better::less, 1, 0.0,
+                                 [errors](std::size_t run, const std::string&) { return errors[run]; }));
+  };
+  EXPECT_EQ(ranks_with({0.0, 0.0, 0.0}), (Ranks{1, 2, 3}));
+  EXPECT_EQ(ranks_with({0.2, 0.2, 0.2}), (Ranks{1, 1, 2}));
+  EXPECT_EQ(ranks_with({0.3, 0.3, 0.3}), (Ranks{0, 0, 0}));
+  EXPECT_EQ(ranks_with({0.0, 0.0, std::nullopt}), (Ranks{1, 2, 0})) << "an unknown error";
+  EXPECT_EQ(ranks_with({0.0, 2.0, 0.0}), (Ranks{1, 0, 2})) << "only a bound of the second is known";
+}
 
 TEST(Ranking, RanksByMeansThenThoseWithoutOneThenByFailedSeeds) {
   constexpr std::nullopt_t kNone = std::nullopt;
