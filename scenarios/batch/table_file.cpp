@@ -71,10 +71,10 @@ void TableFile::resume(const Keep& keep) {
   const bool is_part = fs::exists(part_, error);
   if (!is_part && !fs::exists(title_.file, error)) return;
   if (!has_same_definition()) {
-    fail_in_file(
-        is_part ? part_ : title_.file,
-        "is not the table of this sweep; --resume needs the same scenario, --set, --vary, --shard, named files, "
-        "plugins and program; without --resume the sweep begins anew");
+    fail_in_file(is_part ? part_ : title_.file,
+                 fmt::format("is not the table of this sweep; --resume needs the same scenario, --set, --vary, "
+                             "--shard, named files, plugins and program; allowed: another --out, or {}",
+                             is_part ? "to begin anew without this file" : "no --resume, which replaces this file"));
   }
   if (!is_part) {
     write_file_atomically(about_part_, json_text(title_.about));
