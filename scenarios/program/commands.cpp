@@ -78,7 +78,7 @@ constexpr CommandGuide kCommands[] = {
      "scenarios/README.md, section \"Commands\""},
     {"look", "audit", "report energy, vibration and stiffness in a log of any engine", nullptr},
     {"look", "plot", "draw results as a picture", nullptr},
-    {"look", "report", "write a page with replay, or compare two result folders", nullptr}};
+    {"look", "report", "play back runs on a web page, or compare two folders", nullptr}};
 
 }  // namespace
 

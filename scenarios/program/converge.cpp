@@ -379,40 +379,41 @@ void add_converge(CommandLine& line) {
               {.required = true});
   command.add("--metric <name,...>", options.metrics,
               fmt::format("metrics of summary.json (default: {})", kDefaultMetrics[0]), {.comma_separated = true});
-  command.add(
-      "--vary <field>", options.field,
-      "field to refine (default: time.step_s), such as environment.spacing_m (distance of surface points), "
-      "environment.grid_m or tool.grid_m; any positive number that need not be an integer and whose error falls with it");
+  command.add("--vary <field>", options.field,
+              "field to refine (default: time.step_s), such as environment.spacing_m (distance of surface points), "
+              "environment.grid_m or tool.grid_m; any real number above 0 whose decrease reduces the error");
   command.add("--over <field=values>", options.over,
               "print run time against error for each value of these fields, such as integrator.type=all or "
               "rendering.algorithm=mean,proxy, at each time step; repeatable",
               {.several = true});
   command.add("--levels <n>", options.levels,
-              "number of levels; the coarsest has the scenario's value (default: 5; with --over: 4)",
+              "number of levels, from the scenario's own value to finer values (default: 5; with --over: 4)",
               {.range = {{3, 9}}});
   command.add("--ratio <number>", options.ratio,
               "ratio of the field between two levels (default: 2); an integer for the time step");
   command.add(
       "--to <error>", options.to,
-      "also print the coarsest level with a relative error below this, such as 1%, and its run time; with --over: "
-      "print the cheapest setting whose error of the tip's position is below this [m] (default: 1e-6)");
+      "also print the coarsest level with a relative error below this (1% or 0.01) and its run time; with --over "
+      "(default: 1e-6): the cheapest setting whose error of the tip's position [m] is below this");
   add_common(command, options, "converge_NAME");
   add_table(command, options.output);
   command.footer(
-      "Result: one row per level with its error; the first row is your scenario's own setting. Below: observed order, "
-      "extrapolated value, and grid convergence index (Roache), the relative error of the finest level.\n\n"
-      "No order: if the contacts differ between levels or the differences do not shrink regularly, the text names the "
-      "reason. Take the range of the finest levels as the answer, printed as \"the last levels give A ... B\".\n\n"
+      "Result: one row per level with its error; the first row is your scenario's own setting. Below: the observed "
+      "order, the extrapolated value and the relative error of the finest level (the grid convergence index of "
+      "Roache).\n\n"
+      "No order: if the contacts differ between levels or the differences do not shrink regularly, the text names "
+      "the reason. Take the range of the finest levels as the answer, printed as \"the last levels give A ... B\".\n\n"
       "Files: converge.csv (one row per metric: order, extrapolated value, range), converge_levels.csv (one row per "
-      "metric and level: value, error_estimate), converge_levels_timing.csv (run times). They replace earlier files."
-      "\n\n"
-      "Run time against error: --over compares each setting with the converged solution, which another integrator "
-      "computes with a step at least 16 times smaller. Errors are rms differences of the tip's position and of the "
-      "force over the run. Each law has a solution of its own. Files: convergence.csv (errors) and "
-      "convergence_timing.csv. In a scene with a reference_force (hapbench new fidelity), it compares the laws with "
+      "metric and level: value, error_estimate), converge_levels_timing.csv (run times). They replace earlier "
+      "files.\n\n"
+      "Run time against error: --over compares each setting with a converged solution, computed by an integrator "
+      "other than the setting's with a step at least 16 times smaller. Errors are rms differences of the tip's "
+      "position and of the force over the run. Each law has its own converged solution. Files: convergence.csv "
+      "(errors) and convergence_timing.csv.\n\n"
+      "Reference force: in a scene with a reference_force (hapbench new fidelity), --over compares the laws with "
       "this force instead: direction and size of the error, and median and 99.9th percentile of the time of a step. "
       "Files: convergence_model.csv and convergence_model_timing.csv.\n\n"
-      "Time: with the default levels of the time step, about 31 times one run.");
+      "Time: all default levels of the time step together take about 31 times as long as one run.");
 }
 
 }  // namespace hapbench

@@ -91,7 +91,8 @@ std::string front_text(const Layout& layout) {
          "first   hapbench run drag_molar\n"
          "        hapbench new drag --from my.stl --extent 12mm\n"
          "        hapbench describe\n\n"
-         "\"hapbench COMMAND --help\" explains a command, \"hapbench --help\" shared options.\n";
+         "\"hapbench COMMAND --help\" explains a command and lists its options.\n"
+         "\"hapbench --help\" explains the options that several commands share.\n";
 }
 
 std::string program_help(const Layout& layout) {
@@ -105,7 +106,8 @@ std::string program_help(const Layout& layout) {
                          kHelpColumn);
   return text + "\n" + bold(stdout, "Exit status:") + "\n" + layout.entry("0", "success", 2, 8) +
          layout.entry("1", "internal fault", 2, 8) + layout.entry("2", "bad input or usage", 2, 8) +
-         layout.entry("3", "a run did not end as its scenario expects; each help lists other causes", 2, 8) +
+         layout.entry("3", "a run did not end as its scenario expects, or the cause that the command's help names", 2,
+                      8) +
          layout.entry("130", "stopped by Ctrl-C", 2, 8) + "\nManual: scenarios/README.md, section \"Commands\"\n";
 }
 

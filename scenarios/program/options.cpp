@@ -13,7 +13,7 @@ namespace {
 constexpr SharedOption kSharedOptions[] = {
     {"--set", "<path=value>", "override a field of every scenario, such as time.steps=100; repeatable"},
     {"--out", "<dir>", "folder of the results (default: results/out/NAME, in the current folder)"},
-    {"--jobs", "<n>", "number of parallel runs; results do not depend on it (default: one per thread)"},
+    {"--jobs", "<n>", "number of threads; results do not depend on it (default: all threads)"},
     {"--seed", "<n>", "seed of the random numbers (default: 1)"},
     {"--module", "<file.so>",
      "load a compiled force law or source of contacts; HAPBENCH_MODULE_PATH names folders of such files"},

@@ -36,8 +36,12 @@ struct ImportKind {
 };
 
 const ImportKind kImportKinds[] = {
-    {"stroke", "a recorded tool motion, with or without forces, becomes a stroke to play back", "hapbench_import"},
-    {"device", "a log of time, commanded force and position of a handle becomes a device file", "hapbench_identify"}};
+    {"stroke", "a recorded tool motion, with or without forces, becomes a stroke, which scenarios play back",
+     "hapbench_import"},
+    {"device",
+     "a log of time, commanded force and position of a handle becomes LOG_device.json, for --device of limit, tune "
+     "and audit",
+     "hapbench_identify"}};
 
 /// Returns a shell command that replaces the shell with the launcher of Python packages. `package`: the
 /// package's name and its first arguments.
@@ -182,8 +186,9 @@ int run_import(const ProgramArguments& given, ProgramContext& context) {
         "       hapbench import device [OPTIONS] [<log.csv>]\n\n" +
         kinds + "\n" +
         layout.wrapped(
-            "Both read any column names and units: see --columns and --scale in their help. A file with invalid rows is "
-            "refused, and nothing is written; see --skip-bad-rows.",
+            "Both read any column names and units with --columns and --scale. A file with invalid rows is refused, and "
+            "nothing is written; --skip-bad-rows leaves such rows out. A stroke is also refused for jumps or gaps: see "
+            "its help.",
             0) +
         "\nExamples:\n"
         "  hapbench import stroke log.txt --preset hapi\n"

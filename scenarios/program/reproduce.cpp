@@ -236,9 +236,9 @@ void add_reproduce(CommandLine& line) {
   command.add("--only <id,...>", options.only, "judge only these claims; \"hapbench describe claims\" lists the ids",
               {.comma_separated = true});
   add_out(command, options.out, "reproduce");
-  command.add(
-      "--ledger <file.json>", options.ledger,
-      "file of the ledger, with a Markdown table next to it (default: OUT/claims.json; with --only, no ledger)");
+  command.add("--ledger <file.json>", options.ledger,
+              "file of the ledger, with a Markdown table next to it (default: OUT/claims.json; with --only: by default "
+              "none)");
   command.flag("--rerun", options.rerun, "repeat all runs, also those whose results are current");
   add_jobs(command, options.jobs);
   add_table(command, options.output);
@@ -247,15 +247,16 @@ void add_reproduce(CommandLine& line) {
   command.add("--sensitivity <file.json>", options.sensitivity,
               "judge claims with one assumption at a time at another value, and add the verdicts to this record");
   command.footer(
-      "Files: claims.json, claims.md and claim_pages.md (the ledger: claim, published and measured value, verdict) and the "
-      "runs in OUT/thesis.\n\n"
-      "Assumptions: the thesis leaves them open; \"hapbench describe assumptions\" lists them. --assumptions prints, "
-      "for each set, the verdicts and numbers of the claims that it can change, and what moved. --sensitivity "
-      "continues an interrupted record; results/reference/sensitivity.json is the record of the ledger.\n\n"
-      "Earlier results: runs of the same scenario by the same build are used again, unless the build has uncommitted "
-      "changes; a ledger is replaced.\n\n"
+      "Files: claims.json, claims.md and claim_pages.md (the ledger: claim, published and measured value, verdict) "
+      "and the runs in OUT/thesis.\n\n"
+      "Assumptions: the thesis leaves them open; \"hapbench describe assumptions\" lists them. --assumptions "
+      "prints, for each set, the verdicts and numbers of the claims that the set can change, and the recorded "
+      "verdicts that differ. --sensitivity continues an interrupted record; every ledger uses the record "
+      "results/reference/sensitivity.json.\n\n"
+      "Earlier results: runs in OUT/thesis of the same scenario by the same build are used again, unless the build "
+      "has uncommitted changes; a ledger is replaced.\n\n"
       "Time: about 5 minutes on two processors; a single claim takes seconds to a minute. An assumption set that "
-      "changes all claims takes as long; a whole record takes about an hour of one processor.\n\n"
+      "changes all claims also takes about 5 minutes; a whole record takes about an hour of one processor.\n\n"
       "Exit status: 0 whatever the verdicts are; 3 if a run did not end as its scenario expects; 130 stopped by "
       "Ctrl-C.");
 }

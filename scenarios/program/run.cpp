@@ -207,8 +207,10 @@ void add_run(CommandLine& line) {
                    "nothing of the unfinished run is written; finished runs are kept");
   command.add("scenarios <scenario>...", options.scenarios,
               "scenario files, names of bundled scenarios, or of groups of scenarios", {.required = true});
-  command.add("--out <dir>", options.out,
-              "folder of the results (default: results/out/NAME); several scenarios get a subfolder each");
+  command.add(
+      "--out <dir>", options.out,
+      "folder of the results (default: results/out/NAME, NAME of the scenario's file); several scenarios write to "
+      "DIR/NAME");
   add_overrides(command, options.overrides);
   command.add("--replay <log.csv>", options.replay,
               "render the log of a haptic loop (scenarios/LOOP.md) instead of the scenario's motion, and compare every "
@@ -219,20 +221,22 @@ void add_run(CommandLine& line) {
       "1/2048 s");
   add_table(command, options.output);
   command.flag("--no-skip", options.no_skip,
-               "disable all shortcuts of the computation; results are the same, only slower: for checks");
+               "disable all shortcuts of the computation, for checks; results are the same, but the run takes longer");
   command.footer(
       "Files: trajectory.csv (pose, velocity and forces at every step), summary.json (outcome, metrics, warnings, "
       "diagnosis), scenario.effective.json (all fields; repeats the run), columns.json (units and meanings). "
       "\"hapbench plot FOLDER\" draws them.\n\n"
-      "Diagnosis: below the table, each rule that applies, with its number and what to try. Of several scenarios, only "
-      "the names of the rules are printed.\n\n"
-      "Expectations: a --set that changes the run lifts the bounds that the scenario sets on metrics; the outcome stays "
-      "checked.\n\n"
-      "Earlier results: a run in the same folder is replaced; other files stay. Use --out to keep both.\n\n"
-      "Replay: give the scenario with which the log was recorded. With another scenario the forces may differ, which a "
-      "note says. replay.csv is the log with the new outputs, in results/out/NAME_replay.\n\n"
-      "Exit status: 3 if a run does not end as its scenario expects, or if a replay with the recorded scenario gives "
-      "other outputs; the results are written all the same.");
+      "Diagnosis: each rule that applies is printed with its value and what to try, and is also in summary.json. "
+      "For several scenarios, only the names of the rules are printed.\n\n"
+      "Expectations: without the field expect, the outcomes completes, leaves_hole and tool_horizontal are "
+      "expected. A --set that changes the run adds these outcomes to the field's outcomes, and the field's bounds "
+      "on metrics are not checked.\n\n"
+      "Earlier results: all files of an earlier run in the same folder are replaced; other files stay. To keep both "
+      "runs, give the new run another --out.\n\n"
+      "Replay: give the scenario with which the log was recorded. With another scenario the forces may differ, "
+      "which a note says. The new outputs are in results/out/NAME_replay/replay.csv, a log like the recorded one.\n\n"
+      "Exit status: 3 if a run does not end as its scenario expects, or if a replay with the scenario of the "
+      "recording gives other outputs; the results are written all the same.");
 }
 
 }  // namespace hapbench

@@ -63,7 +63,8 @@ std::vector<DescribedTable> stress_tables() {
 
 void add_stress(CommandLine& line) {
   auto [command, options] = line.command(
-      "stress", "Pass random degenerate contact sets to every force law and count invalid forces.", stress);
+      "stress", "Pass random degenerate contact sets to every force law, also loaded ones, and count invalid forces.",
+      stress);
   command.add("--count <n>", options.count, "number of contact sets (default: 100000)",
               {.range = {{1, 1'000'000'000}}});
   command.add("--seed <n>", options.seed, "seed of the random numbers (default: 1)",
@@ -72,11 +73,13 @@ void add_stress(CommandLine& line) {
   add_out(command, options.out, "stress");
   add_table(command, options.output);
   command.footer(
-      "Invalid: a force that is infinite or not a number, or a force larger than the proven bound of the law. Contact "
-      "sets include zero normals, coincident points and opposite gradients.\n\n"
-      "Files: stress.csv, one row per law with its counts; replaces an earlier one.\n\n"
+      "Invalid: a force that is infinite or not a number, or a force larger than the proven bound of the law, if it "
+      "has one. Contact sets include zero normals, coincident points and opposite gradients.\n\n"
+      "Result: a law passes if its columns \"non-finite\" and \"out of bound\" (stress.csv: non_finite, "
+      "out_of_bound) are 0.\n\n"
+      "Files: stress.csv has one row per law; it replaces an earlier one.\n\n"
       "Time: about 5 s on two processors for the default number of sets.\n\n"
-      "Exit status: 3 if a law returns an invalid force, else 0.");
+      "Exit status: 0 if all laws pass, 3 if a law returns an invalid force.");
 }
 
 }  // namespace hapbench

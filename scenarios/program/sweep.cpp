@@ -394,8 +394,10 @@ void add_sweep(CommandLine& line) {
   auto [command, options] =
       line.command("sweep", "Run a scenario once for each combination of field values, or for a random sample.", sweep,
                    "the same command with --resume continues");
-  command.add("scenario <scenario>", options.scenario,
-              "scenario file or name of a bundled scenario; or the folder of a finished sweep, to print it again");
+  command.add(
+      "scenario <scenario>", options.scenario,
+      "scenario file or name of a bundled scenario; or the folder of a finished sweep (also of all its shards), to "
+      "print it again");
   command.add(
       "--vary <field=values>", options.vary,
       "values of a field: a:b:n (n numbers from a to b), a:b:n:log (in equal ratios), or v,w,... (numbers, names or "
@@ -415,20 +417,20 @@ void add_sweep(CommandLine& line) {
       "must hold",
       {.several = true});
   add_common(command, options, "sweep_NAME");
-  command.flag("--resume", options.resume,
-               "continue an interrupted sweep with the same options, and repeat runs that could not be computed");
-  command.flag("--keep-runs", options.keep_runs, "also write the files of each run into OUT/runs/INDEX");
   command.flag(
-      "--full", options.full,
-      "make all steps of runs that fail; otherwise such a run ends when it has failed for good, and its metrics "
-      "are empty");
+      "--resume", options.resume,
+      "continue an interrupted sweep: repeat its command with --resume added; also repeats the runs that could not "
+      "be computed");
+  command.flag("--keep-runs", options.keep_runs, "also write the files of each run into OUT/runs/INDEX");
+  command.flag("--full", options.full,
+               "make all steps of runs that otherwise end early and have empty metrics (see Failed runs)");
   command.flag("--time", options.time,
-               "also measure the processor time of each run, without observers and one run at a time; writes "
+               "also measure the processor time of each run, without metrics and files, one run at a time; writes "
                "sweep_timing.csv");
   command.add("--row <index>", options.row, "row of sweep.csv for --print, from 0");
   command.flag("--print", options.print,
-               "run nothing, but print the \"hapbench run\" command that repeats one row; give the scenario and the "
-               "options of the sweep too");
+               "print the \"hapbench run\" command that repeats one row, and run nothing: add --print and --row to the "
+               "command of the sweep");
   command.needs("--row", "--print");
   command.needs("--print", "--row");
   command.add(
@@ -439,13 +441,15 @@ void add_sweep(CommandLine& line) {
       "metrics, state_hash. A run that could not be computed has the outcome \"error\". Finished rows are kept in "
       "sweep.csv.part until the sweep ends.\n\n"
       "Fields: rendering.algorithm=all tries every law; scenario=v,w,... varies the scenario, without <scenario>.\n\n"
-      "Earlier results: a finished sweep in the folder is replaced. An interrupted one is not: use --resume or "
-      "another --out.\n\n"
-      "Failed runs: a run that goes through the surface, diverges or leaves for good ends at this moment "
-      "(hapbench describe \"early end\"). Such runs are counted; the exit status is still 0.\n\n"
-      "Exit status: 0 success, 1 a run could not be computed, 2 bad input, 3 a run did not meet the field expect of "
-      "its scenario (an override that changes the run lifts it), 130 stopped by Ctrl-C; running runs are finished "
-      "first.");
+      "Earlier results: a finished sweep in the folder is replaced. If the folder has finished rows of an "
+      "interrupted sweep, a command without --resume is refused with exit status 2, and the rows stay: use --resume "
+      "or another --out.\n\n"
+      "Failed runs: a run that goes through the surface, diverges or leaves it for good ends at this moment "
+      "(hapbench describe \"early end\"). Its row has the outcome, such as went_through, the time ended_at_s and "
+      "empty metrics. Failed runs alone do not change the exit status.\n\n"
+      "Exit status: 0 success, 1 a run could not be computed, 2 bad input, 3 a run does not meet the field expect, "
+      "130 stopped by Ctrl-C, after the current runs are finished. The field expect counts only if neither --set "
+      "nor --vary changes the run, or if one of them sets expect itself.");
 }
 
 }  // namespace hapbench

@@ -239,14 +239,19 @@ void add_validate(CommandLine& line) {
       validate);
   command.add("files <scenario>...", options.files, "scenario files, device files or names of bundled scenarios",
               {.required = true});
-  command.add("--points <file>", options.points,
-              "write surface points and normals to FILE.csv (exact) or FILE.ply (single precision, for viewers)");
+  command.add(
+      "--points <file>", options.points,
+      "write the surface points that hapbench makes or reads, with normals, to FILE.csv (exact) or FILE.ply (single "
+      "precision, for viewers)");
   add_overrides(command, options.overrides);
   command.footer(
       "Checks: names of fields (with the nearest valid name), types and ranges of their values, and the files they "
-      "name. Warnings point out likely unit errors (a factor of 100 or more), coarse points, and a tool that starts "
-      "behind the surface. Prints size, number of points, start distance, duration and output size.\n\n"
-      "Exit status: 0 all files are valid, 2 at least one is not; the others are checked all the same.");
+      "name. Warnings point out likely unit errors (such as an object 100 times as large as the tool), coarse "
+      "points, and a tool that starts behind the surface.\n\n"
+      "Result: size of the object, number of points, start distance, duration of the simulated run, and disk space "
+      "of its results.\n\n"
+      "Exit status: 0 if all files are valid, also with warnings; 2 if a file is invalid. All files are checked in "
+      "both cases.");
 }
 
 }  // namespace hapbench

@@ -142,20 +142,23 @@ void add_describe(CommandLine& line) {
   auto [command, options] = line.command("describe", "Explain a name, or list what exists.", describe);
   command.add(
       "name <name>", options.name,
-      "what to explain, see below; without it, everything is listed but metrics, claims, assumptions and terms");
-  command.add("--grep <text>", options.grep, "list only entries with this text in name, description or source");
+      "what to explain, see below; without it, all names are listed except metrics, claims, assumptions and terms, "
+      "which have lists of their own");
+  command.add("--grep <text>", options.grep,
+              "list only entries with this text in name, description or source: of the list <name>, or of all lists");
   add_table(command, options.output);
   command.footer(
       "A list: algorithms, scenarios, studies, devices, metrics, columns, claims, assumptions, terms, or a group of "
       "scenarios such as thesis.\n\n"
-      "Scenario files: \"scenario\" (all fields), a field such as rendering.limits (unit, allowed values, default), or "
-      "\"schema\".\n\n"
+      "Scenario files: \"scenario\" (all fields), a field such as rendering.limits (unit, allowed values, default), "
+      "or \"schema\".\n\n"
       "Results: a file such as trajectory.csv (all its columns with units), a column, a metric, or the heading of a "
       "table such as \">30Hz rms N\".\n\n"
       "Concepts: \"stability\", \"diagnosis\", or a term of the glossary such as \"linear limit\".\n\n"
       "Models: the name of a force law, depth model, integrator, environment, hand, device, scenario or study.\n\n"
       "Thesis: a claim such as C5, an assumption such as planar.first_tilt, a place such as \"Fig. A.2\", or "
-      "\"assumptions_schema\".");
+      "\"assumptions_schema\".\n\n"
+      "Unknown name: exit status 2, and a message with the nearest valid name, if a similar name exists.");
 }
 
 }  // namespace hapbench

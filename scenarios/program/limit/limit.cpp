@@ -94,21 +94,20 @@ void add_limit(CommandLine& line) {
   command.add(
       "--device <name,...>", options.devices,
       "devices instead of the scenario's: presets, ideal, admittance, files NAME.json, all, or impedance for all "
-      "presets; presets also run at both ends of their unpublished parameters",
+      "presets; presets also run with all their unpublished parameters at the soft and at the stiff end",
       {.comma_separated = true});
   command.add(
       "--friction <factor,...>", options.friction,
-      "with --device: instead of these ends, multiply the dry friction of each device by factors such as 0,2; none: "
-      "no variation",
+      "with --device: instead of the soft and stiff ends, also run each device with its dry friction times each "
+      "factor, such as 0,2; none: no variation",
       {.comma_separated = true});
   command.add("--over <field=values>", options.over,
               "repeat the search for each value of another field, written like sweep --vary; repeatable",
               {.several = true});
-  command.add(
-      "--stable <rule>", options.stable,
-      "settled: comes to rest or decays; bounded: may also vibrate; still: little vibration of the handle (default: "
-      "settled; if a script moves the tool, still)",
-      {.one_of = {"settled", "bounded", "still"}});
+  command.add("--stable <rule>", options.stable,
+              "stable runs: settled (come to rest or decay), bounded (may also vibrate) or still (the handle hardly "
+              "vibrates); default: settled; if a script moves the tool, still",
+              {.one_of = {"settled", "bounded", "still"}});
   command.add(
       "--vibration <m/s>", options.vibration,
       fmt::format("for the rule still: largest vibration of the handle, rms above 30 Hz (default: {})", kMaxVibration));
@@ -122,16 +121,18 @@ void add_limit(CommandLine& line) {
   add_table(command, options.output);
   command.footer(
       "Stable: the run comes to rest or its oscillation decays; if a script moves the tool, the handle hardly "
-      "vibrates. A run that diverges, passes through the surface, loses contact, sticks or never touches is unstable. "
-      "\"hapbench describe stability\" defines all classes.\n\n"
-      "Result: the limit to quote, with the reason. The simulated limit is found by bisection on runs. The linear "
-      "limit (- if there is none) follows from the eigenvalues of the loop of hand, device and contact. The limit to "
-      "quote is the one that the field reaches first; without a limit in the range there is none.\n\n"
-      "Files: limit.csv has one row per search, limit_runs.csv one row per run with its class. They replace the files "
-      "of an earlier search in the same folder.\n\n"
-      "Time: 100 to 400 runs for one search, and 30 to 50 for each row with --device or --over, which skip the "
-      "verification samples.\n\n"
-      "Exit status: 0 also if no value is stable; 2 bad input; 130 stopped by Ctrl-C.");
+      "vibrates. A run that diverges, passes through the surface, loses contact, sticks or never touches is "
+      "unstable. \"hapbench describe stability\" defines all classes.\n\n"
+      "Result: the simulated limit, the linear limit, and which of both to quote, with the reason. The simulated "
+      "limit is found by bisection on runs. The linear limit (- if there is none) follows from the eigenvalues of "
+      "the loop of hand, device and contact.\n\n"
+      "Limit to quote: the one of both that the field reaches first within the range. There is none if no value is "
+      "stable, or if all runs are stable and the range has no linear limit: then try a wider --between.\n\n"
+      "Files: limit.csv has one row per search, limit_runs.csv one row per run with its class. They replace the "
+      "files of an earlier search in the same folder.\n\n"
+      "Time: 100 to 400 runs for one search. With --device or --over, a search skips the verification samples and "
+      "needs only 30 to 50 runs.\n\n"
+      "Exit status: 0 also if no value or every value is stable; 2 bad input; 130 stopped by Ctrl-C.");
 }
 
 }  // namespace hapbench

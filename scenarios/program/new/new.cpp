@@ -115,25 +115,32 @@ void add_new(CommandLine& line) {
   command.add("--from <file>", options.from, "mesh, point shell or stroke to start from");
   command.add("--on <mesh>", options.on, "of kind stroke: mesh to play the stroke over (default: a plane)");
   command.add("--extent <length>", options.extent,
-              "true length of the mesh's longest edge with a unit: 12mm, 1.2cm, 0.012m or 0.5in (default: the file is "
-              "in metres)");
-  command.add("--unit <unit>", options.unit,
-              "unit of the mesh file: mm, cm, m or in; in place of --extent, if the size in the file is right",
-              {.one_of = {"mm", "cm", "m", "in"}});
-  command.add("--side <axis>", options.side,
-              "side from which the tool approaches: x, y, z (default), --side=-x, --side=-y or --side=-z",
-              {.one_of = {"x", "y", "z", "-x", "-y", "-z"}});
-  command.add("--path <x,y,z>", options.path,
-              "point [m] of the path over which the tool is dragged, or follows in kind fidelity; give two or more",
-              {.several = true});
+              "true length of the longest edge of the mesh's bounding box, with a unit: 12mm, 1.2cm, 0.012m or 0.5in");
+  command.add(
+      "--unit <unit>", options.unit,
+      "unit of the mesh file, instead of --extent: mm, cm, m or in; without both: m, and a mesh shorter than 1 mm "
+      "or longer than 1 m is refused",
+      {.one_of = {"mm", "cm", "m", "in"}});
+  command.add(
+      "--side <axis>", options.side,
+      "side from which the tool approaches: z (default; the tool moves towards -z), x, y, --side=-x, --side=-y or "
+      "--side=-z",
+      {.one_of = {"x", "y", "z", "-x", "-y", "-z"}});
+  command.add(
+      "--path <x,y,z>", options.path,
+      "point [m] of the path along which the tool moves over the surface (kinds drag, bur, fidelity); repeat --path "
+      "for each of two or more points",
+      {.several = true});
   command.add("--depth <length>", options.depth,
               "of kind fidelity: depth of the tip below the surface, such as 0.1mm (default: a tenth of the tool's "
               "diameter)");
-  command.add("--at <x,y,z>", options.at, "start above the surface point nearest to this point [m]");
+  command.add("--at <x,y,z>", options.at,
+              "start above the surface point nearest to this point [m], on the side of --side; coordinates of --at and "
+              "--path are those of the scaled mesh");
   command.flag("--preview", options.preview,
-               "also run the scenario and draw surface, tool and path to OUT with the ending .svg");
+               "also run the scenario and draw surface, tool and path in an .svg file next to it");
   command.add("--out <file.json>", options.out,
-              "scenario to write (default: KIND.json, or FROM_KIND.json, in the current folder)");
+              "scenario to write (default: KIND.json in the current folder; with --from my.stl: my_KIND.json)");
   command.footer(
       "Files: the scenario, and with --preview a picture next to it (mine.json: mine.svg) and the run in results/out. "
       "An existing scenario or picture is never overwritten: exit status 2.");

@@ -112,7 +112,8 @@ int tune(const TuneOptions& options, ProgramContext& context) {
 void add_tune(CommandLine& line) {
   auto [command, options] = line.command(
       "tune",
-      "Find the largest stiffness K of a scenario that is stable with a margin, with its damping and force law.", tune);
+      "Find the largest stiffness K, with its damping and force law, that keeps a margin to the stability limit.",
+      tune);
   command.add("scenario <scenario>", options.scenario, "scenario file or name of a bundled scenario",
               {.required = true});
   command.add("--device <name>", options.device,
@@ -133,7 +134,8 @@ void add_tune(CommandLine& line) {
   command.add("--mass <a:b>", options.mass,
               "range of the virtual mass on an admittance device [kg] (default: half to twice the scenario's)");
   command.add("--scale <number>", options.scale,
-              "scale of the mount in your own loop: the printed lines divide the coefficients by it (default: 1)");
+              "setup.mount.scale of your own loop (scenarios/LOOP.md); the printed lines of code for this loop have "
+              "coefficients divided by it (default: 1)");
   command.flag("--filters", options.question.filters, "on an impedance device, choose the velocity filter too");
   add_common(command, options, "tune_NAME");
   add_table(command, options.output);
@@ -142,11 +144,12 @@ void add_tune(CommandLine& line) {
       "limit is at least margin x K, every --bound holds at K, and a force is rendered. Unless --allow-vibration is "
       "given, the scenario's run has low vibration: none of the rules {} applies (\"hapbench describe diagnosis\").\n\n"
       "Result: K, zeta and law, the binding constraint, the margins that are left, and the expected metrics with "
-      "their errors. {} verification samples between K and margin x K check the choice. If nothing is feasible, tune "
-      "names the bound to relax, with a value that a second search confirms, or the run that fails and the option that "
-      "changes it.\n\n"
+      "their errors. {} verification samples between K and margin x K must be stable; otherwise the search goes on "
+      "with another K. If nothing is feasible, tune names the bound to relax, with a value that a second search "
+      "confirms, or the failing run and the option that can help.\n\n"
       "Files: NAME_tuned.json is the tuned scenario, for \"hapbench run\". tune.csv has one row per law, "
-      "tune_trials.csv one row per trial. They replace the files of an earlier tune in the same folder.\n\n"
+      "tune_trials.csv one row per trial. They replace the files of an earlier tune in the same folder; if nothing "
+      "is feasible, an earlier NAME_tuned.json is removed.\n\n"
       "Time: seconds to minutes; a search for a law ends after {} runs.\n\n"
       "Exit status: 0 also if nothing is feasible; 2 bad input; 130 stopped by Ctrl-C.",
       low_vibration_rules(), kVerificationSamples + kSamplesNearLimit, kMaxTuneRuns));

@@ -18,22 +18,26 @@ from hapbench_command import (
 from hapbench_import.options import DECIMALS, ORIENTATIONS
 
 NOTES = [
-    "Log: a CSV file (or a text table) with time, position of the tool and force on it, one row per step. Usual "
-    "column names are found (t, px, py, pz, fx, fy, fz); --columns names others: time, position, force, orientation, "
-    "velocity, contacts (their number) and measured (force by a sensor). Logs of one axis have one column of position "
-    'and one of force. Units in names, such as "x [mm]", are applied.',
-    "Fields of --set: force_by_tool=true (forces act on the object; their sign is changed), touch_N (force from which "
-    'a row is in contact; default: any force), sample_rate_Hz (for a log without times), and those of "hapbench import '
-    'stroke --help".',
-    "Energy: the sum of f . dp, with the force of a row held until the next row. Positive work is energy that the "
-    "engine gives to the hand; the largest sum is the net created energy. If the log begins in contact, the energy "
-    'stored there is subtracted, which needs a stiffness. "Along the path" the force changes linearly between rows, '
-    "without the effect of holding it. The error follows from the resolution of the log.",
+    "Log: a CSV file (or a text table) with time, position of the tool and force on it, one row "
+    "per step. Usual column names are found (t, px, py, pz, fx, fy, fz); --columns names others: "
+    "time, position, force, orientation, velocity, contacts (number of contacts), measured (force "
+    'from a sensor). A log of one axis has one position and one force. Units in names, such as "x '
+    '[mm]", are applied.',
+    "Fields of --set: force_by_tool=true (the forces of the file act on the object; the command "
+    "changes their sign), touch_N (force from which a row is in contact; default: any force), "
+    'sample_rate_Hz (for a log without times), and those of "hapbench import stroke --help".',
+    "Energy: the sum of f . dp, with the force of a row held until the next row. Positive work is "
+    "energy that the engine gives to the hand; the largest sum from the start to any row is the "
+    "net created energy (energy_mJ). If the log begins in contact, the energy stored there is "
+    'subtracted, which needs a stiffness. "Without holding": the same if the force changes '
+    "linearly between rows.",
     "Contacts: from touch to release. The first 0.05 s are a landing, the rest is settled contact, as in `run`.",
-    "Stiffness: regression of the force on position and velocity, along the normal of the surface, over delays of "
-    "whole rows; the weighted median of the contacts. Where the log does not determine a number, it is not stated.",
-    "Expectations: any number of audit.json, such as energy_mJ=1, force_rms_above_30Hz_N=0.1 or "
-    "stiffness_N_per_m=900:1100. A number that the log does not determine does not meet its expectation.",
+    "Stiffness: regression of the force on position and velocity, along the normal of the "
+    "surface, over delays of whole rows; the weighted median of the contacts. A number that the "
+    "log does not determine is left out, and the text below the table names what the log lacks.",
+    "Expectations: bounds on numbers of the audit, such as energy_mJ=1, "
+    "force_rms_above_30Hz_N=0.1 or stiffness_N_per_m=900:1100. A number that the log does not "
+    "determine does not meet its expectation.",
     "Files: audit.json, audit.svg and audit.html in results/out/audit_LOG. They replace earlier ones.",
     "Exit status: 0 also with a diagnosis; 2 bad input; 3 an expectation is not met.",
 ]
@@ -57,7 +61,8 @@ def command_line():
     line.text(
         "--device",
         "<device>",
-        "compare the stiffness with the linear limit of this device: a preset or FILE.json",
+        'print the stiffness as a multiple of the linear limit of this device: a preset ("hapbench '
+        'describe devices") or FILE.json',
     )
     line.texts(
         "--columns",
@@ -95,7 +100,7 @@ def command_line():
     line.texts(
         "--expect",
         "<metric=max,...>",
-        "exit status 3 unless each number is at most MAX, or within MIN:MAX",
+        "exit status 3 unless each number is known and at most MAX, or within MIN:MAX",
     )
     line.text("--out", "<dir>", "folder of the results (default: results/out/audit_LOG)", type=Path)
     line.add_output_options()

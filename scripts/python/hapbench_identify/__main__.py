@@ -46,9 +46,9 @@ NOTES = [
     "reason. A constant offset force is printed, but is not part of the device.",
     "Design: force (largest, default 1 N), travel (of the handle, default 0.05 m), mass (smallest "
     "possible, default 0.05 kg), rate (default 1000 Hz), duration (default 5 s).",
-    "Files: LOG_device.json, for --device of limit and tune, and a picture of the residual next to "
-    "it; or the signal, signal_KIND.csv. They replace earlier ones. A log that cannot be used gives"
-    " exit status 2.",
+    "Files: LOG_device.json, for --device of limit, tune and audit, and a picture of the residual "
+    "next to it; or the signal, signal_KIND.csv. They replace earlier ones. A log that cannot be "
+    "used gives exit status 2.",
 ]
 EXAMPLES = [
     "hapbench import device --design multisine,force=2,travel=0.08 --out signal.csv",

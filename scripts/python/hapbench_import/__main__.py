@@ -26,16 +26,16 @@ NOTES = [
     "Orientation: none, axis (direction out of the tip), quat_wxyz, quat_xyzw, axis_angle (axis, "
     "angle) or matrix (r11, r12 ... r33, row by row). It turns the tool's frame into the frame of "
     "the scene.",
-    "Fields of --set: sample_rate_Hz (for a file without times), tip_axis (direction out of the tip"
-    " in the tool's frame, default 0,0,-1), shift (added to the positions [m]), force_by_tool=true "
-    "(forces act on the object; their sign is changed), floats=true (hapi-binary with 4-byte "
-    "numbers), max_speed, max_gap, held_rows.",
+    "Fields of --set: sample_rate_Hz (for a file without times), tip_axis (direction out of the "
+    "tip in the tool's frame, default 0,0,-1), shift (added to the positions [m]), "
+    "force_by_tool=true (the forces of the file act on the object; the command changes their "
+    "sign), floats=true (hapi-binary with 4-byte numbers), max_speed, max_gap, held_rows.",
     "Held rows: if the file repeats each pose in several rows, the first row of each pose is used; "
     "with --set held_rows=keep all rows are samples (default: thin).",
     "Refused: invalid numbers, times that do not increase, quaternions not of unit length, jumps "
-    "faster than max_speed (default 5 m/s), gaps longer than max_gap (default 0.5 s). Each kind of "
-    "fault is listed with its first row and the number of rows, nothing is written, and the exit "
-    "status is 2.",
+    "faster than max_speed (default 5 m/s), gaps longer than max_gap (default 0.5 s). Each kind "
+    "of fault is listed with its first row and the number of rows, nothing is written, and the "
+    "exit status is 2.",
     "Files: the stroke, a CSV file with one pose per row; it replaces an earlier one.",
 ]
 EXAMPLES = [
@@ -116,7 +116,9 @@ def command_line():
         "smooth the poses with a Savitzky-Golay filter over n samples, an odd number",
     )
     line.flag(
-        "--skip-bad-rows", "leave out invalid rows and list them, instead of refusing the file"
+        "--skip-bad-rows",
+        "leave out invalid rows and jumps and list them, instead of refusing the file; only a larger "
+        "--set max_gap=... accepts a longer gap",
     )
     line.text(
         "--out", "<file.csv>", "stroke to write (default: FILE_stroke.csv in the current folder)"

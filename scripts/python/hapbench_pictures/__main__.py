@@ -11,22 +11,26 @@ PLOT_NOTES = [
     "or any column of the runs' tables. force, speed and other vectors are drawn as their length; "
     "--y fx_N,fy_N,fz_N draws components.",
     "Runs: the folder of a comparison stands for all its runs. Each force law has its colour. A "
-    "circle marks the start of a path, a square its end, a triangle the first touch. A peak of more "
-    "than three times the range of settled contact is cut off and labelled with its value. So is a run that would "
-    "flatten all others: one with a peak 100 times as large, or a failed run with a peak 5 times as large.",
-    "A comparison with a ranking (several seeds, scenes, or --by): each metric by law, the best on "
-    "top with its rank; --y draws the runs over time instead. --metric draws the metrics of any runs "
-    "by law. Grey: the error of the mean. A number that is not larger than its error is drawn as a hollow mark at its "
-    "bound. Failed runs are counted in red and have no value.",
+    "circle marks the start of a path, a square its end, a triangle the first touch.",
+    "Peaks: a peak of more than three times the range of settled contact is cut off and labelled "
+    "with its value. So is the peak of a run that would flatten all other curves: a peak 100 "
+    "times as large as the peaks of the other runs, or 5 times for a failed run.",
+    "A comparison with a ranking (several seeds, scenes, or --by): each metric by law, the best "
+    "on top with its rank; --y draws the runs over time instead. --metric draws other metrics by "
+    "law, also without a ranking. Grey: the error of the mean. A mean that is not larger than its "
+    "error is drawn as a hollow mark at mean + error. Failed runs are counted in red and have no "
+    "value.",
     "Limits: marks are simulated limits, lines or hollow squares linear limits; with --device a "
-    "colour for each device, dotted lines for published limits. A simulated limit is hollow and not joined to others "
-    "if stable and unstable runs alternate (column non_monotonic_runs).",
-    "Logs of a loop: a folder of run --replay, or a log itself; the force over time, with the late calls. A "
-    "replay folder has only the new outputs: name the recorded log, too, for the difference.",
+    "colour for each device, dotted lines for published limits. The mark of a simulated limit is "
+    "also hollow, and not joined to others, if stable and unstable runs alternate (column "
+    "non_monotonic_runs).",
+    "Logs of a loop: a folder of run --replay, or a log itself; the force over time, with the "
+    "late calls. A replay folder has only the new outputs. To draw their difference from the "
+    "recorded outputs, also name the recorded log.",
     "A sampled sweep: the metric over each field, with the influence of the field: Spearman's rank "
     "correlation and first-order Sobol index.",
-    "Files: plot.svg in the folder of the run, or beside the log; for several runs, in the nearest "
-    "folder that contains them all. It replaces an earlier picture.",
+    "Files: plot.svg in the folder that is drawn, or beside the log; if several folders or logs "
+    "are named, in the nearest folder that contains them all. It replaces an earlier picture.",
 ]
 PLOT_EXAMPLES = [
     "hapbench plot results/out/drag_molar",
@@ -37,15 +41,17 @@ PLOT_EXAMPLES = [
 ]
 REPORT_NOTES = [
     "Page: one HTML file that needs no other file, no server and no network. It shows curves, "
-    "metrics, scenarios and commands, and replays up to four runs side by side. Runs with --set "
-    "record.contacts=true also show depths. For two runs, their differences come first. If the live page is built "
-    "(scripts/live/README.md), it is copied beside the page, which then links to it.",
-    "Many runs (several seeds, or many laws in several scenes): the page begins with laws by metrics "
-    "and the ranking; curves are means over the seeds.",
+    "metrics, scenarios and commands, and plays back up to four runs side by side. Runs with "
+    "--set record.contacts=true also show depths. For two runs, their differences come first. If "
+    "the live page is built (scripts/live/README.md), it is copied beside the page, which then "
+    "links to it.",
+    "Many runs (several seeds, or several scenes with more than 8 runs in total): the page begins "
+    "with laws by metrics and the ranking; curves are means over the seeds.",
     "A sweep: use sweep --keep-runs, then report FOLDER/runs.",
-    "--tolerance compares outcome, metrics, warnings, trajectory.csv and sweep.csv, and with 0 also"
-    " the state hash. A result that only one folder has counts as a difference. Provenance, run "
-    "times and counts of work are ignored; different fields are shown, but do not count.",
+    "--tolerance compares outcome, metrics, warnings, trajectory.csv and sweep.csv, and with 0 "
+    "also the state hash. A result that only one folder has counts as a difference. Provenance, "
+    "run times and counts of work are ignored; different fields of the scenarios are shown, but "
+    "are no difference of the results.",
     "Exit status: with --tolerance 0 if the folders agree, 3 if they differ; 2 bad input.",
 ]
 REPORT_EXAMPLES = [
@@ -103,17 +109,25 @@ def plot_line():
         default=[],
     )
     line.text(
-        "--dpi", "<number>", "pixels per inch of a .png, or of the points in a .pdf (default: 300)"
+        "--dpi",
+        "<number>",
+        "pixels per inch of a .png, or of the surface points in a .pdf, which are an image (default: "
+        "300)",
     )
     line.text("--from", "<s>", "start of the time span to draw", dest="start")
-    line.text("--to", "<s>", "end of the time span to draw (--out names the file)", dest="end")
+    line.text(
+        "--to",
+        "<s>",
+        "end of the time span to draw, not the file of the picture (see --out)",
+        dest="end",
+    )
     return line
 
 
 def report_line():
     line = CommandLine(
         "report",
-        "Write a page that shows and replays runs, or compare the results of two folders.",
+        "Write a page that shows and plays back runs, or compare the results of two folders.",
         REPORT_NOTES,
         REPORT_EXAMPLES,
         MANUAL,
@@ -129,8 +143,8 @@ def report_line():
     line.text(
         "--tolerance",
         "<ratio>",
-        "write no page; compare two folders instead and allow this relative difference, "
-        "of a column relative to its largest value; 0: identical digits",
+        "compare two folders instead of writing a page; allowed difference relative to each number, "
+        "or in a table to the largest value of the column; 0: identical digits",
     )
     return line
 
