@@ -47,11 +47,11 @@ bool relax(const Trials& trials, const TuneTrial& trial, const std::string& name
   const MetricBound now = bound;
   if (now.max && *worst + error > *now.max) {
     bound.max = printed_beyond((*worst + error) * factor, true);
-    append(fmt::format("relax {} to at most {:.3g} (now {:.3g})", name, *bound.max, *now.max));
+    append(fmt::format("relax {} to {:.3g} (now {:.3g})", name, *bound.max, *now.max));
   }
   if (now.min && *worst - error < *now.min) {
     bound.min = printed_beyond((*worst - error) / factor, false);
-    append(fmt::format("relax {} to at least {:.3g} (now {:.3g})", name, *bound.min, *now.min));
+    append(fmt::format("relax {} to {:.3g} (now {:.3g})", name, *bound.min, *now.min));
   }
   return true;
 }

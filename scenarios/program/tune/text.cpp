@@ -58,7 +58,8 @@ std::string recommendation_text(const Tuning& tuning, const Layout& layout) {
   const TunedLaw* best = tuning.ranking[0];
   std::string text = bold(stdout, fmt::format("use {}, {}", best->algorithm, choice_text(*best->choice))) + "\n";
   const auto line = [&](const char* name, const std::string& what) { text += layout.entry(name, what, 2, 14); };
-  line("limited by", fmt::format("{}: {}", best->binding, best->why));
+  const bool is_at_end = best->binding == "range";
+  line("limited by", fmt::format("{}; {}{}", best->binding, is_at_end ? "" : "with a larger K: ", best->why));
   line("margins", margins_text(best->margins));
   if (tuning.ranking.size() > 1) {
     const TunedLaw* next = tuning.ranking[1];
