@@ -285,6 +285,7 @@ class ProxyRendering final : public ForceAlgorithm {
   }
 
   /// Moves the proxy towards the tool in passes. Returns false if kMaxProxyPasses passes were not enough.
+  // NOLINTNEXTLINE(readability-function-cognitive-complexity): the passes share one state.
   bool follow(const ToolPose& tool) noexcept {
     const double margin = constraints_->margin();
     const double converged = kConverged * margin, same = kEqualPositions * margin;

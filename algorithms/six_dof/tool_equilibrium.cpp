@@ -253,6 +253,7 @@ Vec6 ToolEquilibrium::nudge(const Vec6& descent, int n) const noexcept {
   return std::max(kShortestNudge, std::min(room(z), length)) * z;
 }
 
+// NOLINTNEXTLINE(readability-function-cognitive-complexity): the cases of one Newton iteration share its state.
 ToolEquilibrium::Outcome ToolEquilibrium::solve(const PoseSprings& springs, CoupledPose& pose,
                                                 int max_passes) noexcept {
   Outcome out;

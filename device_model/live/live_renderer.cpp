@@ -73,6 +73,7 @@ LiveRenderer::LiveRenderer(const LiveRendererConfig& config, SimulationConfig si
   if (config_.position_filter) position_filter_.emplace(*config_.position_filter, loop_.dt());
 }
 
+// NOLINTNEXTLINE(readability-function-cognitive-complexity): the checks of a call, in the documented order.
 void LiveRenderer::step(const HapbenchInput& input, HapbenchOutput& output) noexcept {
   const FloatingPointMode mode;
   output = {};
@@ -217,6 +218,7 @@ bool LiveRenderer::takes_rest(double elapsed, HapbenchOutput& output) noexcept {
   return true;
 }
 
+// NOLINTNEXTLINE(readability-function-cognitive-complexity): the phases of a call, in the documented order.
 void LiveRenderer::render(const Measurement& now, const HapbenchInput& input, double elapsed,
                           HapbenchOutput& output) noexcept {
   // Place the tool. A virtual mass starts at the measured position, at rest.

@@ -105,6 +105,7 @@ const char* SampledLoop::nonlinearity() const {
   return nullptr;
 }
 
+// NOLINTNEXTLINE(readability-function-cognitive-complexity): one block of rows after the other, as in the comments.
 Eigen::MatrixXd SampledLoop::state_matrix() const {
   const double T = period, m = moving_mass(), delay = device.delay_samples;
   const Eigen::Index whole = static_cast<Eigen::Index>(std::floor(delay));

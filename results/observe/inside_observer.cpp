@@ -201,6 +201,7 @@ void CorePassage::check_core(const ToolPose& pose, double deepest_contact, doubl
 
 /// Finds the segments of the core inside the solid. Returns a distance that the core can move without meeting the
 /// surface [m].
+// NOLINTNEXTLINE(readability-function-cognitive-complexity): one walk along the axis.
 double CorePassage::find_segments(const Vec3& position, const Vec3& axis, double front) noexcept {
   segments_.clear();
   std::swap(axis_points_, last_axis_points_);
@@ -239,23 +240,29 @@ double CorePassage::find_segments(const Vec3& position, const Vec3& axis, double
   return 0.5 * nearest;  // between two evaluated points the surface may be at half the evaluated distance
 }
 
+/// Returns the first segment of the last check that overlaps a segment, null if there is none. Marks all overlapping
+/// segments of the last check as continued.
+const CorePassage::Segment* CorePassage::continued_by(const Segment& next) noexcept {
+  const Segment* first = nullptr;
+  for (Segment& old : last_segments_) {
+    if (old.low > next.high || next.low > old.high) continue;
+    old.continued = true;
+    if (first == nullptr) first = &old;
+  }
+  return first;
+}
+
 /// Detects a passage. Matches each segment that is inside now with a segment of the last check, from which it
 /// inherits the face of entry.
 void CorePassage::compare(const Vec3& position, const Vec3& axis, double time) noexcept {
   const auto through = [this, time](const Vec3& entered, const Vec3& left, bool at_once) {
     if (!event_) event_ = {time, entered, left, at_once};
   };
+  const auto position_at = [&](double s) { return Vec3(position + s * axis); };
   for (Segment& next : segments_) {
-    const auto position_at = [&](double s) { return Vec3(position + s * axis); };
     if (next.face_low && next.face_high && are_opposed(*next.face_low, *next.face_high))
       through(position_at(next.high), position_at(next.low), true);
-    // Find the segment of the last check that overlaps this segment.
-    const Segment* previous = nullptr;
-    for (Segment& old : last_segments_) {
-      if (old.low > next.high || next.low > old.high) continue;
-      old.continued = true;
-      if (previous == nullptr) previous = &old;
-    }
+    const Segment* previous = continued_by(next);
     if (previous == nullptr) {
       next.entered = next.deepest_position;
       next.normal = normal_at(next.deepest_position);
@@ -278,7 +285,7 @@ void CorePassage::compare(const Vec3& position, const Vec3& axis, double time) n
   // Check the segments that are no longer inside.
   for (const Segment& old : last_segments_) {
     if (old.continued) continue;
-    const Vec3 middle = position + 0.5 * (old.entered_low + old.entered_high) * axis;
+    const Vec3 middle = position_at(0.5 * (old.entered_low + old.entered_high));
     const SurfaceDistance phi = solid_->at(middle);
     if (phi.known && phi.value > 0.0 && are_opposed(normal_at(middle), old.normal)) through(old.entered, middle, false);
   }
@@ -423,6 +430,7 @@ InsideDepths InsideObserver::depths() {
 /// the bound is larger than the deepest known depth. In a range of nearly equal poses, searches one pose. Returns an
 /// upper bound of the depth in steps that were not searched [m]; 0 if, within the tolerance, no such step is deeper
 /// than the deepest known step.
+// NOLINTNEXTLINE(readability-function-cognitive-complexity): one branch and bound; its parts are the local functions.
 double InsideObserver::find_deepest(InsideDepths& depths) {
   struct Segment {
     std::size_t first, end;

@@ -121,6 +121,7 @@ class CorePassage {
   SurfaceDistance distance_at(const Vec3& point, double s) noexcept;
   void check_core(const ToolPose& pose, double deepest_contact, double time) noexcept;
   double find_segments(const Vec3& position, const Vec3& axis, double front) noexcept;
+  const Segment* continued_by(const Segment& next) noexcept;
   void compare(const Vec3& position, const Vec3& axis, double time) noexcept;
   Vec3 normal_at(const Vec3& point) const noexcept;
 

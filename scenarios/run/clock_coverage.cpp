@@ -177,6 +177,7 @@ std::string trace_problem(const ContactTrace& trace, const RunTimes& run, std::i
 
 }  // namespace
 
+// NOLINTNEXTLINE(readability-function-cognitive-complexity): the cases in the order of their priority.
 std::optional<Warning> stroke_clock_warning(const Stroke& stroke, const TimeFields& time) {
   const RunTimes run(time);
   const Samples samples = stroke.motion.samples();

@@ -280,6 +280,7 @@ std::vector<Trial> trials_of(const Scenario& scenario) {
 
 }  // namespace
 
+// NOLINTNEXTLINE(readability-function-cognitive-complexity): the phases of a run, one after the other.
 Result run_scenario(const CheckedScenario& checked, const std::optional<RunOutput>& output, Progress progress,
                     RunTables* tables, bool diagnose, std::shared_ptr<const PointShell> shell, RunLength length) {
   const Scenario& scenario = checked.scenario();

@@ -14,23 +14,25 @@ namespace {
 // (rms of the force above 30 Hz over the mean force) and pop (largest force step over the mean force), in settled
 // contact; disturbed: number of rules of the diagnosis for low vibration whose threshold is exceeded.
 
+MeasuredValues stability_values(const LoadedScenario& loaded) {
+  const Result run = run_scenario(checked(loaded), std::nullopt, false);
+  MeasuredValues values = {
+      {"completes", {run.end.outcome == Outcome::completes ? 1.0 : 0.0}}, {"buzz", {0.0}}, {"pop", {0.0}}};
+  double disturbed = 0.0;
+  for (const Diagnosed& number : low_vibration_numbers(loaded, run)) {
+    if (number.rule == "buzz" || number.rule == "pop") values[number.rule] = {number.value};
+    if (number.value > number.threshold) disturbed += 1.0;
+  }
+  values["disturbed"] = {disturbed};
+  return values;
+}
+
 Measured measure_stability(const Evidence& e) {
   Measured measured;
-  for (const std::string task : kTasks) {
-    for (const std::string density : kDensities) {
-      const LoadedScenario loaded = e.load(task + "_" + density, {"record.ratio_iterations=[]"});
-      const Result run = run_scenario(checked(loaded), std::nullopt, false);
-      MeasuredCase& m = measured.emplace_back(MeasuredCase{task.substr(0, 5) + " " + density, {}});
-      m.values["completes"] = {run.end.outcome == Outcome::completes ? 1.0 : 0.0};
-      for (const char* rule : {"buzz", "pop"}) m.values[rule] = {0.0};
-      double disturbed = 0.0;
-      for (const Diagnosed& number : low_vibration_numbers(loaded, run)) {
-        if (number.rule == "buzz" || number.rule == "pop") m.values[number.rule] = {number.value};
-        if (number.value > number.threshold) disturbed += 1.0;
-      }
-      m.values["disturbed"] = {disturbed};
-    }
-  }
+  for (const std::string task : kTasks)
+    for (const std::string density : kDensities)
+      measured.push_back({task.substr(0, 5) + " " + density,
+                          stability_values(e.load(task + "_" + density, {"record.ratio_iterations=[]"}))});
   return measured;
 }
 

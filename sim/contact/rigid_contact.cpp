@@ -130,6 +130,7 @@ void RigidContact::linearise(const Vec3& axis, double reach) {
 
 /// Projects `wanted` onto the intersection of the half-spaces of the working set: finds up to three planes whose common
 /// projection is in all half-spaces and whose multipliers are positive. Returns false if there is none.
+// NOLINTNEXTLINE(readability-function-cognitive-complexity): loops over one, two and three planes.
 bool RigidContact::project(const Vec3& wanted, Vec3& result) const {
   const std::size_t n = working_.size();
   const auto plane = [this](std::size_t i) -> const HalfSpace& { return half_spaces_[working_[i]]; };

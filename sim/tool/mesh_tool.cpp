@@ -433,6 +433,7 @@ void MeshTool::shortest_gradients(const ToolPose& pose, ContactBuffer& contacts)
 }
 
 // Marches along eight rays at once, which share the computation of the spline weights.
+// NOLINTNEXTLINE(readability-function-cognitive-complexity): the eight rays share the state of one loop.
 void MeshTool::exit_distances(const ToolPose& pose, const ContactBuffer& contacts, double* exits) const noexcept {
   const GridFrame frame(*grid_, pose);
   for (std::size_t i = 0; i < contacts.size(); i += simd::lanes) {
@@ -465,6 +466,7 @@ void MeshTool::exit_distances(const ToolPose& pose, const ContactBuffer& contact
   }
 }
 
+// NOLINTNEXTLINE(readability-function-cognitive-complexity): the loop over the points keeps its state in registers.
 void MeshTool::surface_constraints(const ToolPose& pose, const Vec3& wanted, double slack,
                                    ContactBuffer& contacts) const noexcept {
   const GridFrame frame(*grid_, pose);

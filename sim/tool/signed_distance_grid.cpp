@@ -279,6 +279,7 @@ void SignedDistanceGrid::fill(const ClosedSurface& surface, const TriangleTree& 
            " m apart");
 }
 
+// NOLINTNEXTLINE(readability-function-cognitive-complexity): one flood fill, axis by axis.
 void SignedDistanceGrid::classify() {
   // Nodes on the border of the grid stay `outside`, because the body is at least kMarginNodes away.
   kinds_.assign(nodes_.size(), outside);

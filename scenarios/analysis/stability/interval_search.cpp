@@ -190,6 +190,7 @@ std::vector<double> parameters_below(const IntervalSearchOptions& options, doubl
   return parameters_between(t, std::max(0.0, t - near), kSamplesNearLimit);
 }
 
+// NOLINTNEXTLINE(readability-function-cognitive-complexity): one search whose repetitions share the evaluated values.
 StableInterval find_verified_interval(const IntervalSearchOptions& options, EvaluatedParameters& evaluated,
                                       const IsStable& stable, bool near,
                                       const std::function<void(std::span<const double>)>& ahead) {

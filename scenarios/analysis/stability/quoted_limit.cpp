@@ -59,6 +59,7 @@ std::string without_linear(const FieldLimit& limit) {
 
 }  // namespace
 
+// NOLINTNEXTLINE(readability-function-cognitive-complexity): the cases in the order of their priority.
 QuotedLimit quoted_limit(const LimitQuestion& question, const FieldLimit& limit) {
   const bool smallest = question.search.smallest;
   const auto& [value, beyond] = limit.end;
