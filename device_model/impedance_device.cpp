@@ -203,7 +203,7 @@ void ImpedanceDevice::drive(const Vec3& rendered, const Vec3& hand_force) noexce
   elastic_ ? advance(elastic_->parts, elastic_->before, elastic_->after) : advance(motion_, before_, after_);
   sampled_.position = read_position();
   sampled_.velocity = filter_.read(sampled_.position);
-  // Filter the rendered position only; the velocity uses the unfiltered position.
+  // Filter the position that the force algorithm gets. The velocity was computed from unfiltered positions.
   if (position_filter_) sampled_.position = position_filter_->filter(sampled_.position);
 }
 

@@ -28,8 +28,9 @@ def value(assumption, part):
 
 
 def column(assumption, count, seed):
-    """Returns the values of an assumption. Each assumption has its own random numbers, so that a new assumption does
-    not change the values of the others."""
+    """Returns the values of an assumption in the `count` sets: a random value in each of `count` equal parts (strata)
+    of its range, in random order. Each assumption has a random generator of its own, so that a new assumption does not
+    change the values of the other assumptions."""
     draw = random.Random(f"{seed} {assumption['id']}")
     strata = draw.sample(range(count), count)
     return [value(assumption, (stratum + draw.random()) / count) for stratum in strata]

@@ -31,8 +31,9 @@ constexpr double kShortestNudge = 1e-6;
 /// Smallest stiffness in any direction of a quadratic program, relative to the stiffness of the springs in this
 /// direction.
 constexpr double kFlat = 1e-3;
-/// Number of passes after which only every second pass uses second derivatives of the constraints. If the active set
-/// alternates between passes with one model, the passes may converge with the other model.
+/// Number of passes (iterations of the search for the equilibrium) after which only every second pass uses second
+/// derivatives of the constraints. If the active set alternates between passes with one model, the passes may converge
+/// with the other model.
 constexpr int kManyPasses = 40;
 
 }  // namespace
@@ -218,6 +219,7 @@ ToolEquilibrium::SecondOrder ToolEquilibrium::second_order(const PoseSprings& sp
   const Mat6 scaled = along * (inverse * second.hessian * inverse.transpose()) * along + K * across;
   const Eigen::SelfAdjointEigenSolver<Mat6> axes(scaled);
   // Replace each negative eigenvalue by its absolute value, so that a pass moves away from a saddle and not towards it.
+  // Raise eigenvalues that are nearly zero to kFlat K, so that the quadratic program has one solution.
   const Mat6 back = L * axes.eigenvectors();
   second.hessian = back * axes.eigenvalues().cwiseAbs().cwiseMax(kFlat * K).asDiagonal() * back.transpose();
   second.is_minimum = axes.eigenvalues()[0] > 0.0;

@@ -89,16 +89,18 @@ inline Vec3 limited_to(const Vec3& force, const std::optional<double>& limit) no
 /// contact i is the velocity of the tool's material at this contact, v_i = v + omega x r_i, where r_i is the vector
 /// from the tip centre to the contact. omega is the angular velocity of the previous step after a low-pass filter,
 /// because a trembling hand rotates the tool much faster than it translates it. `ContactVelocity::mean` uses the mean
-/// of the arms r_i with the weights c_i. For a law that is not made of weighted springs, ForceLaw::turning_velocity
-/// defines the normal velocity.
+/// of the arms r_i with the weights c_i of the contacts. u_i is the unit vector along the spring force of contact i.
+/// For a law that is not made of weighted springs, ForceLaw::turning_velocity defines the normal velocity.
+///
 /// Guarantee: the dampers of weighted springs take the power B sum c_i <v_i, u_i>^2 >= 0 from the motion of the tool.
+///
 /// Known failure: if the hand rotates the tool, the damping pushes the tip sideways. The energy comes from the hand's
 /// rotation, but the hand feels no torque against it, because the device renders no torque.
 ///
 /// Hunt and Crossley's damping and DryFriction (our additions) use the loads N_i = K c_i d_i > 0 of the
-/// contacts. For algorithms without weights they use one load ||f_spring|| along f_spring. Hunt and Crossley's
-/// damping keeps the force continuous at contact onset and release, and never pulls while |<v, u_i>| < 1 / chi, with
-/// the coefficient chi.
+/// contacts, with the depths d_i [m]. For algorithms without weights they use one load ||f_spring|| along f_spring.
+/// Hunt and Crossley's damping keeps the force continuous at contact onset and release, and never pulls while |<v,
+/// u_i>| < 1 / chi, with the coefficient chi.
 class DampingAndLimits {
  public:
   explicit DampingAndLimits(const RenderingConfig& config);
@@ -113,14 +115,16 @@ class DampingAndLimits {
 
   /// Returns true if `rendered_force` reads `loads`.
   bool needs_loads() const noexcept { return dry_friction_ || config_.hunt_crossley; }
-  /// Returns f_render [N]. Arguments: f_spring [N], the stiffness tensor S, the velocity of the tool [m/s], and
-  /// the load tensor sum N_i u_i u_i^T [N], which is read only if needs_loads(). Eigenvalues are computed only
-  /// if damping is limited. Friction with zero coefficients is computed only with Skips::off.
+  /// Returns f_render [N]. Arguments: f_spring [N], the stiffness tensor S in units of K, the velocity of the tool
+  /// [m/s], and the load tensor sum N_i u_i u_i^T [N], which is read only if needs_loads(). Eigenvalues are computed
+  /// only if damping is limited. Friction with zero coefficients is computed only with Skips::off.
   Vec3 rendered_force(const Vec3& spring, const Mat3& S, const ContactVelocity& velocity,
                       const Mat3& loads = Mat3::Zero()) noexcept;
 
-  /// Returns -df_render/dv [N s/m] without the force limit: B S + (mu_s + mu_f |f_spring|)(I - S), or the
-  /// damping and friction that replace these two terms.
+  /// Returns -df_render/dv [N s/m] without the limit of the force: B S + (mu_s + mu_f |f_spring|)(I - S). S is the
+  /// stiffness tensor in units of K. mu_s [N s/m] and mu_f [s/m] are the coefficients of viscous friction. Hunt and
+  /// Crossley's damping replaces the first term, dry friction replaces the second term; both use the loads of the last
+  /// call of `rendered_force`. The limit of the damping, max_damping, is applied.
   Mat3 damping_matrix(const Vec3& spring, const Mat3& S) const noexcept;
 
   /// Returns the cut-off frequency of the low-pass on the tool's angular velocity [Hz]; nullopt without angular

@@ -11,11 +11,12 @@
 
 namespace hapbench {
 
-/// hapbench_renderer.h for C++11 and later: the same functions with ownership and exceptions. hapbench_renderer.h
-/// documents the behaviour. `step` does not throw.
+/// C++ wrapper (C++11 or later) of the C interface in hapbench_renderer.h, which documents the functions. An object
+/// owns a renderer and closes it in the destructor. The constructors throw an exception if the renderer cannot be
+/// opened. `step` does not throw.
 class Renderer {
  public:
-  /// Opens a renderer. Throws std::runtime_error with the text of hapbench_renderer_open.
+  /// Opens a renderer. Throws std::runtime_error with the error text of hapbench_renderer_open.
   explicit Renderer(const HapbenchSetup& setup) {
     char error[HAPBENCH_ERROR_SIZE];
     renderer_.reset(hapbench_renderer_open(&setup, error));

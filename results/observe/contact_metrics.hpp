@@ -73,7 +73,8 @@ class ContactAgeObserver final : public MetricObserver {
   double dt_ = 0.0;
   std::uint64_t rows_ = 0, oldest_ = 0;
   std::uint64_t requested_ = 0, lost_ = 0;
-  /// Number of steps for each age in time steps; the last entry also counts all older contacts.
+  /// Entry i: number of steps that used contacts of the age i [time steps]. The last entry also counts the steps that
+  /// used older contacts.
   std::vector<std::uint64_t> rows_of_age_;
 };
 

@@ -58,11 +58,12 @@ class Side {
                      block_.size.y() / 2 - std::abs(q.y())});
   }
 
-  /// Returns the distance from the line's end at the tip, up the line, to the cone rho - R = -z [m]; 0 if the end
-  /// is not within the cone.
+  /// Returns the distance from the line's end at the tip, up the line, to the cone rho = R - z [m]; 0 if the end is
+  /// not within the cone. rho is the distance from the hole's axis, R the radius of the hole.
   double to_cone(const Vec3& end) const {
-    // The square of rho = R - z is steepness s^2 + 2 b s + c = 0. The smallest positive root is the root with R - z
-    // > 0.
+    // The point at the distance s up the line is on the cone if rho^2 = (R - z)^2, that is steepness_ s^2 + 2 b s + c =
+    // 0. This equation also holds on the mirrored cone rho = z - R. The smallest positive root s is on the cone with
+    // R - z > 0.
     const double height = radius_ - end.z();
     const double c = end.head<2>().squaredNorm() - height * height;
     if (height <= 0.0 || c >= 0.0) return 0.0;

@@ -19,8 +19,8 @@
 /// The format of scenario files. It is described once in code, so that program, files, schema and documentation
 /// cannot disagree. Each struct T has a function `describe(Fields&, T&)` that lists its fields with meaning, unit
 /// and range. Visitors, which derive from Fields, call these functions:
-///   - read_value reads a value from JSON,
-///   - json_of writes a value as JSON and lists the files that it names,
+///   - read_value (a reader) reads a value from JSON,
+///   - json_of (a writer) writes a value as JSON and lists the files that it names,
 ///   - guide_to builds the JSON Schema and the documentation.
 namespace hapbench {
 
@@ -206,8 +206,9 @@ class Fields {
               Presence presence = Presence::has_default) {
     field(name, doc, presence, [&](Fields& f) { f.number(value, range); });
   }
-  /// A field that is null if the optional is empty. `each(Fields&, T&)` describes the value; readers start from a
-  /// default-constructed value.
+  /// A field whose JSON value is null if the optional is empty. `each(Fields&, T&)` describes a value that is not null.
+  /// If the optional is empty, `each` gets a default-constructed value; a reader then stores this value in the
+  /// optional.
   template <class T, class Each>
   void nullable(std::string_view name, std::optional<T>& value, const char* doc, Each each,
                 Presence presence = Presence::has_default) {

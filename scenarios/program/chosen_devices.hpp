@@ -8,10 +8,14 @@
 
 namespace hapbench {
 
-/// Returns the devices that names and files select, in the order given. Each name is a device, "all",
-/// "impedance" (all presets), or a file NAME.json. A preset's name followed by [soft] or [stiff] selects the
-/// preset at that end of the range of its unpublished parameters. Throws InputError for an unknown name, an
-/// invalid file, or two devices with one name.
+/// Returns the devices that the entries of `given` select, in the order of the entries. An entry is one of:
+/// - "ideal", "admittance" or the name of a preset (compared_devices()): this device;
+/// - the name of a preset followed by [soft] or [stiff]: the preset at this end of the range of its unpublished
+///   parameters;
+/// - "impedance": all presets;
+/// - "all": "ideal", "admittance" and all presets;
+/// - a path, such as NAME.json: the device in this JSON file (device_of_file()).
+/// Throws InputError for an unknown entry, an invalid file, or two devices with the same name.
 std::vector<ComparedDevice> chosen_devices(const std::vector<std::string>& given);
 
 }  // namespace hapbench

@@ -148,7 +148,8 @@ constexpr const char* kNoScene =
     "sweep: no scenario is given; allowed: a scenario and --vary, or the folder of a "
     "finished sweep";
 
-/// Throws InputError about a scenario without --vary and --points.
+/// Throws the InputError of a sweep without --vary and --points. `scenario`: argument of the command, empty if it is
+/// missing. Precondition: it is not the folder of a finished sweep, which needs no such option.
 [[noreturn]] void fail_without_axes(const std::string& scenario) {
   if (scenario.empty()) throw InputError(kNoScene);
   throw InputError(

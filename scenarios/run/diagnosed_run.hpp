@@ -68,9 +68,11 @@ inline constexpr double kMaxBuzz = 0.1, kMaxEdge = 0.8, kMaxEncoderForce = 0.1, 
 /// a landing at speed v adds v sqrt(2.6 ms / duration).
 inline constexpr double kMaxShake = 1e-2;
 
-/// Returns 1 if the run ended because a law or module failed, or because a force is not finite.
+/// Returns 1 if the run ended because a force law or a module failed, or because a force was not finite; otherwise an
+/// empty value.
 Number fault(const DiagnosedRun& run);
-/// Returns 1 if the run left its bounds although all numbers are finite.
+/// Returns 1 if the run left its bounds although all numbers were finite, and the scene does not expect this; otherwise
+/// an empty value.
 Number diverged(const DiagnosedRun& run);
 /// Returns the mean angle between the rendered force and the force that was measured with the stroke; empty if fewer
 /// than 10 steps have both.
@@ -86,10 +88,10 @@ Number chatter(const DiagnosedRun& run);
 /// vibrates. Empty without a loop, and if the loop is unstable at any K (unstable_loop()). Rounded to six digits.
 Number stability_limit_ratio(const DiagnosedRun& run);
 /// Returns 1 if hand and device are unstable without contact by the eigenvalues of their loop, under the conditions of
-/// stability_limit_ratio().
+/// stability_limit_ratio(); otherwise an empty value.
 Number unstable_alone(const DiagnosedRun& run);
 /// Returns 1 if the linear loop with a contact is unstable even with a stiffness of almost zero, under the conditions
-/// of stability_limit_ratio().
+/// of stability_limit_ratio(); otherwise an empty value.
 Number unstable_loop(const DiagnosedRun& run);
 /// Returns the point spacing divided by the spacing at which four points would be in contact. The number of
 /// contacts is proportional to 1 / spacing^2. Empty if the tip moved less than ten spacings in contact.

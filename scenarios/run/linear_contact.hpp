@@ -43,16 +43,17 @@ struct ContactAtRest {
 std::optional<ContactAtRest> linear_contact(const CheckedScenario& scenario,
                                             const std::shared_ptr<const PointShell>& shell, const ContactState& near);
 
-/// Returns a contact that was linearised with the stiffness and damping of `from`, as it is with those of `to`:
-/// stiffness in proportion to K, damping in proportion to B.
+/// Converts a contact that was linearised with the stiffness K [N/m] and the damping B [N s/m] of `from` to K and B of
+/// `to`: multiplies the contact's stiffness by the ratio of both K, and its damping by the ratio of both B. Keeps the
+/// damping if B of `from` is 0.
 LinearContact scaled(LinearContact contact, const RenderingConfig& from, const RenderingConfig& to);
 
 /// Judges the loop of hand, device and contact at several values of a field of a scenario, near one state of a run.
 class ContactLoops {
  public:
-  /// `near`: see linear_contact(). `is_stiffness`: true if the field is K. A K without an equilibrium (a surface too
-  /// soft to hold the tool, or a force that jumps) then has the last contact that was found, scaled(). `at_any_pose`:
-  /// true if the first contact need not be an equilibrium.
+  /// `near`: see linear_contact(). `is_stiffness`: true if the field is the stiffness K. If a K has no equilibrium (a
+  /// surface too soft to hold the tool, or a force that jumps), the loop then uses the last contact that was found,
+  /// converted to this K by scaled(). `at_any_pose`: true if the first contact need not be an equilibrium.
   ContactLoops(const ContactState& near, bool is_stiffness, bool at_any_pose)
       : near_(near), is_stiffness_(is_stiffness), at_any_pose_(at_any_pose) {}
 
@@ -77,16 +78,16 @@ struct LimitWalk {
 };
 
 /// Walks from the start towards the limit: up while the loop is stable, otherwise down to a stable value. Then bisects.
-/// Returns the largest stable value before the first unstable one; infinity if all values above a stable start are
-/// stable, minus infinity if no value is stable. Returns nothing if `is_stable` returns nothing at the start; later
-/// this counts as unstable.
+/// Returns the largest stable value before the first unstable value; infinity if all values above a stable start are
+/// stable, minus infinity if no value is stable. Returns nothing if `is_stable` returns nothing at the start. A later
+/// value for which `is_stable` returns nothing counts as unstable.
 std::optional<double> limit_along(const LimitWalk& walk, const std::function<std::optional<bool>(double)>& is_stable);
 
 /// Returns the largest stiffness K [N/m] at which the loop of hand, device and contact is stable, searched from the
 /// scenario's K in steps of 10 %, up to twice this K and down to a billionth of it. Infinite if the loop is stable up
-/// to twice K; 0 if no K is stable. At each K, the contact is the equilibrium of the tool near `near`; a K without an
-/// equilibrium has the last contact that was found, scaled(). Empty without has_linear_loop(), and if the tool touches
-/// nothing at `near`.
+/// to twice K; 0 if no K is stable. At each K, the contact is linearised at the equilibrium of the tool near `near`. If
+/// a K has no equilibrium, the loop uses the last contact that was found, converted to this K by scaled(). Empty
+/// without has_linear_loop(), and if the tool touches nothing at `near`.
 std::optional<double> linear_stiffness_limit(const CheckedScenario& scenario,
                                              const std::shared_ptr<const PointShell>& shell, const ContactState& near);
 

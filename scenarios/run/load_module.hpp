@@ -29,7 +29,7 @@ struct LoadedModule {
 /// or allow all libraries.
 class ModulePermission {
  public:
-  /// If `all` is true, allows all libraries; otherwise has no effect.
+  /// If `all` is true, allows all libraries until the object is destroyed. If `all` is false, the object has no effect.
   explicit ModulePermission(bool all);
   ~ModulePermission();
   ModulePermission(const ModulePermission&) = delete;

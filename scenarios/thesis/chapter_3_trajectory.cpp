@@ -24,12 +24,14 @@
 #include "sim/core/math.hpp"
 #include "sim/core/random.hpp"
 
-/// Claims of 3.6 and C.2: the drill turned in the hole, compared with the ideal trajectory.
+/// Claims of thesis 3.3, 3.6, C.2 and D.4: the drill of task 2 turned in the hole, compared with the ideal trajectory.
+/// J1, J2, C5 and T2b are ids of claims in results/reference/claims.json.
 namespace hapbench {
 namespace {
 
-// ---- J1: the drill of task 2 turned in the hole by the calibrated hand, with presses beyond 2 N. Errors from the
-// ideal trajectory [m], by the force of the hand: below 2 N, and from 2 N on. Figure 7 draws the same run.
+// ---- J1: the drill of task 2 turned in the hole by the calibrated hand, with presses beyond 2 N. Deviations from the
+// ideal trajectory [m], separately for steps with a hand force below 2 N and of at least 2 N. This
+// project's version of thesis Fig. 7 draws the same run.
 
 constexpr const char* kPressed = "task2_pressed";
 
@@ -59,10 +61,11 @@ Finding judge_trajectory(const MeasuredCase& m, const PublishedNumbers& publishe
               on_line ? "as published" : "larger than published", shallow ? "as published" : "larger than published")};
 }
 
-// ---- C5, T2b: the drill of task 2 turned by a hand of constant force: its errors from the ideal trajectory [m] and
-// its numbers of points. One case for each force, first with the scene's setting of the local average, then with the
-// opposite setting. The scene tilts the drill to 0.9 rad only: at 1.05 rad the hand of 0.2 N, whose direction is
-// constant, slides 1.26 mm off the wall, which 3.2 excludes.
+// ---- C5, T2b: the drill of task 2 turned in the hole while a hand presses it with a constant force. Measures the
+// deviations from the ideal trajectory [m], and the numbers of contact points before and after the reduction. There is
+// a case for each force and each setting of the local average: first all forces with the scene's setting, then all
+// forces with the opposite setting. The scene tilts the drill to at most 0.9 rad. At 1.05 rad, a hand of 0.2 N with a
+// constant direction lets the drill slide 1.26 mm off the wall. Section 3.2 of the thesis excludes such a slide.
 
 constexpr double kForces[] = {0.2, 0.5, 1.0, 1.5, 1.9, 2.5, 3.5};  ///< [N]
 
@@ -104,8 +107,8 @@ Finding judge_local_average(const Measured& measured, const PublishedNumbers& p)
                       lateral ? "no further" : "further", inside ? "no deeper" : "deeper")};
 }
 
-/// Compares the raw counts of the gentlest hand and of a firm hand of 1.9 N, about the force in appendix D, with the
-/// published counts.
+/// Compares the raw counts (numbers of points before the reduction) of the gentlest hand and of a firm hand of 1.9 N,
+/// which is about the force in appendix D of the thesis, with the published counts.
 Finding judge_hands(const Measured& measured, const PublishedNumbers& p) {
   const double largest = p["T2.raw"].mean + p["T2.raw"].spread;
   const auto firm = std::ranges::find_if(measured, [](const MeasuredCase& m) { return m["force"] >= 1.8; });

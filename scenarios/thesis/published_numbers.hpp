@@ -42,7 +42,8 @@ class PublishedNumbers {
 /// Returns a number as text with at most six digits, such as "0.1", "15", "1e-9".
 std::string plain(double number);
 
-/// Returns the threshold rule.NAME, an assumption of this project. Throws InputError for an unknown name.
+/// Returns a threshold of the rules that judge claims: the mean of the number with the id "rule." + `name`. The
+/// thresholds are assumptions of this project and not published. Throws InputError for an unknown name.
 double threshold(const PublishedNumbers& numbers, const std::string& name);
 
 }  // namespace hapbench

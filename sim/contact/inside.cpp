@@ -128,8 +128,10 @@ void InsideSearch::examine(const ToolPose& pose, Cell cell, double outside, cons
   if (cells_.size() < kMaxCells) cells_.push_back(cell);
 }
 
-/// Moves a point near the tool into the tool, if the point is not inside. Repeats the move, because the distances of
-/// a mesh tool are approximate. Returns false if the point is still outside.
+/// Moves a point near the tool to the tool's surface, if the point is farther than kOnTool outside. Repeats the move,
+/// because the distances of a mesh tool are approximate. Returns true if the point counts as in the tool at the start
+/// or after at most two moves, and false otherwise. After a result of false, the caller must not use the point: it was
+/// moved a third time, and this last position is not checked.
 bool InsideSearch::into_tool(const ToolPose& pose, Vec3& point) noexcept {
   for (int round = 0; round < 3; ++round) {
     one_.clear();

@@ -26,17 +26,18 @@ double largest_scale(const PointShell& shell, const ToolShape& tool) {
   return std::max(box.min.cwiseAbs().maxCoeff(), box.max.cwiseAbs().maxCoeff()) + 4.0 * tool.reach();
 }
 
-/// The contact search of a run (Verlet neighbour lists). It keeps a list of the points within a skin around the
-/// tool, taken from a uniform grid, and uses the list until the tool has moved or turned farther than the skin.
-/// Its contacts are bitwise identical to ShellQuery's.
+/// The contact search of a run, with Verlet neighbour lists. The skin is the layer around the tool up to a given
+/// distance from its surface. The search lists the shell points in the tool and in its skin, and tests only the listed
+/// points. The points come from a uniform grid. The contacts are bitwise identical to the contacts of ShellQuery.
 ///
-/// No point is missed: a point of the tool moves by at most ToolShape::displacement_bound since the list was built.
-/// While this distance is at most the skin, every shell point that touches the tool is in the list. If the distance
-/// is larger, the list is rebuilt. The lists, which correspond to the slow loop of thesis 2.2, therefore only save
-/// work.
+/// No contact is missed: since the list was built, no point of the tool has moved farther than
+/// ToolShape::displacement_bound [m], which covers translation and rotation. While this bound is at most the thickness
+/// of the skin, every shell point that touches the tool is in the list. When the bound exceeds the thickness, the list
+/// is rebuilt. The list therefore saves work but does not change the result. In the thesis (2.2), a slow loop that
+/// searches the contacts has the role of the list.
 ///
-/// In free air: if the list is empty, the skin is doubled as long as it contains no point. The tool may move by the
-/// thickness of the largest empty skin before the next search. In free air a step costs one comparison.
+/// In free air, the list is empty. The thickness of the skin is then doubled as long as the doubled skin contains no
+/// point, at most kMaxDoublings times. Until the tool has moved by this thickness, a step costs one comparison.
 class NeighbourListQuery final : public ContactQuery {
  public:
   /// Builds the grid. O(n).

@@ -201,7 +201,7 @@ struct CutCase {
   }
 };
 
-/// Returns all cases, indexed by the bits of the corners inside.
+/// Returns all cases. Bit c of a case's index is 1 if the cell's corner c is inside the solid.
 const std::vector<CutCase>& cut_cases() {
   static const auto cases = [] {
     std::vector<CutCase> all;
@@ -281,7 +281,8 @@ class SlabBuilder {
     const std::vector<CutCase>& cases = cut_cases();
     for (std::size_t j = 0; j + 1 < grid_.count(1); ++j) {
       for (std::size_t w = 0; w < low_.words(); ++w) {
-        // Element c holds the bits of the corners c (numbering of CubeTriangle) of 64 cells.
+        // corners[c] has one bit for each of 64 cells: 1 if the cell's corner c (numbering of CubeTriangle) is inside
+        // the solid.
         const std::array<std::uint64_t, 8> corners{
             low_.inside(w, j),  low_.next_inside(w, j),  low_.inside(w, j + 1),  low_.next_inside(w, j + 1),
             high_.inside(w, j), high_.next_inside(w, j), high_.inside(w, j + 1), high_.next_inside(w, j + 1)};

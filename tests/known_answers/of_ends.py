@@ -567,7 +567,9 @@ def words_of_limit(bench, base, printed, resolution, row):
 
 
 def digits(bench, base, field):
-    """Checks that the table prints a limit with the digits down to the leading digit of its tolerance."""
+    """Checks the rounding of a limit in the printed table, for three values of --resolution: the last printed decimal
+    place is the place of the first non-zero digit of limit_tolerance, the width of the interval around the limit.
+    """
     for resolution in (0.1, 1e-3, 1e-5):
         ask = (
             "limit",

@@ -1,4 +1,5 @@
-"""Known answers for the stages of a force (friction, energy tank), and for forces of delayed contacts."""
+"""Known answers for two stages that modify the force of the springs (dry friction, energy tank), and for the age of
+multi-rate contacts: contacts that are searched in some steps only, arrive delayed, and may be lost."""
 import math
 
 import numpy as np

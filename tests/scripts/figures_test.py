@@ -45,7 +45,8 @@ def make_results(directory):
     for pattern, overrides in RUNS:
         scenarios = sorted((SOURCE / "scenarios" / "library" / "thesis").glob(f"{pattern}.json"))
         assert scenarios, pattern
-        # Runs of several scenarios have one directory for each scenario.
+        # hapbench makes a subdirectory for each scenario only if it runs several scenarios. For a single scenario, this
+        # line names the subdirectory.
         out = directory / "thesis" / (scenarios[0].stem if len(scenarios) == 1 else "")
         hapbench("run", *scenarios, *(f"--set={text}" for text in overrides), "--out", out)
     name = "corner_continuous_normal_projection"

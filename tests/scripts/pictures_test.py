@@ -1,5 +1,5 @@
-"""Modules used by `hapbench plot`, `hapbench report` and the figures, and the looks of algorithms: each has its own,
-legible on light and dark ground. Needs numpy."""
+"""Tests the modules used by `hapbench plot`, `hapbench report` and the figures, and the plot styles of the algorithms:
+each algorithm has a different style, legible on a light and on a dark background. Needs numpy."""
 import json
 import re
 import shutil
@@ -402,8 +402,9 @@ class Looks(unittest.TestCase):
             self.assertEqual(len(set(found)), len(found), part)
 
     def test_own_laws_are_told_apart_from_the_others_of_a_picture(self):
-        """By the same measure, for two user laws beside six other laws. By their names alone, many user laws would look
-        alike. APART, in OKLab, is at least 5 in CIEDE2000."""
+        """In a picture of two user laws and six other laws, all colours differ by at least 5 in CIEDE2000. This
+        corresponds to APART, which is a difference in OKLab. If the colours depended on the names alone, many user laws
+        would look alike."""
         others = ("mean", "shaped_stiffness", "summation", "proxy", "least_squares", "tandpasta")
         too_close = 0
         for first in range(12):
@@ -430,7 +431,8 @@ class Looks(unittest.TestCase):
             self.assertEqual(of.rstrip("]"), unit, metric)
 
     def test_the_simulation_sees_what_is_known(self):
-        """Colour blindness does not change grey, and makes a red and an olive of equal lightness look alike."""
+        """Simulated colour blindness of any type leaves a grey unchanged. Deuteranopia reduces the CIEDE2000 difference
+        between a red and an olive to less than half of the difference in usual vision."""
         for matrix in hapbench_looks.VISIONS.values():
             # The published matrices have six digits.
             np.testing.assert_allclose(simulated(["#808080"], matrix), 128 / 255, atol=1e-5)

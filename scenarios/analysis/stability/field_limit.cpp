@@ -101,7 +101,7 @@ std::size_t verification_samples(const IntervalSearchOptions& search, const Stab
   return values.size();
 }
 
-/// Writes the interval that was found into the limit.
+/// Stores in `limit` the interval that was found.
 void add_interval(const LimitQuestion& question, const StableInterval& interval, const RunCache& runs,
                   FieldLimit& limit) {
   const IntervalSearchOptions& search = question.search;
@@ -117,7 +117,7 @@ void add_interval(const LimitQuestion& question, const StableInterval& interval,
   if (search.current_parameter()) limit.own = runs.at(*search.current_parameter());
 }
 
-/// Stores in the limit all runs of the search, and the runs that contradict the interval that was found.
+/// Stores in `limit` all runs of the search, and the runs that contradict the interval that was found.
 void add_runs(const LimitQuestion& question, const std::map<double, RunStability>& runs, FieldLimit& limit) {
   const auto is_before = [&](double a, double b) { return question.search.smallest ? a > b : a < b; };
   for (const auto& [value, run] : runs) {
@@ -133,7 +133,7 @@ void add_runs(const LimitQuestion& question, const std::map<double, RunStability
   });
 }
 
-/// Finds out whether hand and device are unstable without contact, and stores the result in the limit.
+/// Finds out whether hand and device are unstable without contact, and stores the result in `limit`.
 void add_cause(const LimitQuestion& question, FieldLimit& limit) {
   const JudgedValue suspect = limit.end.beyond ? *limit.end.beyond : limit.runs.front();
   if (question.rule.holds(suspect.verdict)) return;
@@ -144,7 +144,7 @@ void add_cause(const LimitQuestion& question, FieldLimit& limit) {
   if (limit.unstable_alone && limit.unstable_part.empty()) limit.unstable_part = "hand and device";
 }
 
-/// Writes the linear limit of a tool on a surface, or the reason why there is no linear limit.
+/// Stores in `limit` the linear limit of a tool on a surface, or the reason why there is no linear limit.
 void add_linear_limit(const LimitQuestion& question, const std::map<double, RunStability>& runs, FieldLimit& limit) {
   if (limit.theory || limit.theory_has_none || question.search.smallest || !limit.end.value) return;
   const Scenario scenario = question.at(*limit.end.value).scenario;
@@ -174,7 +174,8 @@ void add_linear_limit(const LimitQuestion& question, const std::map<double, RunS
   limit.no_linear = "contacts come and go in every stable run";
 }
 
-/// Writes the limits by closed forms, and the linear limit in contact.
+/// Stores in `limit` the further theoretical limits: the limits by closed formulas, the linear limit with the worst of
+/// the typical hands, and the linear limit of a tool in contact. If a linear limit is missing, also stores the reason.
 void add_formulas(const LimitQuestion& question, const std::map<double, RunStability>& runs, FieldLimit& limit) {
   limit.closed_form = inequality_limit(question).value;
   WallLimits wall = wall_limits(question);

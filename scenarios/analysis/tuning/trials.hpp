@@ -68,7 +68,8 @@ class Trials {
   const TuneRanges& ranges() const { return ranges_; }
   /// Returns the number of variants, including the scene itself. A trial makes this number of runs at K.
   std::size_t variant_count() const { return variants_.size(); }
-  /// Returns true if the variants have other hands.
+  /// Returns true if the question includes the variants "hands" (scene_variants()), in which the hand has other
+  /// stiffnesses or masses than in the scene.
   bool over_hands() const { return over_hands_; }
   /// Returns the overrides that apply a setting and K [N/m] to the scene.
   std::vector<std::string> overrides(const TuneSetting& setting, double stiffness) const;

@@ -9,10 +9,11 @@
 #include "sim/core/types.hpp"
 #include "sim/loop/simulation.hpp"
 
-/// Motion and force of a run at times that runs with other time steps share, and their differences.
+/// Samples the motion and the force of a run in every TimeFields::stride-th step. Runs with different time steps are
+/// sampled at the same times if step times stride is equal, and can then be compared sample by sample.
 namespace hapbench {
 
-/// Tip position and rendered force of a run at the times of every n-th step.
+/// Tip position and rendered force of a run in every n-th step, n = TimeFields::stride.
 struct SampledMotion {
   std::vector<Vec3> position;  ///< position of the tip centre [m]
   std::vector<Vec3> force;     ///< rendered force [N]

@@ -173,7 +173,8 @@ def disagreement(springs):
         return []
     ends = np.array([one["stiffness_interval"] for one in springs])
     values = [one["stiffness_N_per_m"] for one in springs]
-    # Stiffness differences up to the fraction `share` do not count. The sampling of a velocity alone can cause them.
+    # Relative differences of the stiffness up to `share` do not count: even without noise, a velocity that is known
+    # only at the sampling times can cause such differences.
     share = 0.02
     common = max(
         np.sum((ends[:, 0] <= (1.0 + share) * x) & (x * (1.0 - share) <= ends[:, 1]))

@@ -439,8 +439,10 @@ def with_zeros(recording, count):
 
 
 def extra_columns(names, quantity, word, axes):
-    """Returns the columns of a quantity of EXTRA, or None if the log has no such columns. `word`: name or number that
-    the user gave; None searches for a usual name. `axes`: number of axes of the log."""
+    """Returns the columns of a quantity of EXTRA (velocity, measured force, number of contacts). `word`: name or number
+    of a column that the user gave, or None. Fails if the log does not have the column that the user gave. Without
+    `word`, searches for a column with a usual name, and returns None if the log has no such column, or no columns for
+    its y and z components. `axes`: number of axes of the log."""
     if word is not None:
         column, by_number = names.find(quantity, [word], ("_x", ".x", "x", "[0]", "_0", ".0", "0"))
         if column is None:

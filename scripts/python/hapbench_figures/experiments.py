@@ -1,5 +1,5 @@
-"""The man-machine experiments with simulated subjects against the published means (figures D.7 and D.8), and the
-dependence of their success on the checks of the task (a figure of this project)."""
+"""The man-machine experiments of the thesis with simulated subjects, compared with the published means (thesis Fig. D.7
+and D.8), and the dependence of the success rate on how the task checks the force (a figure of this project)."""
 import json
 import warnings
 
@@ -68,7 +68,7 @@ def published_test(claim):
 
 
 def questionnaires(results):
-    """Returns the published efforts (figure D.6), which the ledger stores as claim D5."""
+    """Returns the figure of the published efforts (thesis Fig. D.6), which the ledger stores as claim D5."""
     results.json("claims.json")
     figure, axes = style.panels(1, 2, 2.2, gridspec_kw={"width_ratios": [2, 1]})
     effort, relative = axes[0]
@@ -162,13 +162,16 @@ CHECKED = (
 
 
 def recorded(results, task, place, method):
-    """Returns the success of all subjects if every sample of the force is checked, as in the scene."""
+    """Returns the success rate at a target position in the recorded runs: the fraction of the targets that the subjects
+    removed, over all subjects. In these runs the task compares the force of every step with the threshold, without
+    low-pass filter and grace period."""
     rows = results.records(f"thesis/{task}_peg_in_hole_{method}/targets.csv")
     return numbers([row for row in rows if row["place"] == str(place)], "removed").mean()
 
 
 def checked(results, task, place):
-    """Yields (cutoff [Hz] or None, grace period [s], success) of the original algorithm with other thresholds."""
+    """Yields (cutoff [Hz] or None, grace period [s], success rate) of the original algorithm for each setting of the
+    low-pass filter and of the grace period in the sweep."""
     for row in results.records("checked_force/sweep.csv"):
         if row["scenario"] == f"{task}_peg_in_hole_{DP}":
             threshold = json.loads(row["hand.task.threshold"])
@@ -178,8 +181,8 @@ def checked(results, task, place):
 
 
 def threshold(results):
-    """Draws the success of the original algorithm over grace period and bandwidth of the checked force, beside the
-    success of stiffness shaping."""
+    """Draws the success rate of the original algorithm over the grace period, with and without a low-pass filter of the
+    checked force, beside the success rate of stiffness shaping."""
     figure, axes = style.panels(1, 4, 2.7, sharey=True)
     said = []
     for ax, (task, place, claim, title) in zip(axes[0], CHECKED):

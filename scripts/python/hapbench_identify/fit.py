@@ -83,8 +83,10 @@ class Cost:
         return self.measured - self._centred(self.simulated(parameters))
 
     def sensitivities(self, x, scale, free, central=False):
-        """Returns the derivative of the simulated positions by each free parameter, in units of `scale`, with a row for
-        each parameter."""
+        """Returns the derivatives of the simulated positions with respect to the free parameters at `x`, with a row for
+        each free parameter and a column for each position. Each row is multiplied by the parameter's entry in `scale`,
+        so that its unit is m. `free`: true for each parameter that is free. `central`: true for central differences,
+        false for forward differences."""
         h = (1e-4 if central else 1e-6) * scale
         here = None if central else self.simulated(x)
         rows = []
@@ -344,9 +346,11 @@ def _degenerate(J, strokes):
 
 
 def _spreads(J, places, encoder_step, rms):
-    """Returns standard errors in units of the rows of J, except for the last row. The residual has two parts: noise,
-    whose samples are independent, and the encoder error. The encoder error is constant while the handle stays within
-    one count, so all samples of this time count as one sample."""
+    """Returns two arrays of standard errors, with an entry for each row of J except the last row. Each entry is in
+    units of the `scale` by which sensitivities() multiplied the row. The first array treats all samples of the residual
+    as independent. The second array treats the residual as the sum of noise, whose samples are independent, and of the
+    encoder error. The encoder error is constant while the handle stays within one count, so all samples of this time
+    count as one sample."""
     H = J @ J.T
     inverse = np.linalg.pinv(H, rcond=1e-14, hermitian=True)
     of_encoder = 0.0

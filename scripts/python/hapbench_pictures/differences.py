@@ -134,15 +134,17 @@ def number(text):
 
 
 def sizes(a, b, largest=0.0):
-    """Returns |a - b|, absolute and relative to `largest` or to the larger of the two."""
+    """Returns the absolute difference |a - b| and the relative difference |a - b| / max(`largest`, |a|, |b|). Both are
+    NO_NUMBER if a or b is not a finite number, and 0 if a equals b."""
     x, y = number(a), number(b)
     size = abs(x - y) if math.isfinite(x) and math.isfinite(y) else NO_NUMBER
     return size, size / max(largest, abs(x), abs(y)) if 0 < size < NO_NUMBER else size
 
 
 def of_tables(a, b):
-    """Returns for each column that differs the row with the largest difference, relative to the column's largest
-    magnitude."""
+    """Returns an entry for each column that differs: the row with the largest absolute difference, with both values.
+    The relative difference is relative to the column's largest magnitude. Also returns an entry if the numbers of rows
+    or the names of the columns differ."""
     (names_a, rows_a), (names_b, rows_b) = read_rows(a), read_rows(b)
     found = [
         (what, one, other, NO_NUMBER, NO_NUMBER)

@@ -14,8 +14,8 @@ from .given import axis
 from .over_axes import Axis, look_of, over_axes
 
 LIMIT, LIMIT_RUNS = "limit.csv", "limit_runs.csv"
-# Closed forms and other known limits, as columns of limit.csv. If the loop has no theoretical limit, as with dry
-# friction, the closed forms of stability are not drawn.
+# Limits by closed formulas and for the worst hand: columns of limit.csv and their labels. If the loop has no
+# theoretical limit, for example because of dry friction, the formulas for stability (OF_THEORY) are not drawn.
 KNOWN = {
     "worst_hand_limit": "linear limit, worst hand",
     "passive_colgate_schenkel": "passive (Colgate, Schenkel)",
@@ -73,7 +73,9 @@ class Limits:
         )
 
     def known(self, rows):
-        """Returns label, values and look of each known limit that has a number in some row."""
+        """Returns (label, values, plot style) of each limit of KNOWN that has a finite value in some row. Values of the
+        limits OF_THEORY are used only in rows with a finite theoretical_limit, and are NaN in all other rows.
+        """
         found, has_edge = [], np.isfinite(numbers(rows, "theoretical_limit"))
         for (name, label), own in zip(KNOWN.items(), KNOWN_LOOKS):
             values = numbers(rows, name) if name in rows[0] else np.array([])

@@ -174,7 +174,7 @@ def curves_section(runs, labels):
 
 
 def spoken(quantity, samples, labels):
-    """Returns the description of the picture for screen readers: the range of every run."""
+    """Returns the description of the picture for screen readers: label and range of each run with a finite value."""
     parts = []
     for s, label in zip(samples, labels):
         found = s.of(quantity)

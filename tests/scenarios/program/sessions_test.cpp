@@ -11,17 +11,18 @@
 #include "tests/scenarios/support/program.hpp"
 #include "tests/scenarios/support/scenarios.hpp"
 
-/// The texts of the program, as sessions at a terminal: tests/data/golden/*.txt. A session begins in a folder with
-/// cube.obj, shell.csv and stroke.csv. Its lines are
+/// Compares the output of the program hapbench with stored sessions at a terminal: tests/data/golden/*.txt. A session
+/// starts in a folder with cube.obj, shell.csv and stroke.csv. Its lines are
 ///
 ///     # a comment
-///     + NAME TEXT             writes a file; "\n" in the text ends a line
-///     $ hapbench WORDS…       runs the program, with words as a shell takes them
-///     $ keys hapbench WORDS…  the same, but of JSON on standard output only the paths of its keys, sorted
+///     + NAME TEXT             writes the file NAME; "\n" in the text ends a line
+///     $ hapbench WORDS…       runs the program, with the words split and expanded by the rules of a shell
+///     $ keys hapbench WORDS…  runs the program, and replaces JSON on standard output by the sorted paths of its keys
 ///     $ ls                    lists the files of the session
 ///
-/// and what the program answers: standard output behind two blanks, standard error behind "! ", an exit status other
-/// than 0 behind "= ". After a change of texts this renews the answers, to be read as a diff and committed:
+/// The lines after a command hold its output: standard output after two blanks, standard error after "! ", and an exit
+/// status other than 0 after "= ". After a change of the program's texts, this command updates the stored output. Read
+/// the changes as a diff before you commit them:
 ///
 ///     HAPBENCH_RENEW_GOLDEN=1 build/release/bin/program_test --gtest_filter='*Sessions*'
 namespace hapbench::sessions_test {
@@ -78,7 +79,7 @@ std::string keys_of(const std::string& text) {
   return lines;
 }
 
-/// Runs a session and records the answers of the built program.
+/// Runs the commands of a session file with the compiled program, in a temporary folder, and records their output.
 class Session {
  public:
   Session() {

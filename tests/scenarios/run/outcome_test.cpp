@@ -549,7 +549,8 @@ TEST(Diagnosis, AdvisesNothingThatIsWrongInTheScene) {
   }
 }
 
-/// 0.8 N of dry friction against 100 N/m and 4.5 mm: the handle does not move.
+/// The target of the hand moves away from the handle by 4.5 mm, so that the hand's spring of 100 N/m pulls with at most
+/// 0.45 N. The handle does not move, because its dry friction is 0.8 N.
 TEST(Diagnosis, NamesTheFrictionThatHoldsTheHandle) {
   const Result result = run({"impedance_at_wall", {"device.coulomb_N=0.8", "hand.stiffness_N_per_m=100"}});
   ASSERT_EQ(result.end.outcome, Outcome::no_contact);

@@ -125,8 +125,8 @@ TEST(SpringSource, HasTheContactsOfItsKindOfSprings) {
   }
 }
 
-// Compares late contacts with an independent implementation of their definition, which uses all poses of a run, without
-// ring buffers.
+// Compares multi-rate contacts with an independent implementation of their definition, which uses all poses of a run
+// and no ring buffers.
 
 /// Contacts that are a function of the pose; their number also depends on the pose.
 class PoseSource final : public ContactSource {
@@ -268,7 +268,9 @@ TEST_P(LateContactsOfAnyWay, AreTheFreshOnesOfTheQueryMovedAsTheToolWas) {
   EXPECT_EQ(dropped > 0, late.linear);
 }
 
-/// Springs that pull keep their negative depths, so linear contacts of springs equal contacts found in every step.
+/// If springs may pull, contacts with a negative depth are not dropped. The depth of a spring is linear in the position
+/// of the tool. Contacts that are found in every eighth step, with depths extrapolated linearly between these steps,
+/// therefore equal contacts that are found in every step.
 TEST(MultiRateContacts, OfSpringsThatPullAreFreshWhenLinear) {
   const auto springs = std::make_shared<SpringSet>();
   Random random(1);
