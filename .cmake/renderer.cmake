@@ -12,7 +12,8 @@ set_target_properties(hapbench_renderer PROPERTIES
 target_include_directories(hapbench_renderer INTERFACE
   $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/device_model/live> $<INSTALL_INTERFACE:include>)
 # -Wl, would split a path at its commas.
-target_link_options(hapbench_renderer PRIVATE "SHELL:-Xlinker \"--version-script=${CMAKE_CURRENT_LIST_DIR}/renderer.map\""
+target_link_options(hapbench_renderer PRIVATE
+  "SHELL:-Xlinker \"--version-script=${CMAKE_CURRENT_LIST_DIR}/renderer.map\""
   -Wl,--as-needed -Wl,--no-undefined)
 target_link_libraries(hapbench_renderer
   PRIVATE $<LINK_LIBRARY:WHOLE_ARCHIVE,hapbench_scenarios_renderer> hapbench_flags)

@@ -82,7 +82,7 @@ class Side {
 /// through the three best points so far. If the vertex is not well inside the interval, the step is a golden section.
 /// `best`: start point in the interval; `top`: its value.
 template <class Function>
-// NOLINTNEXTLINE(readability-function-cognitive-complexity): the steps are those of the published algorithm.
+// NOLINTNEXTLINE(readability-function-cognitive-complexity): follows the published algorithm step by step.
 double maximum_in(const Function& f, double low, double high, double best, double top) {
   constexpr double kGolden = 2.0 - std::numbers::phi;
   double second = best, third = best, f_second = top, f_third = top;

@@ -28,9 +28,9 @@ Json& element_at(Json& list, std::string_view key, const std::string& path) {
 
 Json override_value(const std::string& text) {
   if (Json::accept(text)) return parse_json(text);
-  const std::string_view unsigned_text = std::string_view(text).substr(text.starts_with('+') ? 1 : 0);
-  const auto number = unsigned_text.starts_with('-') ? finite_number(text) : finite_number(unsigned_text);
-  if (number) return *number;
+  std::string_view number_text = text;
+  if (text.starts_with('+') && !text.starts_with("+-")) number_text.remove_prefix(1);
+  if (const auto number = finite_number(number_text)) return *number;
   return text;
 }
 
