@@ -100,7 +100,7 @@ class Reproduce(unittest.TestCase):
             )
         )
         program = f'#!/bin/sh\necho "$@" >> ran\ncase "$* " in\n{makes}esac\n'
-        status, said, err = self.run_with(program, "--figure", ",".join(needs))
+        status, output, err = self.run_with(program, "--figure", ",".join(needs))
         self.assertEqual(status, 0, err)
         ran = (self.root / "ran").read_text().splitlines()
         self.assertIn(f"run wedge --out {out}/thesis/wedge", ran)
@@ -114,10 +114,10 @@ class Reproduce(unittest.TestCase):
             "scripts/figures",
             '#!/bin/sh\necho "figures: skipped 2 (no nowhere/x.csv)" >&2\nexit 1\n',
         )
-        status, said, err = self.run_with(NOTHING, "--figure", "2")
+        status, output, err = self.run_with(NOTHING, "--figure", "2")
         self.assertEqual(status, 1)
         self.assertIn("no study makes nowhere", err)
-        self.assertIn("skipped 2", said)
+        self.assertIn("skipped 2", output)
 
     def test_a_claim_with_its_figures(self):
         self.put("scripts/figures", '#!/bin/sh\necho "drawn: $*"\n')
