@@ -27,8 +27,8 @@ def packed_files(scenes):
         for file in sorted(SCENARIOS.glob("*/*.json"))
         if file.parent.name not in ("studies", "presets")
     }  # scenario files by name
-    place = lambda file: f"/scenarios/{file.relative_to(SCENARIOS).as_posix()}"
-    files = {place(file): file.read_text(encoding="utf-8") for file in bundled.values()}
+    url_of = lambda file: f"/scenarios/{file.relative_to(SCENARIOS).as_posix()}"
+    files = {url_of(file): file.read_text(encoding="utf-8") for file in bundled.values()}
     for scene in scenes:
         name = scene["scenario"]
         while name:
@@ -38,7 +38,7 @@ def packed_files(scenes):
                 for part in objects_in(scenario)
                 if isinstance(part.get("file"), str)
             ):
-                files[place(file)] = file.read_text(encoding="utf-8")
+                files[url_of(file)] = file.read_text(encoding="utf-8")
             name = Path(scenario["extends"]).stem if "extends" in scenario else None
     return files
 

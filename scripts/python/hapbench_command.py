@@ -25,7 +25,7 @@ from hapbench.errors import InputError
 # Help text of an option that has the same meaning in every command.
 SHARED = 'shared options; "hapbench --help" explains them'
 SUCCESS, FAILED, BAD_INPUT, DIFFERENT, INTERRUPTED = 0, 1, 2, 3, 130
-MOST_FAULTS = 20  # largest number of faults in one error message
+MAX_FAULTS = 20  # largest number of faults in one error message
 SILENCE = 2.0  # time before the first progress notice [s]
 SCHEMA = Path(__file__).resolve().parents[2] / "scenarios" / "library" / "scenario.schema.json"
 
@@ -33,7 +33,7 @@ _unfinished = set()  # temporary files of write(), which are removed after Ctrl-
 _written = []  # files that write() completed
 
 
-def say_error(text):
+def print_error(text):
     """Prints one line on standard error, in the form of the program. Control characters, such as in file names, are
     replaced by "?"."""
     line = "".join("?" if c < " " or c == "\x7f" else c for c in str(text))
@@ -44,7 +44,7 @@ class Arguments(argparse.ArgumentParser):
     """A parser that prints errors in one line, without the usage."""
 
     def error(self, message):
-        say_error(f"{message}; {self.prog} --help shows what there is")
+        print_error(f"{message}; {self.prog} --help shows what there is")
         sys.exit(BAD_INPUT)
 
 
@@ -123,7 +123,7 @@ class CommandLine(Arguments):
             message = f'unknown option "{word}"{nearest(word, names)}'
         elif subject == "unrecognized arguments":
             message = f'unexpected argument "{word}"'
-        say_error(
+        print_error(
             f'{self.name}: {message.removeprefix("argument ")}; "{self.prog} --help" explains'
         )
         sys.exit(BAD_INPUT)
@@ -180,7 +180,7 @@ def the_program():
     return os.environ.get("HAPBENCH_PROGRAM") or shutil.which("hapbench")
 
 
-def asked_of_program(what, *words):
+def output_of_program(what, *words):
     """Returns the text that the program prints for the arguments `words`. `what` completes the message for a missing
     program, such as "evaluates --where". Raises InputError with the program's messages if the program fails.
     """
@@ -223,7 +223,7 @@ def stop_on_ctrl_c(name):
         if isinstance(error, OSError):
             unwritable(error)
         else:
-            say_error(error if isinstance(error, InputError) else internal_error(name, error))
+            print_error(error if isinstance(error, InputError) else internal_error(name, error))
 
     sys.excepthook = fail_in_one_line
     # A shell starts background jobs with Ctrl-C ignored. Keep it ignored.
@@ -256,11 +256,11 @@ def _end(status):
 def internal_error(name, error):
     """Prints one line about an unexpected exception, with the source line."""
     frames = traceback.extract_tb(error.__traceback__)
-    place = f" ({Path(frames[-1].filename).name}, line {frames[-1].lineno})" if frames else ""
+    location = f" ({Path(frames[-1].filename).name}, line {frames[-1].lineno})" if frames else ""
     if isinstance(error, MemoryError):
-        return f"{name}: not enough memory{place}"
+        return f"{name}: not enough memory{location}"
     text = str(error) or "no message"
-    return f"{name}: internal error: {type(error).__name__}: {text}{place}"
+    return f"{name}: internal error: {type(error).__name__}: {text}{location}"
 
 
 def exit_status(name, doing, work):
@@ -274,7 +274,7 @@ def exit_status(name, doing, work):
         return status or SUCCESS
     except InputError as error:
         for fault in getattr(error, "lines", [error]):
-            say_error(fault)
+            print_error(fault)
         return BAD_INPUT
     except BrokenPipeError:
         # The reader of the pipe, such as `head`, has closed it.
@@ -286,7 +286,7 @@ def exit_status(name, doing, work):
         print(f"hapbench: {name} {stopped()}", file=sys.stderr)
         return INTERRUPTED
     except Exception as error:
-        say_error(internal_error(name, error))
+        print_error(internal_error(name, error))
         return FAILED
 
 
@@ -344,7 +344,7 @@ def nearest(name, names):
 
 
 class Faults(InputError):
-    """Several faults: a list of (place, problem)."""
+    """Several faults: a list of (location, problem)."""
 
     def __init__(self, faults):
         super().__init__(faults)
@@ -352,14 +352,16 @@ class Faults(InputError):
 
     @property
     def lines(self):
-        lines = [f"{place}: {problem}" if place else problem for place, problem in self.list]
+        lines = [
+            f"{location}: {problem}" if location else problem for location, problem in self.list
+        ]
         return lines + (
-            [f"no more than {MOST_FAULTS} are shown"] if len(lines) == MOST_FAULTS else []
+            [f"no more than {MAX_FAULTS} are shown"] if len(lines) == MAX_FAULTS else []
         )
 
 
-def fail(problem, place=""):
-    raise Faults([(place, problem)])
+def fail(problem, location=""):
+    raise Faults([(location, problem)])
 
 
 def require_name(got, name, valid):
@@ -424,12 +426,12 @@ def unwritable(error):
     if error.filename is None:
         with suppress(OSError, ValueError):
             os.dup2(os.open(os.devnull, os.O_WRONLY), 1)  # the remaining output cannot be printed
-        say_error(f"cannot write to standard output: {error.strerror or error}")
+        print_error(f"cannot write to standard output: {error.strerror or error}")
         return FAILED
     if error.errno in (errno.ENOSPC, errno.EDQUOT, errno.EIO):
-        say_error(f"cannot write {error.filename}: {error.strerror}")
+        print_error(f"cannot write {error.filename}: {error.strerror}")
         return FAILED
-    say_error(f"--out {error.filename}: {error.strerror}")
+    print_error(f"--out {error.filename}: {error.strerror}")
     return BAD_INPUT
 
 

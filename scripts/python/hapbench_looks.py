@@ -5,7 +5,7 @@ Every colour has a contrast of at least 4.5 to its ground (WCAG 2.1, AA), so tha
 on white, `dark` on the dark page. For readers with deuteranopia, protanopia or tritanopia the colours of ALGORITHMS
 differ by at least 6 (CIEDE2000), and the colours of SERIES by at least 12; a test simulates their vision. Dashes and
 markers also distinguish curves. An algorithm without an entry gets a look that depends on its name, or another look if
-two algorithms of a picture would look alike (tell_apart).
+two algorithms of a picture would look alike (distinguish()).
 """
 import colorsys
 import zlib
@@ -99,7 +99,7 @@ FURTHER_MARKERS = ("8", "H", "3", "4", "+", "x", ".")
 LUMINANCES = ((0.14, 0.30), (0.05, 0.60))
 HUES = 24
 # Distance in OKLab from which colours of lines in a figure can be distinguished: about 6 in CIEDE2000.
-APART = 0.08
+MIN_DISTANCE = 0.08
 CHOSEN = {}  # look by name, for the current picture
 
 # Matrices of linear RGB that simulate types of colour vision: Machado, Oliveira and Fernandes (IEEE TVCG 15, 2009),
@@ -151,7 +151,7 @@ def law_name(algorithm):
 
 
 def look(algorithm):
-    """Returns the look of an algorithm. Without an entry above, it follows from the name, unless tell_apart chose
+    """Returns the look of an algorithm. Without an entry above, it follows from the name, unless distinguish() chose
     another look."""
     return ALGORITHMS.get(algorithm) or CHOSEN.get(algorithm) or by_name(algorithm)
 
@@ -168,7 +168,7 @@ def by_name(algorithm):
     )
 
 
-def tell_apart(algorithms):
+def distinguish(algorithms):
     """Chooses the looks of the algorithms of one picture that have no entry: the look that follows from the name, or,
     if it is too close to another look for some type of colour vision, the most distant colour of all hues.
     """
@@ -177,23 +177,23 @@ def tell_apart(algorithms):
     looks = [Look("", PUBLISHED, PUBLISHED_DARK, (), "")]
     looks += [ALGORITHMS[name] for name in names if name in ALGORITHMS]
     hues = [in_hue(i / HUES, of) for of in LUMINANCES for i in range(HUES)]
-    late = []  # names whose default colour is too close to another colour
+    too_close = []  # names whose default colour is too close to another colour
     for name in (name for name in names if name not in ALGORITHMS):
-        own = by_name(name)
-        if distance((own.colour, own.dark), looks) < APART:
-            late.append(name)
+        default = by_name(name)
+        if distance((default.colour, default.dark), looks) < MIN_DISTANCE:
+            too_close.append(name)
             continue
-        CHOSEN[name] = replace(own, marker=free_marker(own, looks))
+        CHOSEN[name] = replace(default, marker=free_marker(default, looks))
         looks.append(CHOSEN[name])
-    for name in late:
-        own, (light, dark) = by_name(name), max(hues, key=lambda pair: distance(pair, looks))
-        CHOSEN[name] = replace(own, colour=light, dark=dark, marker=free_marker(own, looks))
+    for name in too_close:
+        default, (light, dark) = by_name(name), max(hues, key=lambda pair: distance(pair, looks))
+        CHOSEN[name] = replace(default, colour=light, dark=dark, marker=free_marker(default, looks))
         looks.append(CHOSEN[name])
 
 
-def free_marker(own, looks):
+def free_marker(default, looks):
     used = [one.marker for one in looks]
-    return next((m for m in (own.marker, *FURTHER_MARKERS) if m not in used), own.marker)
+    return next((m for m in (default.marker, *FURTHER_MARKERS) if m not in used), default.marker)
 
 
 def distance(pair, looks):

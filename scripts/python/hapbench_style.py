@@ -145,10 +145,11 @@ LINE = 0.17  # height of a line of a legend [inch]
 LETTER = 0.062  # mean width of a letter of a legend or label [inch]
 
 
-def legend_columns(labels, width, most=4):
+def legend_columns(labels, width, max_columns=4):
     """Returns the number of columns in which a legend with these labels fits into `width` [inch]."""
     return max(
-        1, min(most, len(labels), int((width - 0.1) / (0.6 + LETTER * max(map(len, labels)))))
+        1,
+        min(max_columns, len(labels), int((width - 0.1) / (0.6 + LETTER * max(map(len, labels))))),
     )
 
 
@@ -232,7 +233,7 @@ def picture(figure, kind, salt="hapbench", dpi=DPI):
     return compact(drawn.getvalue().decode()).encode() if kind == "svg" else drawn.getvalue()
 
 
-PLACES = re.compile(r'( (?:d|x|y)=")([^"]*)')  # attributes of an SVG that contain coordinates
+COORDINATES = re.compile(r'( (?:d|x|y)=")([^"]*)')  # attributes of an SVG that contain coordinates
 DISC = re.compile(r'<path id="(\w+)" d="M 0 ([\d.]+) \nC[^"]*z\n"')
 # Matplotlib gives the style to the group or, in newer versions, to each disc.
 DISCS = re.compile(
@@ -246,10 +247,12 @@ def as_dots(svg):
     radii = dict(DISC.findall(svg))
 
     def dots(group):
-        clip, css, uses, name, own = group.groups(default="")
-        if len(set(re.findall(r"#\w+|style=[^/]*", uses))) > (2 if own else 1) or not (css or own):
+        clip, css, uses, name, style_of_disc = group.groups(default="")
+        if len(set(re.findall(r"#\w+|style=[^/]*", uses))) > (2 if style_of_disc else 1) or not (
+            css or style_of_disc
+        ):
             return group[0]
-        css = dict(item.split(": ") for item in (css or own).rstrip("; ").split("; "))
+        css = dict(item.split(": ") for item in (css or style_of_disc).rstrip("; ").split("; "))
         fill, stroke = css.pop("fill", "#000000"), css.pop("stroke", "none")
         if name not in radii or stroke not in ("none", fill):
             return group[0]
@@ -257,9 +260,9 @@ def as_dots(svg):
             float(css.pop("stroke-width", 1)) if stroke == fill else 0
         )
         opacity = css.get("fill-opacity", css.get("opacity", "1"))
-        places = "".join(f"M{x} {y}h0" for x, y in re.findall(r'x="([^"]*)" y="([^"]*)"', uses))
+        moves = "".join(f"M{x} {y}h0" for x, y in re.findall(r'x="([^"]*)" y="([^"]*)"', uses))
         return (
-            f'<path d="{places}"{clip} style="fill: none; stroke: {fill}; stroke-opacity: '
+            f'<path d="{moves}"{clip} style="fill: none; stroke: {fill}; stroke-opacity: '
             f"{opacity}; stroke-linecap: round; "
             f'stroke-width: {width:.2f}"/>'
         )
@@ -271,9 +274,9 @@ def compact(svg):
     """Returns the same drawing with half the bytes: coordinates rounded to a tenth of a point, repeated styles as
     classes, short identifiers, and no parts that are visible only in the source."""
     svg = as_dots(re.sub(r"<!--.*?-->|<metadata>.*?</metadata>|<g[^>]*/>", "", svg, flags=re.S))
-    svg = PLACES.sub(
-        lambda place: place[1]
-        + re.sub(r"-?\d+\.\d+", lambda n: f"{round(float(n[0]), 1):g}", place[2]),
+    svg = COORDINATES.sub(
+        lambda found: found[1]
+        + re.sub(r"-?\d+\.\d+", lambda n: f"{round(float(n[0]), 1):g}", found[2]),
         svg,
     )
     svg = re.sub(r' transform="rotate\(-0 [^)]*\)"', "", svg)
@@ -319,10 +322,10 @@ def reduced(time, low, high, spans):
 
 def curve(time, low, high, spans):
     """Returns the result of reduced() as one line that goes down and up within each span."""
-    t, least, most = reduced(time, low, high, spans)
+    t, smallest, largest = reduced(time, low, high, spans)
     if len(t) == len(time):
         return time, low
-    return np.repeat(t, 2), np.column_stack([least, most]).ravel()
+    return np.repeat(t, 2), np.column_stack([smallest, largest]).ravel()
 
 
 STRIPE = 6  # [points]
@@ -335,7 +338,7 @@ def equal_curves(curves):
     return [(keys[:i].count(key), keys.count(key)) for i, key in enumerate(keys)]
 
 
-def striped(ls, place, count):
+def striped(ls, index, count):
     """Returns the line style of one of `count` coinciding curves: stripes that alternate, so that each curve is
     visible. A single curve keeps the given style."""
-    return ls if count == 1 else (place * STRIPE, (STRIPE, STRIPE * (count - 1)))
+    return ls if count == 1 else (index * STRIPE, (STRIPE, STRIPE * (count - 1)))

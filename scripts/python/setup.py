@@ -27,7 +27,7 @@ CPU_SECONDS = 420  # processor time of a build from scratch [s], divided among t
 OPTIONS = ("HAPBENCH_BUILD_TESTS=OFF", "HAPBENCH_BUILD_RENDERER=OFF", "HAPBENCH_BUILD_PYTHON=ON")
 
 
-def say(text):
+def print_progress(text):
     """Prints a line on the terminal. pip shows no output of a build, but leaves the terminal accessible."""
     print(f"hapbench: {text}", file=sys.stderr, flush=True)
     if sys.stderr.isatty():
@@ -53,7 +53,7 @@ def compile_program():
     if not (BUILD / "CMakeCache.txt").is_file():
         processors = len(os.sched_getaffinity(0))
         minutes = max(1, round(CPU_SECONDS / processors / 60))
-        say(f"compiling in {BUILD}, about {minutes} min on {processors} processors")
+        print_progress(f"compiling in {BUILD}, about {minutes} min on {processors} processors")
         options = [*OPTIONS, f"Python_EXECUTABLE={sys.executable}"]
         run("cmake", "--preset", "release", "-B", BUILD, *(f"-D{option}" for option in options))
     run("cmake", "--build", BUILD, "--target", "bin/hapbench", "_hapbench")

@@ -161,9 +161,9 @@ class Bench:
         known, printed = (plain.get(type(v), lambda x: x)(v) for v in (known, printed))
         self.answers.append(Answer(self.scene, field, known_by, within, known, printed, naive))
 
-    def proven(self, field, file, test, said, refused):
+    def proven(self, field, file, test, accepted, rejected):
         """Adds an answer that a test in C++ proves. The source of this test must contain two texts: the known answer
-        `said` and the rejected answer `refused`."""
+        `accepted` and the rejected answer `rejected`."""
         suite, name = test.split(".")
         body = re.search(
             rf"TEST(_F)?\({suite}, {name}\) {{(.*?)\n}}",
@@ -173,7 +173,7 @@ class Bench:
         found = body[2] if body else ""
         self.add(
             field,
-            said in found and refused in found,
+            accepted in found and rejected in found,
             True,
             f"the test {test}",
             EXACT,

@@ -65,14 +65,14 @@ def rows_of_ranking(scenes, runs):
                 "rank": number(rank.get(law) if ranked else None),
             }
         )
-        own = [
+        valid = [
             math.nan if runs[s, law, k].metric(metric) is None else runs[s, law, k].metric(metric)
             for k in range(SEEDS)
         ]
         naive.append(
             {
                 "failed": 0,
-                "mean": float(np.nanmean([*own, 0.0])),
+                "mean": float(np.nanmean([*valid, 0.0])),
                 "spread": number(np.std(values[law]) if law in means else None),
                 "rank": 1 + LAWS.index(law),
                 "common_seeds": SEEDS - bad[law],
@@ -85,7 +85,7 @@ def rows_of_ranking(scenes, runs):
 
 
 @scene
-def league(bench):
+def ranking(bench):
     """Checks the ranking of laws for a mass on two parallel springs, in two scenes. In the second scene, the springs
     are so stiff that leapfrog amplifies every step of most laws, and some starts leave the bounds. The ranking follows
     from its definition: means over common seeds, and ranks."""
@@ -131,7 +131,7 @@ def league(bench):
     }
     table = Table(out / "ranking.csv")
     known, naive, ranks = rows_of_ranking(scenes, runs)
-    says = {
+    wrong_answers = {
         "failed": "of runs that diverge",
         "mean": "over all seeds",
         "spread": "with n in place of n - 1",
@@ -143,8 +143,8 @@ def league(bench):
     for name in table.names:
         column = [row[name] for row in known]
         wrong = (
-            (says[name], [row[name] for row in naive])
-            if name in says
+            (wrong_answers[name], [row[name] for row in naive])
+            if name in wrong_answers
             else ("in another order", column[::-1])
         )
         bench.add(

@@ -19,7 +19,7 @@ def sampled_finer(bench):
         "plane_wiped_round",
     )
     spaced = lambda part: ["--set", f"environment.spacing_m={0.0004 / part}"]
-    said = bench.json(
+    printed = bench.json(
         "compare",
         scene_name,
         *spaced(1),
@@ -51,7 +51,7 @@ def sampled_finer(bench):
         steps = norms(np.diff(f, axis=0, prepend=f[:1]))[Phases(touching, 1 / 2048).settled]
         return [nearest_rank(steps, 0.99), norms(f).max()]
 
-    own = {law: measured(law, 1, 1) for law in laws}
+    unrefined = {law: measured(law, 1, 1) for law in laws}
     finer = {
         law: {
             "spacing": [measured(law, part, 1) for part in (2, 4)],
@@ -59,35 +59,37 @@ def sampled_finer(bench):
         }
         for law in laws
     }
-    for m, row in enumerate(said):
+    for m, row in enumerate(printed):
         for part in ("spacing", "step"):
             # The error is at least the difference between the runs. If the order of convergence is known, the error is
             # 1.25 |f - f*| instead, with the extrapolated value f*. Histogram bins of p99 are 1.6 % wide.
-            far = [max(abs(own[law][m] - runs[m]) for runs in finer[law][part]) for law in laws]
-            least = [
+            far = [
+                max(abs(unrefined[law][m] - runs[m]) for runs in finer[law][part]) for law in laws
+            ]
+            is_bound = [
                 n[f"error_of_{part}"] is None
-                or n[f"error_of_{part}"] > 0.9 * f - 0.02 * own[law][m]
+                or n[f"error_of_{part}"] > 0.9 * f - 0.02 * unrefined[law][m]
                 for n, f, law in zip(row["numbers"], far, laws)
             ]
             bench.add(
                 f"compare --json: error_of_{part}",
-                least,
+                is_bound,
                 [True] * 4,
                 "no less than single runs are apart",
                 EXACT,
                 ("less", [False] * 4),
             )
         values = {n["algorithm"]: (n["value"], n["error_estimate"]) for n in row["numbers"]}
-        apart = lambda a, b: values[b][0] - values[a][0] > values[a][1] + values[b][1]
-        place = {law: i for i, group in enumerate(row["order"]) for law in group}
-        pairs = [(a, b) for a in place for b in place if a != b]
+        is_distinct = lambda a, b: values[b][0] - values[a][0] > values[a][1] + values[b][1]
+        rank = {law: i for i, group in enumerate(row["order"]) for law in group}
+        pairs = [(a, b) for a in rank for b in rank if a != b]
         bench.add(
             "compare --json: order",
-            [place[a] < place[b] for a, b in pairs],
-            [apart(a, b) for a, b in pairs],
+            [rank[a] < rank[b] for a, b in pairs],
+            [is_distinct(a, b) for a, b in pairs],
             "by the numbers and errors beside it",
             EXACT,
-            ("the other way round", [place[a] >= place[b] for a, b in pairs]),
+            ("the other way round", [rank[a] >= rank[b] for a, b in pairs]),
         )
         order = " < ".join(" ~ ".join(group) for group in row["order"])
         bench.add(
@@ -106,16 +108,16 @@ def sampled_finer(bench):
         initial={"position_m": [1e-4, -1e-3, 0]},
         rendering={"algorithm": "mean", **PLAIN, "damping_ratio": 0.1},
     )
-    said = bench.json(
+    printed = bench.json(
         "compare", springs, "--algorithms", "mean,summation", "--errors", "--out", "springs"
     )["errors"]
     bench.add(
         "compare --json: error_of_spacing",
-        [n["error_of_spacing"] for row in said for n in row["numbers"]],
-        [None] * (2 * len(said)),
+        [n["error_of_spacing"] for row in printed for n in row["numbers"]],
+        [None] * (2 * len(printed)),
         "springs have no points",
         EXACT,
-        ("none", [0.0] * (2 * len(said))),
+        ("none", [0.0] * (2 * len(printed))),
     )
 
 
@@ -148,8 +150,8 @@ def convergence_in_thirds(bench):
             "mass_kg": M,
         },
     )
-    ask = ("converge", base, "--metric", "final_position_m.x", "--levels", "4", "--ratio", r)
-    printed = bench.json(*ask, "--out", bench.folder / "thirds")
+    words = ("converge", base, "--metric", "final_position_m.x", "--levels", "4", "--ratio", r)
+    printed = bench.json(*words, "--out", bench.folder / "thirds")
     f = np.array(
         [
             1e-3 * np.linalg.matrix_power(step_matrix(K, B, M, dt / r**i), (n - 1) * r**i)[0, 0]
@@ -280,7 +282,7 @@ def convergence(bench):
 def error_of_step(bench, base, f, fine, metric, printed):
     """Checks the error of the time step that compare assigns to a number: the error of the coarsest of three levels."""
     error = verdict_on(f[:3])[2][0]
-    (said,) = bench.json(
+    (compared,) = bench.json(
         "compare",
         base,
         "--algorithms",
@@ -291,7 +293,7 @@ def error_of_step(bench, base, f, fine, metric, printed):
         "--out",
         bench.folder / "errors",
     )["errors"]
-    number = said["numbers"][0]
+    number = compared["numbers"][0]
     assert (
         number["value"] == printed["levels"][0]["result"]
         and number["error_estimate"] == number["error_of_step"]

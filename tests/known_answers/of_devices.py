@@ -4,14 +4,14 @@ import math
 import numpy as np
 
 from answers import EXACT, ROUNDING, Table, Within, scene
-from physics import PLAIN, bisected, class_of, edge_of, held_loop, high_pass, motion_of
+from physics import PLAIN, bisected, class_of, held_loop, high_pass, limit_of, motion_of
 
 
 @scene
 def devices(bench):
     """Checks the stiffness limits of devices on two springs and at a unilateral wall. The known limits follow from the
     motion of the sampled loop and scipy's high-pass filter."""
-    m, b, T, B, n, resolution, most = 0.1, 0.5, 0.001, 2.0, 2000, 1e-3, 1e-3
+    m, b, T, B, n, resolution, max_vibration = 0.1, 0.5, 0.001, 2.0, 2000, 1e-3, 1e-3
     (bench.folder / "mine.json").write_text(
         '{"type":"impedance","handle_mass_kg":0.1,"viscous_N_s_per_m":0.5}', encoding="utf-8"
     )
@@ -75,21 +75,23 @@ def devices(bench):
         )
 
     stiffer, keys = (2.0, 1.0), [("mine", "both_ways", "summation"), ("mine", "both_ways", "mean")]
-    edges = [bisected(lambda K: vibration(K, lam) <= most, 100.0, 1e5, 1e-7) for lam in stiffer]
-    theory = [edge_of(lambda K: loop(K, lam), 100.0, 1e5) for lam in stiffer]
+    exact_limits = [
+        bisected(lambda K: vibration(K, lam) <= max_vibration, 100.0, 1e5, 1e-7) for lam in stiffer
+    ]
+    theory = [limit_of(lambda K: loop(K, lam), 100.0, 1e5) for lam in stiffer]
     fine = Within("bisection ends at a relative width of 1e-3", relative=1e-3)
     limits = [number(cell[key], "limit") for key in keys]
     rows = [
         [row for row in runs.rows if (row["device"], row["scenario"], row["algorithm"]) == key]
         for key in keys
     ]
-    tried, says = [[float(row["rendering.stiffness_N_per_m"]) for row in of] for of in rows], [
-        row["class"] for of in rows for row in of
-    ]
+    tried, printed_classes = [
+        [float(row["rendering.stiffness_N_per_m"]) for row in of] for of in rows
+    ], [row["class"] for of in rows for row in of]
     judged = [
         [
             "stable"
-            if vibration(K, lam) <= most
+            if vibration(K, lam) <= max_vibration
             else "diverged"
             if class_of(loop(K, lam), 1e-3, n) == "diverged"
             else "vibrating"
@@ -100,7 +102,7 @@ def devices(bench):
     beyond = [min(K for K in values if K > limit) for values, limit in zip(tried, limits)]
     how = "handle's speed above 30 Hz by the held loop and scipy"
     exact = [
-        ("limit", edges, fine, "edge of the eigenvalues", theory),
+        ("limit", exact_limits, fine, "edge of the eigenvalues", theory),
         ("first_unstable", beyond, EXACT, "the limit", limits),
         ("stable_low", [min(v) for v in tried], EXACT, "the limit", limits),
         ("unstable_below", [math.nan] * 2, EXACT, "0", [0.0] * 2),
@@ -112,7 +114,7 @@ def devices(bench):
                 relative=1e-6,
             ),
             "that is allowed",
-            [most] * 2,
+            [max_vibration] * 2,
         ),
         ("contacts", [2.0, 2.0], EXACT, "by stiffness", [2.0, 1.0]),
         ("lambda_max", [2.0, 1.0], ROUNDING, "of each spring", [1.0, 1.0]),
@@ -142,17 +144,17 @@ def devices(bench):
             within,
             (naive, value),
         )
-    told = {(row["device"], row["scenario"], row["algorithm"]): row for row in printed["limits"]}
+    row_of = {(row["device"], row["scenario"], row["algorithm"]): row for row in printed["limits"]}
     widths = [x - limit for x, limit in zip(beyond, limits)]
     bench.add(
         "limit --json: limit_tolerance",
-        [told[key]["limit_tolerance"] for key in keys],
+        [row_of[key]["limit_tolerance"] for key in keys],
         widths,
         "from the limit to the next tried",
         ROUNDING,
         ("the resolution asked", [resolution * limit for limit in limits]),
     )
-    limits_of_both_ends(bench, fine, how, most, resolution, vibration)
+    limits_of_both_ends(bench, fine, how, max_vibration, resolution, vibration)
     classes = [j[v.index(x)] for j, v, x in zip(judged, tried, beyond)]
     bench.add(
         "limit.csv:first_unstable_class",
@@ -164,15 +166,15 @@ def devices(bench):
     )
     bench.add(
         "limit_runs.csv:class",
-        says,
+        printed_classes,
         judged[0] + judged[1],
         how,
         EXACT,
         (
             "by the eigenvalues",
             [
-                "stable" if K < edge else "diverged"
-                for values, edge in zip(tried, theory)
+                "stable" if K < limit else "diverged"
+                for values, limit in zip(tried, theory)
                 for K in values
             ],
         ),
@@ -184,7 +186,7 @@ def devices(bench):
 def linear_limit_of_device(bench, B, T, b, cell, m, number, printed, theory):
     """Checks the linear limit of a device in a hand, by the eigenvalues of the sampled loop."""
     pushed = ("mine", "pushes", "summation")
-    linear = edge_of(lambda K: held_loop(m + 0.2, b + 2, T, K, B, spring=300), 100.0, 1e6)
+    linear = limit_of(lambda K: held_loop(m + 0.2, b + 2, T, K, B, spring=300), 100.0, 1e6)
     close = Within("an edge by eigenvalues, bisected to 1e-9 or better", relative=1e-8)
     bench.add(
         "limit.csv:linear_limit",
@@ -241,7 +243,7 @@ def names_of_devices(bench, number, runs, table):
     )
 
 
-def limits_of_both_ends(bench, fine, how, most, resolution, vibration):
+def limits_of_both_ends(bench, fine, how, max_vibration, resolution, vibration):
     """Checks the limits at both ends of a preset's unpublished parameters: mass divided and multiplied by 1.3, viscous
     friction of 0.5 and of 5 N s/m."""
     # Without dry friction, encoder and saturation, the only estimated parameters of an omega.3 are its mass and viscous
@@ -267,7 +269,7 @@ def limits_of_both_ends(bench, fine, how, most, resolution, vibration):
         "i",
     )["limits"]
     ends = [
-        bisected(lambda K: vibration(K, 1.0, of, viscous) <= most, 100.0, 1e6, 1e-7)
+        bisected(lambda K: vibration(K, 1.0, of, viscous) <= max_vibration, 100.0, 1e6, 1e-7)
         for of, viscous in ((0.2, 0.5), (0.2 / 1.3, 0.5), (0.2 * 1.3, 5.0))
     ]
     bench.add(

@@ -44,7 +44,7 @@ def ends(bench):
             "damping_N_s_per_m": 0,
         }
 
-    on_edge = {
+    on_flat = {
         "environment": FLAT,
         "tool": BALL,
         "time": {"step_s": 0.0005, "steps": 8000},
@@ -129,7 +129,7 @@ def ends(bench):
         (
             "not_dragged",
             dict(
-                on_edge,
+                on_flat,
                 hand=drag(0.5, 1.0),
                 rendering={**rub, "friction": {"mu_s_N_s_per_m": 300, "mu_f_s_per_m": 0}},
             ),
@@ -140,7 +140,7 @@ def ends(bench):
         (
             "stuck",
             dict(
-                on_edge,
+                on_flat,
                 hand=drag(grips, 40.0),
                 rendering={**rub, "friction": {"mu_s_N_s_per_m": 5, "mu_f_s_per_m": 150}},
             ),
@@ -200,11 +200,11 @@ def ends(bench):
 def classes(bench):
     """Checks the classes of runs that do not vibrate but are not valid: for example, the tool goes through the surface
     or loses contact."""
-    ask = ("--vary", "rendering.stiffness_N_per_m", "--between")
+    words = ("--vary", "rendering.stiffness_N_per_m", "--between")
     row = bench.json(
         "limit",
         "end_went_through.json",
-        *ask,
+        *words,
         "500:5000",
         "--smallest",
         "--set",
@@ -273,7 +273,7 @@ def classes(bench):
     ):
         out = bench.folder / word
         bench.hapbench(
-            "limit", f"end_{end}.json", *ask, between, "--resolution", "0.5", "--out", out
+            "limit", f"end_{end}.json", *words, between, "--resolution", "0.5", "--out", out
         )
         found = Table(out / "limit_runs.csv")["class"]
         bench.add(
@@ -288,7 +288,7 @@ def classes(bench):
 
 def divergence(bench, run):
     x, v, M, dt, K = 1e-3, 0.0, 0.1, 0.0005, 1.7e6
-    told, k = run.summary["divergence"], 0
+    divergence, k = run.summary["divergence"], 0
     within = lambda: abs(x) <= 1e3 and abs(v) <= 1e6 and abs(K * x) <= 1e12
     while within():
         v -= K * x * dt / M
@@ -304,7 +304,7 @@ def divergence(bench, run):
     ):
         bench.add(
             f"run --json: {key}",
-            told[key],
+            divergence[key],
             known,
             "recurrence against the bounds",
             grown,
@@ -312,7 +312,7 @@ def divergence(bench, run):
         )
     bench.add(
         "run --json: quantity",
-        told["quantity"],
+        divergence["quantity"],
         quantity,
         "recurrence against the bounds",
         EXACT,
@@ -320,7 +320,7 @@ def divergence(bench, run):
     )
     # Leapfrog without damping is stable up to K = 4 M / dt^2. `share` is K divided by this limit.
     findings, share = run.summary["diagnosis"], K * dt**2 / (4 * M)
-    edge = next(finding for finding in findings if finding["rule"] == "edge")
+    finding = next(one for one in findings if one["rule"] == "edge")
     cells = [
         ("value", share, "half the edge, of a step of the speed alone", 2 * share),
         ("threshold", 0.8, "the edge itself", 1.0),
@@ -335,7 +335,7 @@ def divergence(bench, run):
     for name, known, naive, value in cells:
         bench.add(
             f"run --json: diagnosis.{name}",
-            edge[name],
+            finding[name],
             known,
             "4 - K dt^2 / M = 0",
             EXACT,
@@ -355,7 +355,7 @@ def divergence(bench, run):
     ):
         bench.add(
             f"run --json: diagnosis.{name}",
-            words in edge[name],
+            words in finding[name],
             True,
             "4 - K dt^2 / M = 0",
             EXACT,
@@ -382,7 +382,7 @@ def limit_of_spring(bench):
         },
     )
     field = "rendering.stiffness_N_per_m"
-    ask = (
+    command = (
         "limit",
         base,
         "--vary",
@@ -394,7 +394,7 @@ def limit_of_spring(bench):
         "--out",
         "spring",
     )
-    printed = bench.json(*ask)
+    printed = bench.json(*command)
     table, runs = Table(bench.folder / "spring" / "limit.csv"), Table(
         bench.folder / "spring" / "limit_runs.csv"
     )
@@ -434,7 +434,7 @@ def limit_of_spring(bench):
     # limit.
     rests = lambda K: judged(K) in ("stable", "decaying")
     stable = [K for K, name in zip(values, classes) if name in ("stable", "decaying")]
-    limit, beyond, edge = (
+    limit, beyond, strongest = (
         max(stable),
         min(K for K in values if K > max(stable)),
         bisected(rests, 1e6, theory),
@@ -447,7 +447,7 @@ def limit_of_spring(bench):
         ("algorithm", "summation", EXACT, "mean"),
         ("field", field, EXACT, "K"),
         ("side", "largest", EXACT, "smallest"),
-        ("limit", edge, strip, 4 * M / dt**2),
+        ("limit", strongest, strip, 4 * M / dt**2),
         ("first_unstable", beyond, EXACT, limit),
         ("first_unstable_class", classes[list(values).index(beyond)], EXACT, "vibrating"),
         ("stable_low", slowest, strip, 1000.0),
@@ -494,7 +494,7 @@ def limit_of_spring(bench):
 def limit_under_bound(bench, base, field, strip):
     """Checks the limit of the stiffness K under a bound on the force. The force is largest at the start, where it is K
     times 1 mm, as long as damping removes more energy than the integrator adds."""
-    ask = (
+    command = (
         "limit",
         base,
         "--vary",
@@ -508,7 +508,7 @@ def limit_under_bound(bench, base, field, strip):
         "--bound",
         "force_max_N=30",
     )
-    row = bench.json(*ask)["limits"][0]
+    row = bench.json(*command)["limits"][0]
     bench.add(
         "limit.csv:limit",
         row["limit"],
@@ -567,11 +567,11 @@ def words_of_limit(bench, base, printed, resolution, row):
 
 
 def digits(bench, base, field):
-    """Checks the rounding of a limit in the printed table, for three values of --resolution: the last printed decimal
-    place is the place of the first non-zero digit of limit_tolerance, the width of the interval around the limit.
+    """Checks the rounding of a limit in the printed table, for three values of --resolution: the last printed digit has
+    the position of the first non-zero digit of limit_tolerance, the width of the interval around the limit.
     """
     for resolution in (0.1, 1e-3, 1e-5):
-        ask = (
+        command = (
             "limit",
             base,
             "--vary",
@@ -583,10 +583,10 @@ def digits(bench, base, field):
             "--out",
             "digits",
         )
-        row, text = bench.json(*ask)["limits"][0], bench.hapbench(*ask)
+        row, text = bench.json(*command)["limits"][0], bench.hapbench(*command)
         cell = next(line for line in text.splitlines() if line.startswith("summation ")).split("  ")
-        place = 10.0 ** math.floor(math.log10(row["limit_tolerance"]))
-        known = f"{round(row['limit'] / place) * place:.{max(0, -round(math.log10(place)))}f}"
+        digit = 10.0 ** math.floor(math.log10(row["limit_tolerance"]))
+        known = f"{round(row['limit'] / digit) * digit:.{max(0, -round(math.log10(digit)))}f}"
         bench.add(
             "limit.csv:limit",
             known in [part.strip() for part in cell],

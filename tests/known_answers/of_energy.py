@@ -63,7 +63,7 @@ def mean_of_two(bench):
     kinetic = 0.5 * 0.01 * np.sum(v**2, axis=1)
     script = kinetic - kinetic[0] - onto(f)
     observed = stored[0] - onto(f)
-    least = int(np.argmin(observed))
+    lowest = int(np.argmin(observed))
     by, rect = "trapezoidal rule along the path", "the row's force held over the step"
     bench.metrics(
         run,
@@ -112,7 +112,7 @@ def mean_of_two(bench):
             ),
             (
                 "passivity.energy_min_J",
-                observed[least],
+                observed[lowest],
                 "E_k = E_0 - sum of the rule",
                 STEPPED,
                 rect,
@@ -120,7 +120,7 @@ def mean_of_two(bench):
             ),
             (
                 "passivity.time_of_min_s",
-                t[least],
+                t[lowest],
                 "the row with that",
                 EXACT,
                 "the last row",
@@ -136,7 +136,7 @@ def mean_of_two(bench):
             ),
             (
                 "passivity.net_created_J",
-                max(0, -observed[least]),
+                max(0, -observed[lowest]),
                 "max(0, -min E)",
                 STEPPED,
                 "all steps that created some",
@@ -209,21 +209,26 @@ def events_of_two(bench, by, count, created, d, run, t):
     events = [
         event for event in run.summary["energy"]["events"] if event["created_J"] > 1e-12
     ]  # the other amounts are rounding errors
-    most = 1 + np.argsort(-created)[: len(events)]
+    largest = 1 + np.argsort(-created)[: len(events)]
     changes = np.diff((d > 0).astype(int), axis=0, prepend=0)
-    pairs = [x for k in most for x in (count[k - 1], count[k])]
+    pairs = [x for k in largest for x in (count[k - 1], count[k])]
     for key, known, how, naive in (
-        ("step", list(most), "rows that created most, in order", list(most - 1)),
-        ("time_s", list(t[most]), "the same", list(t[most - 1])),
-        ("created_J", list(created[most - 1]), by, list(-created[most - 1])),
+        ("step", list(largest), "rows that created most, in order", list(largest - 1)),
+        ("time_s", list(t[largest]), "the same", list(t[largest - 1])),
+        ("created_J", list(created[largest - 1]), by, list(-created[largest - 1])),
         ("colliding", pairs, "springs before and after", pairs[::-1]),
         ("rendered", pairs, "springs before and after", pairs[::-1]),
-        ("appeared", [int((changes[k] > 0).sum()) for k in most], "new springs", [9] * len(most)),
+        (
+            "appeared",
+            [int((changes[k] > 0).sum()) for k in largest],
+            "new springs",
+            [9] * len(largest),
+        ),
         (
             "vanished",
-            [int((changes[k] < 0).sum()) for k in most],
+            [int((changes[k] < 0).sum()) for k in largest],
             "springs that went",
-            [9] * len(most),
+            [9] * len(largest),
         ),
     ):
         printed = [
@@ -270,14 +275,16 @@ def limited_hand(bench):
         "a recurrence of 300 steps, each rounded in another order", relative=1e-11, absolute=1e-17
     )
     total = lambda w: np.r_[0, np.cumsum(w)]
-    mean_way = 0.5 * (v[1:] + v[:-1]) * dt  # displacement along which the held force does work
-    along = lambda force: total(force[:-1] * mean_way)
-    way = np.diff(x)
+    mean_displacement = (
+        0.5 * (v[1:] + v[:-1]) * dt
+    )  # displacement along which the held force does work
+    along = lambda force: total(force[:-1] * mean_displacement)
+    displacement = np.diff(x)
     spring = -K * x
     kinetic, stored = 0.5 * M * v**2, 0.5 * K * x**2
-    integration = along(spring) - total(0.5 * (spring[1:] + spring[:-1]) * way)
+    integration = along(spring) - total(0.5 * (spring[1:] + spring[:-1]) * displacement)
     by, naive = "held force times mean velocity", "held force times the displacement"
-    on = lambda force: total(force[:-1] * way)
+    on = lambda force: total(force[:-1] * displacement)
     rows = [
         ("input_J", along(given), by, held, naive, on(given)),
         ("spring_J", along(spring), by, held, naive, on(spring)),
@@ -417,12 +424,16 @@ def handle_on_spring(bench):
         relative=1e-11,
         absolute=1e-17,
     )
-    way, total = np.diff(x), lambda w: np.r_[0, np.cumsum(w)]
-    hand, motor, kinetic = total(push * way), total(motors[:-1] * way), 0.5 * m * v**2
+    displacement, total = np.diff(x), lambda w: np.r_[0, np.cumsum(w)]
+    hand, motor, kinetic = (
+        total(push * displacement),
+        total(motors[:-1] * displacement),
+        0.5 * m * v**2,
+    )
     lost = hand + motor - (kinetic - kinetic[0])
     shown_v = np.r_[0.0, np.diff(x) / dt]
     spring = -K * x
-    work = total(spring[:-1] * way)
+    work = total(spring[:-1] * displacement)
     zero = np.zeros(n)
     bench.columns(
         run.table("energy.csv"),
@@ -458,7 +469,7 @@ def handle_on_spring(bench):
                 "row's force times the way to the next",
                 held,
                 "trapezoidal rule",
-                total(0.5 * (spring[1:] + spring[:-1]) * way),
+                total(0.5 * (spring[1:] + spring[:-1]) * displacement),
             ),
             (
                 "integration_J",

@@ -22,12 +22,12 @@ STEPS = [
 
 
 @scene
-def late_force(bench):
+def delayed_force(bench):
     """Checks the metrics of a force that lags the reference by 30 ms. The reference also has a perpendicular
     component."""
-    K, dt, n, late = 1000.0, 0.0005, 2000, 0.03
+    K, dt, n, delay = 1000.0, 0.0005, 2000, 0.03
     reference = {
-        "z_N": {"type": "waypoints", "points": [[max(0, s - late), -K * z] for s, z in STEPS[1:]]},
+        "z_N": {"type": "waypoints", "points": [[max(0, s - delay), -K * z] for s, z in STEPS[1:]]},
         "x_N": 0.05,
     }
     path = {
@@ -265,13 +265,13 @@ def recorded_force(bench):
     outside of the measurement have no reference."""
     K, dt, n = 500.0, 0.001, 1000
     t = np.array([0.1, 0.25, 0.45, 0.7])
-    place, force = np.array([0, -1e-3, -3e-3, -2e-3]), np.array(
+    position, force = np.array([0, -1e-3, -3e-3, -2e-3]), np.array(
         [[0, 0, 0.1], [0.1, 0, 0.6], [0.2, -0.1, 1.4], [0, 0, 1.1]]
     )
     bench.write(
         "stroke.csv",
         "time_s,px_m,py_m,pz_m,axis_x,axis_y,axis_z,mfx_N,mfy_N,mfz_N",
-        np.column_stack([t, 0 * t, 0 * t, place, 0 * t, 0 * t, 0 * t - 1, force]),
+        np.column_stack([t, 0 * t, 0 * t, position, 0 * t, 0 * t, 0 * t - 1, force]),
     )
     run = bench.run(
         bench.scenario(
@@ -285,7 +285,7 @@ def recorded_force(bench):
     )
     at = np.arange(n) * dt
     m = np.column_stack([np.interp(at, t, force[:, i]) for i in range(3)])
-    f = np.column_stack([0 * at, 0 * at, -K * np.interp(at, t, place)])
+    f = np.column_stack([0 * at, 0 * at, -K * np.interp(at, t, position)])
     has = (at >= t[0]) & (at <= t[-1])
     error = (f - m)[has]
     how = "linear between the samples"
@@ -349,7 +349,7 @@ def imported(bench):
     )
     f = np.column_stack([np.full(400, 0.1), np.full(400, 0.2), np.sin(t)])
     bench.write("rec.csv", "t,x,y,z,fx,fy,fz", np.column_stack([t, p, f]))
-    told = bench.json(
+    summary = bench.json(
         "import",
         "stroke",
         "rec.csv",
@@ -365,13 +365,13 @@ def imported(bench):
     q = np.array([1e-5, 2e-5, 5e-6])
     bench.add(
         "quantum (number of import)",
-        told["quantum_m"],
+        summary["quantum_m"],
         q,
         "steps they were rounded to",
         close,
         ("least difference of places", [1e-18] * 3),
     )
-    for key, known, within, says, naive in (
+    for key, known, within, naive_answer, naive in (
         ("quantum_m", q, close, "mean step", q * 2),
         ("quantum_force_N", 20000 * 2e-5, close, "of the finest axis", 0.1),
         ("rows_read", 400, EXACT, "with the header", 401),
@@ -416,11 +416,16 @@ def imported(bench):
         ("file", "stroke.csv", EXACT, "the recording", "rec.csv"),
         ("next", "hapbench new stroke", EXACT, "run", "hapbench run rec.csv"),
     ):
-        value = told[key][:19] if key == "next" else told[key]
+        value = summary[key][:19] if key == "next" else summary[key]
         bench.add(
-            f"import --json: {key}", value, known, "numpy on the recording", within, (says, naive)
+            f"import --json: {key}",
+            value,
+            known,
+            "numpy on the recording",
+            within,
+            (naive_answer, naive),
         )
-    columns = told["columns"]
+    columns = summary["columns"]
     for key, printed, known, naive in (
         ("orientation", columns["orientation"], [], [1]),
         (
@@ -437,7 +442,7 @@ def imported(bench):
     for i, key in enumerate(("min", "median", "max")):
         bench.add(
             f"import --json: {key}",
-            told["interval_s"][key],
+            summary["interval_s"][key],
             0.002,
             "numpy on the recording",
             close,

@@ -4,7 +4,7 @@ import math
 import numpy as np
 
 from answers import EXACT, ROUNDING, Table, Within, scene
-from physics import PLAIN, SPRING, SUMMED, bisected, class_of, edge_of, held_loop, radius
+from physics import PLAIN, SPRING, SUMMED, bisected, class_of, held_loop, limit_of, radius
 
 
 @scene
@@ -24,15 +24,15 @@ def limits_of_springs(bench):
         },
     )
 
-    def asked(folder, *words):
+    def limits_of(folder, *words):
         bench.json(
             "limit", base, "--stable", "bounded", "--resolution", "1e-4", *words, "--out", folder
         )
         return Table(bench.folder / folder / "limit.csv")
 
     tables = (
-        asked("K", "--between", "1e3:1e9", "--over", "rendering.damping_ratio=0,0.7"),
-        asked(
+        limits_of("K", "--between", "1e3:1e9", "--over", "rendering.damping_ratio=0,0.7"),
+        limits_of(
             "B",
             "--vary",
             "rendering.damping_N_s_per_m",
@@ -41,7 +41,7 @@ def limits_of_springs(bench):
             "--set",
             "rendering.stiffness_N_per_m=0",
         ),
-        asked("dt", "--vary", "time.step_s", "--between", "1e-5:0.1"),
+        limits_of("dt", "--vary", "time.step_s", "--between", "1e-5:0.1"),
     )
     # 4 - 2 lam B dt / M - lam K dt^2 / M = 0 with B = 2 zeta sqrt(K M): a quadratic in
     # s = sqrt(K) dt / sqrt(M).
@@ -70,8 +70,8 @@ def limits_of_springs(bench):
         np.abs(np.roots([1 / 24, 1 / 6, 1 / 2, 1]).imag) < 1e-9
     ][0]
     of_rk4 = (
-        asked("rk4_K", "--between", "1e3:1e9", "--set", "rendering.damping_ratio=0", *rk4),
-        asked(
+        limits_of("rk4_K", "--between", "1e3:1e9", "--set", "rendering.damping_ratio=0", *rk4),
+        limits_of(
             "rk4_B",
             "--vary",
             "rendering.damping_N_s_per_m",
@@ -105,8 +105,8 @@ def smallest_mass(bench):
         environment=SPRING,
         rendering={**SUMMED, "damping_ratio": zeta, "stiffness_N_per_m": K},
     )
-    ask = ("limit", base, "--vary", "rendering.mass_kg", "--between", "1e-4:10", "--smallest")
-    row = bench.json(*ask, "--stable", "bounded", "--resolution", "1e-4", "--out", "mass")[
+    words = ("limit", base, "--vary", "rendering.mass_kg", "--between", "1e-4:10", "--smallest")
+    row = bench.json(*words, "--stable", "bounded", "--resolution", "1e-4", "--out", "mass")[
         "limits"
     ][0]
     known = K * (dt / (2 * (math.sqrt(1 + zeta**2) - zeta))) ** 2
@@ -125,10 +125,10 @@ def smallest_mass(bench):
         ("the low end of the range", 1e-4),
     )
     bench.add("limit.csv:quoted_limit", row["quoted_limit"], known, how, runs, undamped)
-    told = Table(bench.folder / "mass" / "limit.csv").rows[0]
+    first_row = Table(bench.folder / "mass" / "limit.csv").rows[0]
     bench.add(
         "limit.csv:quoted_reason",
-        told["quoted_reason"].split(";")[1],
+        first_row["quoted_reason"].split(";")[1],
         " the runs agree",
         "both limits are the root, within the resolution",
         EXACT,
@@ -136,7 +136,7 @@ def smallest_mass(bench):
     )
     bench.add(
         "limit.csv:no_linear_reason",
-        told["no_linear_reason"],
+        first_row["no_linear_reason"],
         "",
         "there is a theoretical limit",
         EXACT,
@@ -156,7 +156,7 @@ def smallest_stiffness(bench):
         hand={"type": "force", "x_N": F},
         rendering={**SUMMED, "damping_ratio": 0.7},
     )
-    ask = (
+    words = (
         "limit",
         base,
         "--vary",
@@ -166,7 +166,7 @@ def smallest_stiffness(bench):
         "--smallest",
     )
     bound = ("--bound", f"final_position_m.x={x}", "--resolution", "1e-4", "--out", "held")
-    row = bench.json(*ask, *bound)["limits"][0]
+    row = bench.json(*words, *bound)["limits"][0]
     within = Within("bisection ends at 1e-4; the motion has died out to e^-300", relative=1.1e-4)
     bench.add("limit.csv:limit", row["limit"], F / x, "F / x", within, ("half of it", F / x / 2))
     bench.add(
@@ -189,7 +189,7 @@ HANDS = [(0, 0), *((m, k) for m in (0.1, 0.2, 0.5) for k in (100, 300, 1000))]
 def over_another_field(bench):
     """Checks the limit of K over damping, delay and hand, for a handle at a bilateral wall. The linear recurrence gives
     the class of each run, and its eigenvalues give each limit."""
-    ask = (
+    words = (
         "limit",
         "wall_on_handle",
         "--algorithms",
@@ -202,18 +202,18 @@ def over_another_field(bench):
         1e-3,
     )
     damping, K = "rendering.damping_N_s_per_m", "rendering.stiffness_N_per_m"
-    given = lambda told, path: [row[path] for row in told["limits"]]
-    told = bench.json(*ask, "--over", f"{damping}=0.1:150:5:log", "--out", "walls")
+    given = lambda printed, path: [row[path] for row in printed["limits"]]
+    printed = bench.json(*words, "--over", f"{damping}=0.1:150:5:log", "--out", "walls")
     bench.add(
         f"limit --json: {damping}",
-        given(told, damping),
+        given(printed, damping),
         np.geomspace(0.1, 150, 5),
         "as asked",
         ROUNDING,
         ("linear", np.linspace(0.1, 150, 5)),
     )
     bench.json(
-        *ask,
+        *words,
         "--over",
         f"{damping}=0.1:150:3:log",
         "--set",
@@ -224,7 +224,7 @@ def over_another_field(bench):
     handle = lambda B, K, b=0.5, more=0.0, spring=0.0: held_loop(
         0.1 + more, b, 0.001, K, B, spring=spring
     )
-    xs, edges, runs = (
+    xs, limits, runs = (
         np.geomspace(0.1, 150, 5),
         Table(bench.folder / "walls" / "limit.csv"),
         Table(bench.folder / "walls" / "limit_runs.csv"),
@@ -241,7 +241,7 @@ def over_another_field(bench):
             ["stable" if radius(handle(*at)) < 1 else "diverged" for at in tried],
         ),
     )
-    theory = [edge_of(lambda K: handle(x, K), 1.0, 1e9) for x in xs]
+    theory = [limit_of(lambda K: handle(x, K), 1.0, 1e9) for x in xs]
     swings = [
         bisected(lambda K: class_of(handle(x, K), 0.6e-3) != "diverged", t / 2, 2 * t, 1e-5)
         for x, t in zip(xs, theory)
@@ -249,7 +249,7 @@ def over_another_field(bench):
     close = Within("an edge by eigenvalues, bisected to 1e-9 or better", relative=1e-8)
     bench.add(
         "limit.csv:theoretical_limit",
-        edges["theoretical_limit"],
+        limits["theoretical_limit"],
         theory,
         how,
         close,
@@ -257,7 +257,7 @@ def over_another_field(bench):
     )
     bench.add(
         "limit.csv:limit",
-        edges["limit"],
+        limits["limit"],
         swings,
         how,
         Within("bisection on runs ends at 0.1 %", relative=1e-3),
@@ -265,19 +265,19 @@ def over_another_field(bench):
     )
     bench.add(
         "limit.csv:no_theory_reason",
-        sorted({row["no_theory_reason"] for row in edges.rows}),
+        sorted({row["no_theory_reason"] for row in limits.rows}),
         [""],
         "the loop is linear",
         EXACT,
         ("friction", ["dry friction"]),
     )
-    limits_over_delay_and_hand(bench, ask, close, given, handle)
-    limits_of_walls(bench, edges, Table(bench.folder / "bare" / "limit.csv"), xs, handle)
-    limits_over_encoder(bench, ask, damping, given)
+    limits_over_delay_and_hand(bench, words, close, given, handle)
+    limits_of_walls(bench, limits, Table(bench.folder / "bare" / "limit.csv"), xs, handle)
+    limits_over_encoder(bench, words, damping, given)
     stressed(bench)
 
 
-def limits_over_delay_and_hand(bench, ask, close, given, handle):
+def limits_over_delay_and_hand(bench, words, close, given, handle):
     """Checks the limit of K over a delay and over the stiffness of the hand, by the eigenvalues of the sampled loop."""
     hand = (
         '{"type":"mass_spring_damper","mass_kg":0.2,"stiffness_N_per_m":100,'
@@ -299,8 +299,8 @@ def limits_over_delay_and_hand(bench, ask, close, given, handle):
             ("--set", f"hand={hand}"),
         ),
     ):
-        told = bench.json(
-            *ask,
+        printed = bench.json(
+            *words,
             *more,
             "--over",
             f"{path}={values[0]}:{values[-1]}:6{'' if name == 'delay' else ':log'}",
@@ -309,7 +309,7 @@ def limits_over_delay_and_hand(bench, ask, close, given, handle):
         )
         bench.add(
             f"limit --json: {path}",
-            given(told, path),
+            given(printed, path),
             values,
             "as asked",
             ROUNDING,
@@ -319,19 +319,19 @@ def limits_over_delay_and_hand(bench, ask, close, given, handle):
         bench.add(
             "limit.csv:theoretical_limit",
             table["theoretical_limit"],
-            [edge_of(lambda K: loop(x, K), 1.0, 1e6) for x in values],
+            [limit_of(lambda K: loop(x, K), 1.0, 1e6) for x in values],
             "eigenvalues, delays of whole and broken samples",
             close,
-            ("without", [edge_of(lambda K: handle(5.0, K), 1.0, 1e6)] * 6),
+            ("without", [limit_of(lambda K: handle(5.0, K), 1.0, 1e6)] * 6),
         )
 
 
-def limits_over_encoder(bench, ask, damping, given):
+def limits_over_encoder(bench, words, damping, given):
     """Checks the limit of K over the encoder step q with dry friction c and viscous friction b: min(2 b / T, 2 c / q)
     of Abbott and Okamura, with the sampling period T."""
     q = np.geomspace(1e-6, 1e-3, 4)
-    told = bench.json(
-        *ask,
+    printed = bench.json(
+        *words,
         "--over",
         "device.encoder_step_m=1e-6:1e-3:4:log",
         "--set",
@@ -343,7 +343,7 @@ def limits_over_encoder(bench, ask, damping, given):
     )
     bench.add(
         "limit --json: device.encoder_step_m",
-        given(told, "device.encoder_step_m"),
+        given(printed, "device.encoder_step_m"),
         q,
         "as asked",
         ROUNDING,
@@ -374,7 +374,7 @@ def limits_of_walls(bench, table, bare, xs, handle):
     gil = [max(0.0, (b + B) / (T / 2)) if (b + B) * T / m <= 0.15 else math.nan for B in xs]
     worst = [
         min(
-            edge_of(lambda K: handle(B, K, more=mass, spring=k), 1.0, 1e9)
+            limit_of(lambda K: handle(B, K, more=mass, spring=k), 1.0, 1e9)
             if radius(handle(B, 1.0, more=mass, spring=k)) < 1
             else 0.0
             for mass, k in HANDS

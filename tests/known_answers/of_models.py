@@ -41,7 +41,7 @@ def laws_against_a_force(bench):
     ):
         within = EXACT if isinstance(known[0], str) else ROUNDING
         bench.add(f"convergence_model.csv:{name}", model[name], known, how, within, (naive, wrong))
-    median, late = times["step_median_s"], times["step_p99_9_s"]
+    median, p99_9 = times["step_median_s"], times["step_p99_9_s"]
     for name, found, known, naive, wrong in (
         ("problem", times["problem"], laws, "in reverse", laws[::-1]),
         (
@@ -53,18 +53,18 @@ def laws_against_a_force(bench):
         ),
         (
             "step_p99_9_s",
-            bool(np.all(late >= median)),
+            bool(np.all(p99_9 >= median)),
             True,
             "below the median",
-            bool(np.all(late < median)),
+            bool(np.all(p99_9 < median)),
         ),
         ("deadline_s", times["deadline_s"], [DEADLINE] * 2, "the time step", [1e-3] * 2),
         (
             "deadline_share",
             times["deadline_share"],
-            late / DEADLINE,
+            p99_9 / DEADLINE,
             "of the time step",
-            late / 1e-3,
+            p99_9 / 1e-3,
         ),
     ):
         within = ROUNDING if name.startswith("deadline") else EXACT

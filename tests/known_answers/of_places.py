@@ -63,11 +63,11 @@ def beside_the_ideal(bench):
     off = np.column_stack(
         [2e-5 * np.sin(1.0 + np.arange(n)), 3e-5 * np.cos(2 * np.arange(n)) - 1.5e-5]
     )
-    place = ideal + off
+    actual = ideal + off
     bench.write(
         "beside.csv",
         "time_s,px_m,py_m,pz_m,axis_x,axis_y,axis_z",
-        np.column_stack([t, place[:, 0], 0 * t, place[:, 1], -s, 0 * t, -c]),
+        np.column_stack([t, actual[:, 0], 0 * t, actual[:, 1], -s, 0 * t, -c]),
     )
     push = 1.2 + 80 * t
     run = bench.run(
@@ -89,7 +89,7 @@ def beside_the_ideal(bench):
             rendering={"algorithm": "mean", "stiffness_N_per_m": 1000},
         )
     )
-    deep = np.array([interpenetration(np.array([p[0], 0, p[1]]), a) for p, a in zip(place, tilt)])
+    deep = np.array([interpenetration(np.array([p[0], 0, p[1]]), a) for p, a in zip(actual, tilt)])
     searched = Within(
         "a grid ends within 1e-10 of the deepest place, ours within 1e-8 rad of 0.5 mm",
         absolute=2e-11,
@@ -215,10 +215,10 @@ def beside_the_ideal(bench):
                 "from the horizontal",
                 math.pi / 2 - tilt[k],
             ),
-            ("height_m", place[k, 1], "of the file", split, "ideal", ideal[k, 1]),
-            ("ideal_height_m", ideal[k, 1], "3.6's formula", split, "actual", place[k, 1]),
-            ("lateral_m", place[k, 0], "of the file", split, "ideal", ideal[k, 0]),
-            ("ideal_lateral_m", ideal[k, 0], "-R + r cos a", split, "actual", place[k, 0]),
+            ("height_m", actual[k, 1], "of the file", split, "ideal", ideal[k, 1]),
+            ("ideal_height_m", ideal[k, 1], "3.6's formula", split, "actual", actual[k, 1]),
+            ("lateral_m", actual[k, 0], "of the file", split, "ideal", ideal[k, 0]),
+            ("ideal_lateral_m", ideal[k, 0], "-R + r cos a", split, "actual", actual[k, 0]),
             (
                 "interpenetration_m",
                 deep[k],
@@ -374,13 +374,13 @@ def counted(bench):
     )
     skipping = bench.run(bench.scenario("counted", **fields))
     full = bench.run(bench.scenario("counted", **fields), "--no-skip", out="full")
-    work, least = full.summary["work"], skipping.summary["work"]
+    work, fewest = full.summary["work"], skipping.summary["work"]
     rows = 2 * math.floor(0.0001 / 0.000032) + 1  # 0.032 mm per row; in contact below 0.5 mm
     for key, known, naive in (
         ("queries", 600, 600 * 81),
-        ("points_tested", 600 * 81 * 81, least["points_tested"]),
-        ("lists_rebuilt", 0, least["lists_rebuilt"]),
-        ("steps_skipped", 0, least["steps_skipped"]),
+        ("points_tested", 600 * 81 * 81, fewest["points_tested"]),
+        ("lists_rebuilt", 0, fewest["lists_rebuilt"]),
+        ("steps_skipped", 0, fewest["steps_skipped"]),
         ("iterations", 4 * 600, 4 * rows),
     ):
         bench.add(
@@ -393,7 +393,7 @@ def counted(bench):
         )
     bench.add(
         "run --json: iterations",
-        least["iterations"],
+        fewest["iterations"],
         4 * rows,
         "with skips only rows in contact shape",
         EXACT,
@@ -449,7 +449,7 @@ def counted(bench):
         bench.add(f"run --json: {key}", printed, known, how, within, ("of another measure", naive))
     bench.add(
         "run --json: allocations",
-        least["allocations"],
+        fewest["allocations"],
         0,
         "a step allocates nothing (tests/algorithms/allocation_test)",
         EXACT,
@@ -463,7 +463,7 @@ def counted(bench):
         EXACT,
         ("some", ["no expectation"]),
     )
-    for word, test, said, refused in (
+    for word, test, accepted, rejected in (
         (
             "step_p50_s",
             "StepLatency.PercentilesAreThoseOfNearestRank",
@@ -481,8 +481,8 @@ def counted(bench):
             f"{word} (number of timing.json)",
             "tests/results/observe/step_times_test.cpp",
             test,
-            said,
-            refused,
+            accepted,
+            rejected,
         )
     bench.proven(
         "run --json: steps_controlled",

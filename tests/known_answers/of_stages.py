@@ -108,10 +108,10 @@ def tank(bench):
         rendered.append(out)
         changed += out != f
         after = v + dt * out / M
-        way = 0.5 * dt * (v + after)
+        displacement = 0.5 * dt * (v + after)
         if k < n - 1:
-            taken += (f - out) * way
-        level = min(capacity, level - out * way)
+            taken += (f - out) * displacement
+        level = min(capacity, level - out * displacement)
         v = after
         x += dt * v
     formula = "the tank's formula, row by row"
@@ -145,7 +145,7 @@ def tank(bench):
 
 
 @scene
-def late(bench):
+def multi_rate(bench):
     """Checks the age of contacts for a mass on one spring. Contacts are requested every fourth row, used three rows
     later, and lost with a probability of 0.3."""
     K, dt, n = 2000.0, 0.0005, 400
@@ -164,16 +164,16 @@ def late(bench):
         )
     )
     table = run.table()
-    place, pull = table["px_m"], table["fspring_x_N"]
-    asked = np.arange(0, n, 4)
+    position, pull = table["px_m"], table["fspring_x_N"]
+    requested = np.arange(0, n, 4)
     used = [
-        min((q for q in asked if q + 3 <= k), key=lambda q: abs(pull[k] + K * place[q]))
+        min((q for q in requested if q + 3 <= k), key=lambda q: abs(pull[k] + K * position[q]))
         for k in range(3, n)
     ]
     assert (
-        max(abs(pull[k] + K * place[q]) for k, q in zip(range(3, n), used)) < 1e-12
+        max(abs(pull[k] + K * position[q]) for k, q in zip(range(3, n), used)) < 1e-12
     )  # no other position gives this force
-    age, lost = dt * (np.arange(3, n) - used), len(asked) - len(set(used))
+    age, lost = dt * (np.arange(3, n) - used), len(requested) - len(set(used))
     how = "the place that the spring force is of"
     bench.metrics(
         run,
@@ -190,7 +190,7 @@ def late(bench):
             ("contacts.age_max_s", age.max(), how, ROUNDING, "without losses", 6 * dt),
             (
                 "contacts.searches",
-                len(asked),
+                len(requested),
                 "every fourth row",
                 EXACT,
                 "those that served",
@@ -198,7 +198,7 @@ def late(bench):
             ),
             (
                 "contacts.lost_share",
-                lost / len(asked),
+                lost / len(requested),
                 "queries whose place is never used",
                 ROUNDING,
                 "their probability",

@@ -21,14 +21,14 @@ def subjects(bench):
         statuses=(0, 3),
     )
     table, rows = run.table("targets.csv"), []
-    for place in (0, 1):
+    for target in (0, 1):
         for field, column in (
             ("success_rate", "removed"),
             ("completion_time_s", "time_s"),
             ("model_force_N", "model_force_N"),
             ("speed_m_per_s", "speed_m_per_s"),
         ):
-            at, value = table["place"] == place, table[column]
+            at, value = table["place"] == target, table[column]
             known = at & ~np.isnan(value)
             means = np.array(
                 [
@@ -37,7 +37,7 @@ def subjects(bench):
                 ]
             )
             pooled = value[known]
-            name = f"targets.{place}.{field}"
+            name = f"targets.{target}.{field}"
             spread = means.std(ddof=1) / math.sqrt(len(means))
             removed, weight = table["removed"][known] == 1, table["rows_on_target"][known]
             wrong = {
@@ -50,7 +50,7 @@ def subjects(bench):
                     means.mean(),
                     "of the subjects' means in targets.csv",
                     ROUNDING,
-                    *(wrong if place == 0 or field[0] in "ms" and field != "success_rate" else ()),
+                    *(wrong if target == 0 or field[0] in "ms" and field != "success_rate" else ()),
                 ),
                 (
                     f"{name}.standard_error",
@@ -95,13 +95,15 @@ def one_subject(bench):
         statuses=(0, 3),
     )
     table, rows = run.table("targets.csv"), run.table()
-    place = np.array([[0, 0], [0.00052, 0]])
+    positions = np.array([[0, 0], [0.00052, 0]])
     order = table["place"].astype(int)  # order in which the targets were drawn
     dt, tip, f = 1 / 2048, rows.vectors("px_m", "py_m"), rows.vectors("fx_N", "fy_N", "fz_N")
     found, active, shown, held, on = [], False, 0, 0, []
 
     def near(k):
-        return len(found) < len(order) and np.hypot(*(place[order[len(found)]] - tip[k])) <= 0.0002
+        return (
+            len(found) < len(order) and np.hypot(*(positions[order[len(found)]] - tip[k])) <= 0.0002
+        )
 
     for k in range(len(tip)):
         if len(found) == len(order):

@@ -18,7 +18,7 @@ def swept(bench):
         expect={"outcome": "completes"},
     )
     field, values = "rendering.stiffness_N_per_m", [500.0, 1000.0, 2000.0, 4e6]
-    told = bench.json(
+    printed = bench.json(
         "sweep", base, "--vary", f"{field}=500,1000,2000,4e6", "--out", "sweep", statuses=(0, 3)
     )
     table = Table(bench.folder / "sweep" / "sweep.csv")
@@ -46,7 +46,7 @@ def swept(bench):
     ):
         bench.add(
             f"sweep --json: {key}",
-            told.get(key, told["outcomes"].get(key)),
+            printed.get(key, printed["outcomes"].get(key)),
             known,
             "one of four is unstable",
             EXACT,
@@ -54,7 +54,7 @@ def swept(bench):
         )
     bench.add(
         f"sweep --json: {field}",
-        [row[field] for row in told["rows"]],
+        [row[field] for row in printed["rows"]],
         values,
         "as asked",
         EXACT,
@@ -62,7 +62,7 @@ def swept(bench):
     )
     bench.add(
         "sweep --json: definition",
-        told["definition"]
+        printed["definition"]
         != bench.json("sweep", base, "--vary", f"{field}=500,1001", "--out", "other")["definition"],
         True,
         "another sweep has another",

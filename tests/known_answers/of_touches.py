@@ -442,15 +442,15 @@ def touch_tables(bench, run, r):
             np.maximum(0, -r.p[:, 2]),
         ),
     ]
-    least, most = np.full(1200, np.nan), np.full(1200, np.nan)
-    least[touching], most[touching] = np.nanmin(r.ratios[touching], axis=1), np.nanmax(
+    smallest, largest = np.full(1200, np.nan), np.full(1200, np.nan)
+    smallest[touching], largest[touching] = np.nanmin(r.ratios[touching], axis=1), np.nanmax(
         r.ratios[touching], axis=1
     )
     values = np.linalg.eigvalsh(r.S)
     columns += [
         (
             "ratio_min",
-            least,
+            smallest,
             "u^T S u",
             ROUNDING,
             "eigenvalue of S",
@@ -458,7 +458,7 @@ def touch_tables(bench, run, r):
         ),
         (
             "ratio_max",
-            most,
+            largest,
             "u^T S u",
             ROUNDING,
             "eigenvalue of S",

@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from answers import EXACT, ROUNDING, Table, Within, scene
-from physics import SPRING, SUMMED, edge_of, held_loop
+from physics import SPRING, SUMMED, held_loop, limit_of
 
 
 @scene
@@ -27,8 +27,8 @@ def tuned(bench):
         rendering={**SUMMED, "mass_kg": m},
     )
     out = bench.folder / "tune"
-    ask = ("--margin", "2", "--bound", "force_rms_above_30Hz_N=1e3", "--allow-vibration")
-    printed = bench.json("tune", base, *ask, "--out", out)
+    words = ("--margin", "2", "--bound", "force_rms_above_30Hz_N=1e3", "--allow-vibration")
+    printed = bench.json("tune", base, *words, "--out", out)
     law, table, trials = (
         printed["algorithms"][0],
         Table(out / "tune.csv"),
@@ -43,9 +43,9 @@ def tuned(bench):
         EXACT,
         ("without bounds", "{}"),
     )
-    edge = lambda B: edge_of(lambda K: loop(K, B), 1.0, 1e5)
-    B = max(np.geomspace(1, 100, 60), key=edge)
-    B = max(np.linspace(0.93 * B, 1.07 * B, 60), key=edge)
+    limit_at = lambda B: limit_of(lambda K: loop(K, B), 1.0, 1e5)
+    B = max(np.geomspace(1, 100, 60), key=limit_at)
+    B = max(np.linspace(0.93 * B, 1.07 * B, 60), key=limit_at)
     K, zeta, runs = law["stiffness_N_per_m"], law["damping_ratio"], printed["runs"]
     by = "eigenvalues of the held loop"
     near = Within(
@@ -58,18 +58,23 @@ def tuned(bench):
         absolute=0.02,
     )
     bench.add(
-        "tune.csv:stiffness_N_per_m", K, edge(B) / 2, by, near, ("without the margin", edge(B))
+        "tune.csv:stiffness_N_per_m",
+        K,
+        limit_at(B) / 2,
+        by,
+        near,
+        ("without the margin", limit_at(B)),
     )
     # Damping B at the stiffness K. At constant zeta, B grows with the square root of the gain.
     at_K = 2 * zeta * math.sqrt(K * m)
-    gain = edge_of(lambda g: loop(g * K, math.sqrt(g) * at_K), 1.0, 64.0)
+    gain = limit_of(lambda g: loop(g * K, math.sqrt(g) * at_K), 1.0, 64.0)
     bench.add(
         "tune.csv:rendering.damping_ratio",
         float(table["rendering.damping_ratio"][0]),
-        B / (2 * math.sqrt(edge(B) * m)),
+        B / (2 * math.sqrt(limit_at(B) * m)),
         "B of the largest edge over 2 sqrt(K M) there",
         Within("K falls by as many percent as zeta is off on either side", relative=0.05),
-        ("with B at K", B / (2 * math.sqrt(edge(B) / 2 * m))),
+        ("with B at K", B / (2 * math.sqrt(limit_at(B) / 2 * m))),
     )
     tuned_margins(bench, K, at_K, by, delay, gain, law, loop, margin, table, zeta)
     tuned_words(bench, law, m)
@@ -95,12 +100,12 @@ def tuned_margins(bench, K, at_K, by, delay, gain, law, loop, margin, table, zet
     """Checks margins by the eigenvalues z of the sampled loop: the gain and the delay at which an eigenvalue leaves the
     unit circle, and the smallest damping ratio -Re s / |s| with s = ln z / T and the sampling period T.
     """
-    late = edge_of(lambda d: loop(K, at_K, d), 0.0, 8.0)
+    delay_limit = limit_of(lambda d: loop(K, at_K, d), 0.0, 8.0)
     z = np.linalg.eigvals(loop(K, at_K))
     s = np.log(z[np.abs(z) > 1e-9].astype(complex))
     for name, csv, value, naive in (
         ("gain", "gain_margin", gain, 1.0),
-        ("delay_samples", "delay_margin_samples", late, late + delay),
+        ("delay_samples", "delay_margin_samples", delay_limit, delay_limit + delay),
         ("damping_ratio", "damping_margin", float((-s.real / np.abs(s)).min()), zeta),
     ):
         bench.add(
@@ -204,7 +209,7 @@ def tuned_words(bench, law, m):
 def tuned_choice(bench, K, base, trials, zeta):
     """Checks the row of the recommendation among the trials: its fields repeat the options, and its metrics equal the
     metrics of a separate run."""
-    own = next(
+    row_of_choice = next(
         row
         for row in trials.rows
         if float(row["stiffness_N_per_m"]) == K and float(row["rendering.damping_ratio"]) == zeta
@@ -217,7 +222,7 @@ def tuned_choice(bench, K, base, trials, zeta):
     ):
         bench.add(
             f"tune_trials.csv:{name}",
-            own[name],
+            row_of_choice[name],
             known,
             "as asked; springs have no inside",
             EXACT,
@@ -234,7 +239,7 @@ def tuned_choice(bench, K, base, trials, zeta):
     for name in ("force_rms_above_30Hz_N", "settled_force_step_max_N"):
         bench.add(
             f"tune_trials.csv:{name}",
-            float(own[name]),
+            float(row_of_choice[name]),
             tried.metric(name),
             "a run with --set",
             EXACT,
@@ -255,8 +260,8 @@ def tuned_trials(bench, by, loop, m, trials):
     """Checks each trial by eigenvalues. A trial is feasible below half the limit at its damping ratio zeta. Trials
     within 2 % of this boundary are skipped, because runs cannot resolve them."""
     given = [row for row in trials.rows if row["feasible"] in ("true", "false")]
-    edges = [
-        edge_of(
+    limits = [
+        limit_of(
             lambda k: loop(k, 2 * float(row["rendering.damping_ratio"]) * math.sqrt(k * m)),
             1e-3,
             1e6,
@@ -266,7 +271,7 @@ def tuned_trials(bench, by, loop, m, trials):
     ]
     clear = [
         (row, e)
-        for row, e in zip(given, edges)
+        for row, e in zip(given, limits)
         if abs(float(row["stiffness_N_per_m"]) / e - 1) > 0.02
     ]
     stable = [float(row["stiffness_N_per_m"]) < e for row, e in clear]

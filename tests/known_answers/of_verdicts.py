@@ -6,7 +6,7 @@ from answers import scene
 def verdicts(bench):
     """Checks that a test in C++ covers each verdict on claims. The test gives the rules of claims numbers on both sides
     of their thresholds."""
-    for word, said, refused in (
+    for word, accepted, rejected in (
         ("replicated", '{"T4", costs, {{"", replicated}', "not_replicated"),
         ("not replicated", '"1.reduced_mean=1.1 1.reduced_max=2", not_replicated', "replicated"),
         ("qualitatively replicated", '"outside_taps=15", qualitatively', "replicated"),
@@ -30,6 +30,6 @@ def verdicts(bench):
             f"{word} (verdict on a claim)",
             "tests/scenarios/thesis/claims_test.cpp",
             "Claims.AreJudgedByTheirThresholds",
-            said,
-            refused,
+            accepted,
+            rejected,
         )

@@ -87,7 +87,7 @@ def radius(matrix):
     return np.abs(np.linalg.eigvals(matrix)).max()
 
 
-def edge_of(loop, low, high):
+def limit_of(loop, low, high):
     """Returns the smallest value between `low` and `high` at which the motion no longer decays. `loop`: function from a
     value to the matrix of the motion."""
     return bisected(lambda value: radius(loop(value)) < 1, low, high)

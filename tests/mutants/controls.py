@@ -33,7 +33,7 @@ def read(file):
 
 
 def program_of(build):
-    status, output = mutants.said("cmake", "--build", build, "--target", "bin/hapbench")
+    status, output = mutants.output_of("cmake", "--build", build, "--target", "bin/hapbench")
     if status:
         raise RuntimeError("it does not compile:\n" + "\n".join(output.splitlines()[-20:]))
     return build / "bin" / "hapbench"

@@ -20,16 +20,16 @@ HERE = Path(__file__).resolve().parent
 SOURCE = HERE.parent.parent
 
 
-def said(*words):
+def output_of(*words):
     done = subprocess.run(words, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
     return done.returncode, done.stdout
 
 
 def make(build, regex):
     """Builds the programs of the tests that the regular expression selects."""
-    tests = json.loads(said("ctest", "--test-dir", build, "--show-only=json-v1", "-R", regex)[1])[
-        "tests"
-    ]
+    tests = json.loads(
+        output_of("ctest", "--test-dir", build, "--show-only=json-v1", "-R", regex)[1]
+    )["tests"]
     if not tests or any("command" not in test for test in tests):
         raise RuntimeError(f"{build}: no built test is called {regex}; build all tests first")
     programs = {
@@ -38,7 +38,7 @@ def make(build, regex):
         for word in test["command"]
         if Path(word).is_relative_to(build / "bin")
     }
-    status, output = said(
+    status, output = output_of(
         "cmake",
         "--build",
         build,
@@ -51,7 +51,7 @@ def make(build, regex):
 
 def failing(build, regex):
     """Returns the first failing test among the selected tests; empty if all pass."""
-    status, output = said(
+    status, output = output_of(
         "ctest", "--test-dir", build, "--stop-on-failure", "--no-tests=error", "-R", regex
     )
     failed = re.search(r"^\s*\d+ - (\S+) \(", output, re.MULTILINE)
@@ -92,7 +92,7 @@ def tried(build, names):
         mutated(mutant)
     if build is None:
         return 0
-    if said("git", "-C", SOURCE, "status", "--porcelain", "--untracked-files=no")[1]:
+    if output_of("git", "-C", SOURCE, "status", "--porcelain", "--untracked-files=no")[1]:
         raise RuntimeError("the tree has changes that are not committed")
     killers = "|".join(sorted({mutant["killed_by"] for mutant in mutants}))
     make(build, killers)

@@ -95,9 +95,9 @@ class Adding(unittest.TestCase):
         return dict(zip(header, row, strict=True))
 
     def test_each_thing_takes_few_files(self):
-        for thing, (most, _) in ADDITIONS.items():
+        for thing, (limit, _) in ADDITIONS.items():
             self.assertLessEqual(
-                len(self.touched[thing]), most, f"{thing}: {sorted(self.touched[thing])}"
+                len(self.touched[thing]), limit, f"{thing}: {sorted(self.touched[thing])}"
             )
 
     def test_the_reader_accepts_and_refuses(self):
@@ -153,7 +153,7 @@ class Adding(unittest.TestCase):
         ):
             self.assertIn(text, self.hapbench("describe", name))
 
-    def test_an_environment_says_what_its_inside_is(self):
+    def test_an_environment_defines_its_inside(self):
         self.write()
         summary, _ = self.run_scene()
         self.assertAlmostEqual(summary["metrics"]["inside_max_m"], 1e-5, delta=1e-6)

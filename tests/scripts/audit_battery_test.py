@@ -56,8 +56,8 @@ def one_axis(*given, **more):
 def three_axes(*given, **more):
     t, position, force = simulated(*given, **more)
     zero = np.zeros(len(t))
-    place = {"x": position[:, 0], "y": zero, "z": position[:, 1]}
-    return {"t": t, **place, "fx": force[:, 0], "fy": zero, "fz": force[:, 1]}
+    coordinates = {"x": position[:, 0], "y": zero, "z": position[:, 1]}
+    return {"t": t, **coordinates, "fx": force[:, 0], "fy": zero, "fz": force[:, 1]}
 
 
 class Battery(unittest.TestCase):

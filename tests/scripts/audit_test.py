@@ -24,7 +24,7 @@ def pressed(cycles, amplitude=1e-3, per_cycle=100, depth=3e-3):
     return np.concatenate([landing, -depth - amplitude * np.sin(phase)])
 
 
-def late(values, rows):
+def delayed(values, rows):
     return np.concatenate([np.full(rows, values[0]), values[: len(values) - rows]])
 
 
@@ -66,7 +66,7 @@ class KnownAnswers(unittest.TestCase):
             found = []
             for cycles in (10, 30):
                 z = pressed(cycles, amplitude, per_cycle)
-                found.append(audit(table(z, wall(late(z, delay), stiffness))))
+                found.append(audit(table(z, wall(delayed(z, delay), stiffness))))
             spring = found[1]["stiffness"]
             self.assertEqual(spring["delay_rows"], delay)
             self.assertAlmostEqual(spring["stiffness_N_per_m"] / stiffness, 1.0, delta=EXACT)
@@ -129,7 +129,8 @@ class KnownAnswers(unittest.TestCase):
         self.assertLessEqual(bare["net_created_path_J"], bare["net_created_error_J"] + touch)
 
     def test_quantised_position(self):
-        """The encoder step widens the intervals and the error of the work, which still contain the true values."""
+        """Encoder quantisation widens the confidence intervals and the error bounds of the mechanical work; both still
+        contain the true values."""
         rng = np.random.default_rng(2)
         for step in (1e-5, 5e-5):
             z = (
@@ -204,8 +205,8 @@ class KnownAnswers(unittest.TestCase):
         expected, seen = found["device"]["expected_frequency_Hz"], found["buzz"][0]["frequency_Hz"]
         # The wall only pushes: a growing oscillation loses contact and then has a longer period.
         self.assertTrue(0.6 * expected < seen < 1.1 * expected, (expected, seen))
-        edge = rules_of(found)["edge"]
-        self.assertIn(f"expect a buzz near {expected:.0f} Hz", edge["says"])
+        finding = rules_of(found)["edge"]
+        self.assertIn(f"expect a buzz near {expected:.0f} Hz", finding["says"])
         self.assertIn("energy", rules_of(found))
 
 
@@ -310,12 +311,12 @@ class Formats(unittest.TestCase):
                 columns={"position": "pz", "force": "f"},
             )
 
-    def test_a_clock_in_other_units_is_asked_about(self):
+    def test_a_clock_in_other_units_is_reported(self):
         z = pressed(20)
-        for factor, is_asked in ((1.0, False), (1e-3, True)):
+        for factor, is_reported in ((1.0, False), (1e-3, True)):
             log = {"t": factor * T * np.arange(len(z)), "x": z, "f": wall(z, 1000.0)}
-            said = " ".join(audit(log)["warnings"])
-            self.assertEqual("in other units" in said, is_asked, (factor, said))
+            warned = " ".join(audit(log)["warnings"])
+            self.assertEqual("in other units" in warned, is_reported, (factor, warned))
 
     def test_the_reason_is_of_the_contact_that_moves_furthest(self):
         # A touch of a few counts comes first; a force with the wrong sign follows in both contacts.
@@ -325,8 +326,8 @@ class Formats(unittest.TestCase):
         log = {"t": T * np.arange(len(z)), "x": z, "f": -wall(z, 1000.0)}
         found = audit(log)
         self.assertIsNone(found["stiffness"])
-        said = " ".join(found["missing"])
-        self.assertIn("grows along its own direction", said)
+        warned = " ".join(found["missing"])
+        self.assertIn("grows along its own direction", warned)
 
     def test_command_and_function_agree(self):
         z = pressed(20)
@@ -348,15 +349,15 @@ class Formats(unittest.TestCase):
         file.write_text(csv_text(table(z, wall(z, 1000.0, 1.0))))
         words = ("audit", file, "--quiet", "--out", scratch / "out", "--expect")
         hapbench(*words, "energy_mJ=1,stiffness_N_per_m=990:1010")
-        said = ran(PROGRAM, *words, "stiffness_N_per_m=900,force_max_N=1e3")
-        self.assertEqual(said.returncode, 3)
-        self.assertIn("expected stiffness_N_per_m of at most 900, got 1000", said.stderr)
-        self.assertNotIn("force_max_N", said.stderr)
-        said = ran(PROGRAM, *words, "stiffness_of_limit=1")
-        self.assertEqual((said.returncode, "no value" in said.stderr), (3, True))
-        said = ran(PROGRAM, *words, "energy_mj=1")
+        done = ran(PROGRAM, *words, "stiffness_N_per_m=900,force_max_N=1e3")
+        self.assertEqual(done.returncode, 3)
+        self.assertIn("expected stiffness_N_per_m of at most 900, got 1000", done.stderr)
+        self.assertNotIn("force_max_N", done.stderr)
+        done = ran(PROGRAM, *words, "stiffness_of_limit=1")
+        self.assertEqual((done.returncode, "no value" in done.stderr), (3, True))
+        done = ran(PROGRAM, *words, "energy_mj=1")
         self.assertEqual(
-            (said.returncode, 'nearest valid name: "energy_mJ"' in said.stderr), (2, True)
+            (done.returncode, 'nearest valid name: "energy_mJ"' in done.stderr), (2, True)
         )
 
 

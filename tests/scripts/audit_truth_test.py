@@ -149,8 +149,8 @@ class Springs(unittest.TestCase):
         along = 0.03 * np.array([np.sin(7.0 * t), np.cos(5.0 * t)])
         speed = np.gradient(along, t, axis=1)
         sideways = -0.4 * force * speed / np.linalg.norm(speed, axis=0)
-        place = {"x": along[0], "y": along[1], "z": z}
-        found = audit({"t": t} | place | {"fx": sideways[0], "fy": sideways[1], "fz": force})
+        coordinates = {"x": along[0], "y": along[1], "z": z}
+        found = audit({"t": t} | coordinates | {"fx": sideways[0], "fy": sideways[1], "fz": force})
         self.holds(found, 1000.0, 1)
         # Friction of 0.4 tilts the force by 22 degrees.
         self.assertGreater(abs(found["stiffness"]["direction"][2]), np.cos(np.radians(1.0)))
@@ -184,18 +184,18 @@ def impulses(correction, restitution, mass=0.1):
     """Log of a tool that a hand presses against a rigid surface: the impulse of a row stops it."""
     t = T * np.arange(6000)
     target = presses(t, 7, 0.6, every=0.8) + tremor(t)
-    z, v, places, forces = 1e-3, 0.0, [], []
+    z, v, positions, forces = 1e-3, 0.0, [], []
     for goal in target:
         hand = 300.0 * (goal - z) - 4.0 * v
         force = 0.0
         if z < 0.0:
             bounce = -restitution * v if v < -0.05 else 0.0
             force = max(mass * ((correction * -z / T + bounce - v) / T) - hand, 0.0)
-        places.append(z)
+        positions.append(z)
         forces.append(force)
         v += T * (hand + force) / mass
         z += T * v
-    return log_of(t, np.array(places), np.array(forces))
+    return log_of(t, np.array(positions), np.array(forces))
 
 
 class Diagnosis(unittest.TestCase):

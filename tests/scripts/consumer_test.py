@@ -96,8 +96,8 @@ class Consumer(unittest.TestCase):
         # The molar of drag_molar, and a pyramid written by this test.
         pyramid = self.folder / "pyramid.stl"
         pyramid.write_text(ascii_pyramid())
-        own = self.folder / "own.json"
-        own.write_text(
+        pyramid_scene = self.folder / "own.json"
+        pyramid_scene.write_text(
             json.dumps(
                 {
                     "time": {"step_s": 0.001, "steps": 10},
@@ -113,7 +113,10 @@ class Consumer(unittest.TestCase):
                 }
             )
         )
-        for scenario, top, deep in (("drag_molar", 0.006, 0.004), (str(own), 0.0035, 0.002)):
+        for scenario, top, deep in (
+            ("drag_molar", 0.006, 0.004),
+            (str(pyramid_scene), 0.0035, 0.002),
+        ):
             motion, log, out = (
                 self.folder / name for name in ("motion.csv", "log.csv", "replayed")
             )
@@ -188,15 +191,15 @@ class Consumer(unittest.TestCase):
         self.assertNotIn(
             "scenarios/analysis", all_of_parent, "nothing is built that the parent does not link"
         )
-        own = next(
+        command = next(
             line
             for line in all_of_parent.splitlines()
             if line.rstrip("\"'").endswith("own_law.cpp")
         )
         for word in ("-ffp-contract=off", "-DEIGEN_DONT_VECTORIZE"):
-            self.assertIn(word, own)
+            self.assertIn(word, command)
         for word in ("-Wconversion", "-march", "-Werror", "HAPBENCH_SIMD"):
-            self.assertNotIn(word, own)
+            self.assertNotIn(word, command)
 
     def test_it_computes_elementary_functions_itself(self):
         """Elementary functions must not come from the C library, because their last digits differ between versions.

@@ -175,11 +175,11 @@ class Commands(unittest.TestCase):
             script = SOURCE / command.words[0]
             with self.subTest(str(command)):
                 self.assertTrue(os.access(script, os.X_OK))
-                says = help_of(script)
+                help_text = help_of(script)
                 for option in (
                     word.split("=")[0] for word in command.words[1:] if word.startswith("--")
                 ):
-                    self.assertRegex(says, rf"{option}\b")
+                    self.assertRegex(help_text, rf"{option}\b")
 
     def test_commands_in_sentences_exist(self):
         known = set(re.findall(r"^[a-z ]{8}([a-z]+) ", started(PROGRAM).stdout, re.M))
@@ -298,11 +298,11 @@ class Examples(unittest.TestCase):
         )
         hapbench("run", folder / "sphere.json", "--out", folder / "out", "--quiet")
         rows = read_columns(folder / "out" / "trajectory.csv")
-        place, force = (
+        position, force = (
             np.column_stack([rows[name.format(x)] for x in "xyz"]) for name in ("p{}_m", "f{}_N")
         )
-        distance = np.linalg.norm(place, axis=1, keepdims=True)
-        known = 20000 * np.maximum(0, 0.0025 - distance) * place / distance
+        distance = np.linalg.norm(position, axis=1, keepdims=True)
+        known = 20000 * np.maximum(0, 0.0025 - distance) * position / distance
         self.assertGreater(np.count_nonzero(known[:, 2]), 500)
         # A few rounding errors of 2.5 mm, times K.
         self.assertLess(np.abs(force - known).max(), 1e-13)

@@ -60,7 +60,7 @@ def make_results(directory):
         "hand",
         "integrators",
     )
-    for ask, study, *words in (
+    for verb, study, *words in (
         ("compare", "stiffness_peg"),
         ("limit", "spring_stiffness"),
         ("limit", "spring_damping"),
@@ -78,7 +78,7 @@ def make_results(directory):
             for field in fields
         ),
     ):
-        hapbench(ask, study, *words, "--out", directory / study)
+        hapbench(verb, study, *words, "--out", directory / study)
     make_accuracy(directory / "accuracy")
     shutil.copy(REFERENCE / "claims.json", directory)
     # The load of the loop is drawn if step times were measured.
@@ -150,7 +150,7 @@ class Figures(unittest.TestCase):
         program.start()
         cls.addClassCleanup(program.stop)
         with mock.patch.object(command, "FORMATS", ("svg",)):
-            cls.status, _, cls.said = in_process(command.main, cls.results, "--out", cls.drawn)
+            cls.status, _, cls.errors = in_process(command.main, cls.results, "--out", cls.drawn)
 
     def index(self, directory=None):
         return json.loads(((directory or self.drawn) / "figures.json").read_text(encoding="utf-8"))[
@@ -158,8 +158,8 @@ class Figures(unittest.TestCase):
         ]
 
     def test_every_figure_is_drawn(self):
-        self.assertEqual(self.status, 0, self.said)
-        self.assertEqual([entry["id"] for entry in self.index()], IDS, self.said)
+        self.assertEqual(self.status, 0, self.errors)
+        self.assertEqual([entry["id"] for entry in self.index()], IDS, self.errors)
         self.assertEqual([line.split()[0] for line in figures("--list").stdout.splitlines()], IDS)
         redrawn = "2 4 5 6 7a-c 8 A.1 A.2a-b A.4 A.5 B.3 B.4 B.5 C.1 C.2 C.3 C.4 D.6 D.7 D.8 E.1 E.2 E.3 E.4 F.4 F.5"
         found = " ".join(entry["thesis_figure"] or "" for entry in self.index())
@@ -177,7 +177,7 @@ class Figures(unittest.TestCase):
         for name in re.findall(r"\((figure_\S+\.svg)\)", page):
             self.assertTrue((RECORD / name).is_file(), name)
 
-    def test_those_on_record_show_what_the_ledger_says(self):
+    def test_those_on_record_show_the_verdicts_of_the_ledger(self):
         claims = json.loads((REFERENCE / "claims.json").read_text(encoding="utf-8"))["claims"]
         drawn = json.loads((RECORD / command.ROWS).read_text(encoding="utf-8"))
         for figure in command.FIGURES:
@@ -190,7 +190,7 @@ class Figures(unittest.TestCase):
         self.assertEqual(set(drawn["D.7"]), {"D1", "D2"})
         self.assertEqual(set(drawn["density"]), {"P1"})
 
-    def test_each_says_what_it_shows(self):
+    def test_each_describes_what_it_shows(self):
         for entry in self.index():
             with self.subTest(entry["id"]):
                 self.assertGreater(len(entry["caption"]), 40)
@@ -243,13 +243,13 @@ class Figures(unittest.TestCase):
             for name in entry["files"]:
                 self.assertEqual((again / name).read_bytes(), (alone / name).read_bytes(), name)
 
-    def test_missing_data_is_skipped_and_said(self):
+    def test_missing_data_is_skipped_and_reported(self):
         empty, out = self.directory / "empty", self.directory / "nothing"
         empty.mkdir()
-        status, _, said = in_process(command.main, empty, "--out", out)
+        status, _, errors = in_process(command.main, empty, "--out", out)
         self.assertEqual(status, 1)
         for id_ in IDS:
-            self.assertRegex(said, rf"skipped {re.escape(id_)} \(no .+\)")
+            self.assertRegex(errors, rf"skipped {re.escape(id_)} \(no .+\)")
         self.assertEqual(self.index(out), [])
 
     def test_usage(self):
@@ -262,6 +262,6 @@ class Figures(unittest.TestCase):
             ["--no-such"],
             [self.results, "--out", occupied, "--only", "6"],
         ):
-            status, _, said = in_process(command.main, *words)
-            self.assertEqual((status, said.count("\n")), (2, 1), said)
-            self.assertTrue(said.startswith("hapbench: error: "), said)
+            status, _, errors = in_process(command.main, *words)
+            self.assertEqual((status, errors.count("\n")), (2, 1), errors)
+            self.assertTrue(errors.startswith("hapbench: error: "), errors)

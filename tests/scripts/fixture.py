@@ -44,8 +44,8 @@ def ran(*words, cwd=None, env=ENVIRONMENT, **environment):
     return done
 
 
-def without_progress(said):
-    return re.sub(r"[^\n]*( \.\.\. \d+ s|: +\d+ %[^\n]*)\n", "", said)
+def without_progress(text):
+    return re.sub(r"[^\n]*( \.\.\. \d+ s|: +\d+ %[^\n]*)\n", "", text)
 
 
 def must(*words, statuses=(0,), **options):
@@ -67,13 +67,13 @@ def hapbench(*words, expected=0):
 def in_process(command, *words, **environment):
     """Calls the main function of a command in this process, because starting a process takes longer. Returns status,
     standard output and standard error."""
-    said, error = StringIO(), StringIO()
-    with redirect_stdout(said), redirect_stderr(error), mock.patch.dict(os.environ, environment):
+    output, error = StringIO(), StringIO()
+    with redirect_stdout(output), redirect_stderr(error), mock.patch.dict(os.environ, environment):
         try:
             status = command([*map(str, words)])
         except SystemExit as end:
             status = end.code
-    return status, said.getvalue(), without_progress(error.getvalue())
+    return status, output.getvalue(), without_progress(error.getvalue())
 
 
 def assert_whole(test, page):

@@ -73,8 +73,8 @@ class Folders(unittest.TestCase):
         )
 
     def ends_of(self, processes):
-        said = [process.communicate()[1] for process in processes]
-        return [(process.returncode, text) for process, text in zip(processes, said)]
+        errors = [process.communicate()[1] for process in processes]
+        return [(process.returncode, text) for process, text in zip(processes, errors)]
 
     def refused(self, text, folder):
         return (

@@ -108,12 +108,12 @@ class Page(unittest.TestCase):
             for entry in self.driver.get_log("browser")
             if entry["level"] != ("INFO" if entry["source"] == "console-api" else "DEBUG")
         ]
-        told = [
+        messages = [
             json.loads(entry["message"])["message"] for entry in self.driver.get_log("performance")
         ]
         urls = [
             message["params"]["request"]["url"]
-            for message in told
+            for message in messages
             if message["method"] == "Network.requestWillBeSent"
         ]
         return found + [url for url in urls if not url.startswith(("file:", "data:", "blob:"))]

@@ -41,11 +41,11 @@ def synthetic(seed):
         ]
     )
     encoder = np.exp(random.uniform(np.log(2e-6), np.log(1e-4)))
-    places = positions(when, push, truth) + encoder * random.choice(
+    trajectory = positions(when, push, truth) + encoder * random.choice(
         [0.0, 0.3, 1.0]
     ) * random.standard_normal(len(when))
     return (
-        log_of(when, push, encoder * np.round(places / encoder)),
+        log_of(when, push, encoder * np.round(trajectory / encoder)),
         truth,
         (kind, rate, duration, dry / peak),
     )
@@ -71,7 +71,7 @@ def judged(seed):
     with Simulator(log.time, log.force) as simulate:
         at_truth = Cost(simulate, log)(truth)
     holds = {
-        name: None if name in found.untold else bool(low <= true <= high)
+        name: None if name in found.undetermined else bool(low <= true <= high)
         for name, true, (low, high) in zip(PARAMETERS, truth, found.intervals)
     }
     return {
@@ -81,7 +81,7 @@ def judged(seed):
         "holds": holds,
         "over": found.rms / np.sqrt(np.mean(at_truth**2)),
         "seconds": seconds,
-        "untold": found.untold,
+        "untold": found.undetermined,
     }
 
 
@@ -94,13 +94,13 @@ def table(ones):
     ]
     for kind in (*KINDS, "all"):
         of_kind = [one for one in ones if kind in ("all", one["what"][0])]
-        told = [one for one in of_kind if not one["refused"]]
-        shares = [f"{100.0 * share(told, name):.0f} %" for name in PARAMETERS]
-        untold = sum(holds is None for one in told for holds in one["holds"].values())
-        seconds = [one["seconds"] for one in told]
+        accepted = [one for one in of_kind if not one["refused"]]
+        shares = [f"{100.0 * share(accepted, name):.0f} %" for name in PARAMETERS]
+        undetermined = sum(holds is None for one in accepted for holds in one["holds"].values())
+        seconds = [one["seconds"] for one in accepted]
         rows.append(
-            f"| {len(of_kind)} {kind} | {' | '.join(shares)} | {len(of_kind) - len(told)} | {untold} | "
-            f"{max(one['over'] for one in told):.4f} | {np.mean(seconds):.1f} s, {max(seconds):.1f} s |"
+            f"| {len(of_kind)} {kind} | {' | '.join(shares)} | {len(of_kind) - len(accepted)} | {undetermined} | "
+            f"{max(one['over'] for one in accepted):.4f} | {np.mean(seconds):.1f} s, {max(seconds):.1f} s |"
         )
     return rows
 

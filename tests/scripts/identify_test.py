@@ -19,8 +19,8 @@ TRUE = {
     "encoder_step_m": 1e-5,
 }
 M, B, C, _, Q = TRUE.values()
-LATE = 1e-3 * TRUE["delay_samples"]  # [s]
-HANDLE = (M, B, C, LATE, 0.0, 0.0)
+DELAY_S = 1e-3 * TRUE["delay_samples"]  # [s]
+HANDLE = (M, B, C, DELAY_S, 0.0, 0.0)
 
 
 def played(time, force, finer, spring=0.0, stribeck=(0.0, 1.0)):
@@ -28,8 +28,8 @@ def played(time, force, finer, spring=0.0, stribeck=(0.0, 1.0)):
     within a step. `stribeck`: relative increase of dry friction at rest, and the speed up to which friction is
     increased [m/s]."""
     x = v = 0.0
-    places = [x]
-    arrivals = time + LATE
+    trajectory = [x]
+    arrivals = time + DELAY_S
     for start, end in zip(time, time[1:]):
         h = (end - start) / finer
         which = np.searchsorted(arrivals, start + h * (np.arange(finer) + 0.5), side="right") - 1
@@ -39,8 +39,8 @@ def played(time, force, finer, spring=0.0, stribeck=(0.0, 1.0)):
             grip = h * C / M * (1.0 + stribeck[0] * np.exp(-((v / stribeck[1]) ** 2)))
             before, v = v, 0.0 if abs(free) <= grip else free - np.copysign(grip, free)
             x += 0.5 * h * (before + v)
-        places.append(x)
-    return np.array(places)
+        trajectory.append(x)
+    return np.array(trajectory)
 
 
 class Logs(unittest.TestCase):
@@ -48,16 +48,16 @@ class Logs(unittest.TestCase):
     def setUpClass(cls):
         cls.root = scratch_folder(cls)
         cls.time, cls.force = design("chirp", 1.5, 0.08, 1000.0, 2.0, 0.1)
-        cls.places = positions(cls.time, cls.force, HANDLE)
+        cls.trajectory = positions(cls.time, cls.force, HANDLE)
 
-    def log(self, places, time=None, force=None):
+    def log(self, trajectory, time=None, force=None):
         file = self.root / "log.csv"
         time, force = (self.time if time is None else time), (
             self.force if force is None else force
         )
         np.savetxt(
             file,
-            np.column_stack([time, force, places]),
+            np.column_stack([time, force, trajectory]),
             "%.17g",
             ",",
             header="time_s,force_N,position_m",
@@ -65,55 +65,57 @@ class Logs(unittest.TestCase):
         )
         return file
 
-    def told(self, file, *words):
+    def identify(self, file, *words):
         done = run("import", "device", file, "--json", "--out", self.root / "device.json", *words)
         self.assertEqual(done.returncode, 0, done.stderr)
         return json.loads(done.stdout), done.stderr
 
     def refused(self, file, *words):
-        said = hapbench(
+        error = hapbench(
             "import", "device", file, "--out", self.root / "none.json", *words, expected=2
         )
         self.assertFalse((self.root / "none.json").exists())
-        return said
+        return error
 
-    def assert_holds(self, told):
+    def assert_holds(self, result):
         # The mean interval of a clock with jitter is not 1 ms.
-        for name, true in {**TRUE, "delay_samples": LATE / told["step_s"]}.items():
-            low, high = told[name]["interval"]
+        for name, true in {**TRUE, "delay_samples": DELAY_S / result["step_s"]}.items():
+            low, high = result[name]["interval"]
             self.assertTrue(low <= true <= high, f"{name}: {true} in {low} ... {high}")
 
 
 class Identify(Logs):
     def test_the_model_is_what_small_steps_tend_to(self):
         errors = [
-            np.abs(played(self.time[:500], self.force[:500], n) - self.places[:500]).max()
+            np.abs(played(self.time[:500], self.force[:500], n) - self.trajectory[:500]).max()
             for n in (20, 100, 400)
         ]
         self.assertLess(errors[2], 1e-6)
         self.assertLess(errors[2], 0.4 * errors[0])
 
-    def test_a_log_in_steps_of_the_encoder_tells_the_device(self):
-        told, warned = self.told(self.log(np.round(self.places / Q) * Q))
+    def test_a_log_in_steps_of_the_encoder_identifies_the_device(self):
+        result, warned = self.identify(self.log(np.round(self.trajectory / Q) * Q))
         self.assertEqual(warned, "")
-        self.assert_holds(told)
+        self.assert_holds(result)
         for name, share in (
             ("handle_mass_kg", 0.01),
             ("viscous_N_s_per_m", 0.05),
             ("coulomb_N", 0.05),
             ("delay_samples", 0.05),
         ):
-            self.assertAlmostEqual(told[name]["value"] / TRUE[name], 1.0, delta=share)
-        self.assertAlmostEqual(told["residual_m"] / (Q / np.sqrt(12.0)), 1.0, delta=0.15)
-        self.assertAlmostEqual(told["step_s"], 1e-3)
+            self.assertAlmostEqual(result[name]["value"] / TRUE[name], 1.0, delta=share)
+        self.assertAlmostEqual(result["residual_m"] / (Q / np.sqrt(12.0)), 1.0, delta=0.15)
+        self.assertAlmostEqual(result["step_s"], 1e-3)
         device = json.loads((self.root / "device.json").read_text())
         self.assertAlmostEqual(
-            device["handle_mass_kg"], told["handle_mass_kg"]["value"], delta=1e-6
+            device["handle_mass_kg"], result["handle_mass_kg"]["value"], delta=1e-6
         )
         self.assertTrue((self.root / "device.svg").read_text().startswith("<?xml"))
         self.assertEqual(run("validate", self.root / "device.json").returncode, 0)
         # A scene with another step converts the delay, which is in seconds, to its own samples.
-        self.assertAlmostEqual(device["delay_s"], 1e-3 * told["delay_samples"]["value"], delta=1e-8)
+        self.assertAlmostEqual(
+            device["delay_s"], 1e-3 * result["delay_samples"]["value"], delta=1e-8
+        )
         self.assertNotIn("delay_samples", device)
         run(
             "run",
@@ -137,14 +139,14 @@ class Identify(Logs):
         time = self.time + np.concatenate(
             [[0.0], 2e-4 * random.uniform(-1.0, 1.0, len(self.time) - 1)]
         )
-        places = positions(time, self.force, HANDLE)
-        measured = np.round((places + 2e-5 * random.standard_normal(len(places))) / Q) * Q
+        trajectory = positions(time, self.force, HANDLE)
+        measured = np.round((trajectory + 2e-5 * random.standard_normal(len(trajectory))) / Q) * Q
         kept = random.random(len(time)) > 0.03
         kept[0] = True
         file = self.log(1e3 * measured[kept], 1e6 * time[kept], self.force[kept])
-        told, warned = self.told(file, "--scale", "time=1e-6,position=1e-3")
-        self.assert_holds(told)
-        self.assertAlmostEqual(told["position_noise_m"]["value"], 2e-5, delta=1e-6)
+        result, warned = self.identify(file, "--scale", "time=1e-6,position=1e-3")
+        self.assert_holds(result)
+        self.assertAlmostEqual(result["position_noise_m"]["value"], 2e-5, delta=1e-6)
         self.assertIn(f"{np.count_nonzero(~kept)} samples are missing", warned)
         self.assertIn("the sampling is not uniform", warned)
 
@@ -158,7 +160,7 @@ class Identify(Logs):
             sum(held), 27
         )  # of 30 intervals at 95 %; fewer have a probability of 1/16, and the seeds are fixed
 
-    def test_what_the_log_cannot_tell_has_no_value(self):
+    def test_what_the_log_does_not_determine_has_no_value(self):
         time = np.arange(2000) * 1e-3
         force = np.where(
             time % 0.5 < 0.1,
@@ -166,35 +168,39 @@ class Identify(Logs):
             0.0
             # The force pushes in one direction, so that friction and a constant force cannot be distinguished.
         )
-        told, warned = self.told(
+        result, warned = self.identify(
             self.log(
                 np.round(positions(time, force, (M, B, 0.0, 0.0, 0.0, 0.3)) / Q) * Q, time, force
             )
         )
-        self.assertIsNone(told["coulomb_N"]["value"])
+        self.assertIsNone(result["coulomb_N"]["value"])
         self.assertRegex(
             warned,
             r"coulomb_N cannot be identified from this log: the handle moved in one direction only "
             r"\(at rest for \d+ % of the log, 1 strokes in one direction and 0",
         )
         self.assertNotIn("coulomb_N", json.loads((self.root / "device.json").read_text()))
-        self.assertAlmostEqual(told["handle_mass_kg"]["value"] / M, 1.0, delta=0.02)
+        self.assertAlmostEqual(result["handle_mass_kg"]["value"] / M, 1.0, delta=0.02)
         # Even if the handle rests for most of the time, its motion determines the parameters.
         rest = np.concatenate([self.force, np.zeros(4 * len(self.force))])
         time = np.arange(len(rest)) * 1e-3
-        told, _ = self.told(self.log(np.round(positions(time, rest, HANDLE) / Q) * Q, time, rest))
-        self.assert_holds(told)
+        result, _ = self.identify(
+            self.log(np.round(positions(time, rest, HANDLE) / Q) * Q, time, rest)
+        )
+        self.assert_holds(result)
         self.assertIn(
             "the handle hardly moves",
-            self.refused(self.log(1e-5 * np.round(5.0 * self.places / np.ptp(self.places)))),
+            self.refused(
+                self.log(1e-5 * np.round(5.0 * self.trajectory / np.ptp(self.trajectory)))
+            ),
         )
 
-    def test_it_says_what_a_log_does_not_show(self):
-        file = self.log(np.round(self.places / Q) * Q)
+    def test_it_names_what_a_log_does_not_show(self):
+        file = self.log(np.round(self.trajectory / Q) * Q)
         words = ("import", "device", file, "--out", self.root / "said.json")
-        said = run(*words).stdout
+        output = run(*words).stdout
         missing = "velocity_filter, force_max_N, force_step_N, force_slew_N_per_s, position_filter, transmission"
-        self.assertIn(f"not in the log: {missing}; add them to ", said)
+        self.assertIn(f"not in the log: {missing}; add them to ", output)
         self.assertEqual(
             json.loads(run(*words, "--json").stdout)["not_in_log"], missing.split(", ")
         )
@@ -208,32 +214,32 @@ class Identify(Logs):
             self.assertEqual(value_text("offset_N", one, force), shown)
             self.assertEqual(value_text("coulomb_N", one, force), "not identifiable")
 
-    def test_units_that_are_unlikely_are_asked_about(self):
-        file = self.log(1e3 * np.round(self.places / 1e-5) * 1e-5, 1e3 * self.time)
+    def test_units_that_are_unlikely_are_reported(self):
+        file = self.log(1e3 * np.round(self.trajectory / 1e-5) * 1e-5, 1e3 * self.time)
         self.assertIn("are the units s, N and m?", self.refused(file))
-        told, _ = self.told(file, "--scale", "time=1e-3,position=1e-3")
-        self.assert_holds(told)
+        result, _ = self.identify(file, "--scale", "time=1e-3,position=1e-3")
+        self.assert_holds(result)
         self.assertGreater(
-            self.told(file, "--scale", "time=1")[0]["handle_mass_kg"]["value"], 100.0
+            self.identify(file, "--scale", "time=1")[0]["handle_mass_kg"]["value"], 100.0
         )
 
     def test_a_force_of_the_other_sign_is_named_with_the_scale(self):
-        places = np.round(self.places / Q) * Q
+        trajectory = np.round(self.trajectory / Q) * Q
         for given in (
-            self.log(places, force=-self.force),
-            self.log(-places),
+            self.log(trajectory, force=-self.force),
+            self.log(-trajectory),
         ):
-            said = self.refused(given)
-            self.assertIn("the handle accelerates against the force", said)
-            self.assertIn("--scale force=-1", said)
-        told, warned = self.told(given, "--scale", "force=-1")
-        self.assert_holds(told)
+            output = self.refused(given)
+            self.assertIn("the handle accelerates against the force", output)
+            self.assertIn("--scale force=-1", output)
+        result, warned = self.identify(given, "--scale", "force=-1")
+        self.assert_holds(result)
         self.assertEqual(warned, "")
-        both = self.log(1e3 * places, 1e3 * self.time, -self.force)
+        both = self.log(1e3 * trajectory, 1e3 * self.time, -self.force)
         self.assertIn("--scale time=0.001,force=-1,position=0.001", self.refused(both))
 
     def test_units_that_explain_the_log_are_named(self):
-        places = np.round(self.places / Q) * Q
+        trajectory = np.round(self.trajectory / Q) * Q
         for time, force, position, scale in (
             (1.0, 1.0, 1e3, "position=0.001"),
             (1e3, 1.0, 1.0, "time=0.001"),
@@ -241,25 +247,29 @@ class Identify(Logs):
             (1.0, 1e-3, 1.0, "force=1000"),
             (1.0, 1e3, 1.0, "force=0.001"),
         ):
-            said = self.refused(self.log(position * places, time * self.time, force * self.force))
-            self.assertIn(f"it is a handle of 0.12 kg: --scale {scale}", said)
+            output = self.refused(
+                self.log(position * trajectory, time * self.time, force * self.force)
+            )
+            self.assertIn(f"it is a handle of 0.12 kg: --scale {scale}", output)
         # The advice keeps the given scale.
-        said = self.refused(self.log(1e3 * places, 1e3 * self.time), "--scale", "position=1e-3")
-        self.assertIn("--scale position=0.001,time=0.001", said)
+        output = self.refused(
+            self.log(1e3 * trajectory, 1e3 * self.time), "--scale", "position=1e-3"
+        )
+        self.assertIn("--scale position=0.001,time=0.001", output)
         # A handle with a plausible mass is accepted with a warning.
-        _, warned = self.told(self.log(places, force=self.force / 9.80665e-3))
+        _, warned = self.identify(self.log(trajectory, force=self.force / 9.80665e-3))
         self.assertIn("In s, gf, m it is a handle of 0.12 kg: --scale force=0.00980665", warned)
 
     def test_units_in_names_and_decimal_commas_are_read(self):
-        file = self.log(1e3 * np.round(self.places / Q) * Q, 1e3 * self.time)
+        file = self.log(1e3 * np.round(self.trajectory / Q) * Q, 1e3 * self.time)
         numbers = file.read_text().partition("\n")[2].replace(",", ";").replace(".", ",")
         file.write_text("Time [ms];force [N];position [mm]\n" + numbers)
-        told, warned = self.told(file)
-        self.assert_holds(told)
+        result, warned = self.identify(file)
+        self.assert_holds(result)
         self.assertIn("numbers have a decimal comma", warned)
-        self.assertEqual(told["scales"], {"time": 1e-3, "force": 1.0, "position": 1e-3})
+        self.assertEqual(result["scales"], {"time": 1e-3, "force": 1.0, "position": 1e-3})
         self.assertEqual(
-            [told["columns"][name][0]["name"] for name in ("time", "force", "position")],
+            [result["columns"][name][0]["name"] for name in ("time", "force", "position")],
             ["Time [ms]", "force [N]", "position [mm]"],
         )
 
@@ -267,24 +277,26 @@ class Identify(Logs):
         for rows in (2, 5):
             held = np.arange(len(self.time)) // rows * rows
             for force in (self.force, self.force[held]):
-                places = positions(self.time, force, HANDLE)
-                told, warned = self.told(self.log((np.round(places / Q) * Q)[held], force=force))
+                trajectory = positions(self.time, force, HANDLE)
+                result, warned = self.identify(
+                    self.log((np.round(trajectory / Q) * Q)[held], force=force)
+                )
                 self.assertIn(f"each position is repeated in {rows} rows", warned)
-                delay = told["delay_s"]
-                self.assertAlmostEqual(delay["value"], LATE, delta=3e-5)
+                delay = result["delay_s"]
+                self.assertAlmostEqual(delay["value"], DELAY_S, delta=3e-5)
                 self.assertLess(np.ptp(delay["interval"]), 1e-4)
-                self.assertAlmostEqual(told["handle_mass_kg"]["value"] / M, 1.0, delta=0.01)
+                self.assertAlmostEqual(result["handle_mass_kg"]["value"] / M, 1.0, delta=0.01)
 
-    def test_it_says_when_something_else_is_on_the_handle(self):
+    def test_it_reports_when_something_else_is_on_the_handle(self):
         for spring, why in (
             (2.0, "the device has a property that the model lacks"),
             (200.0, "the device has a property|Is a hand or a spring"),
         ):
-            places = played(self.time, self.force, 50, spring)
+            trajectory = played(self.time, self.force, 50, spring)
             done = run(
                 "import",
                 "device",
-                self.log(np.round(places / Q) * Q),
+                self.log(np.round(trajectory / Q) * Q),
                 "--out",
                 self.root / "device.json",
             )
@@ -339,42 +351,44 @@ class Doubt(Logs):
         }
         for name, time in clocks.items():
             with self.subTest(clock=name):
-                places = positions(time - time[0], self.force, HANDLE)
-                told, warned = self.told(self.log(np.round(places / Q) * Q, time - time[0]))
+                trajectory = positions(time - time[0], self.force, HANDLE)
+                result, warned = self.identify(
+                    self.log(np.round(trajectory / Q) * Q, time - time[0])
+                )
                 self.assertNotIn("missing", warned)
                 self.assertIn("the sampling is not uniform", warned)
-                self.assertEqual(told["confidence"], 0.95)
-                self.assert_holds(told)
+                self.assertEqual(result["confidence"], 0.95)
+                self.assert_holds(result)
 
     def test_times_that_are_not_those_of_the_samples_are_not_trusted(self):
         sampled = np.sort(self.time + 4e-4 * self.random.uniform(-1.0, 1.0, len(self.time)))
-        places = positions(sampled, self.force, HANDLE)
+        trajectory = positions(sampled, self.force, HANDLE)
         for stamps in (self.time, self.time + self.random.uniform(0.0, 6e-4, len(self.time))):
-            told, warned = self.told(self.log(np.round(places / Q) * Q, stamps))
-            self.assert_distrusted(told, warned)
+            result, warned = self.identify(self.log(np.round(trajectory / Q) * Q, stamps))
+            self.assert_distrusted(result, warned)
 
     def test_friction_that_depends_on_the_speed_is_not_trusted(self):
         for more, speed in ((0.2, 0.05), (0.3, 0.02), (0.5, 0.01)):
             with self.subTest(more=more, speed=speed):
-                places = played(self.time, self.force, 40, stribeck=(more, speed))
-                told, warned = self.told(self.log(np.round(places / Q) * Q))
-                self.assert_distrusted(told, warned)
+                trajectory = played(self.time, self.force, 40, stribeck=(more, speed))
+                result, warned = self.identify(self.log(np.round(trajectory / Q) * Q))
+                self.assert_distrusted(result, warned)
 
     def test_logs_that_begin_in_motion(self):
         for first in (150, 400, 700):
             with self.subTest(first=first):
-                told, warned = self.told(
+                result, warned = self.identify(
                     self.log(
-                        np.round(self.places[first:] / Q) * Q,
+                        np.round(self.trajectory[first:] / Q) * Q,
                         self.time[first:],
                         self.force[first:],
                     )
                 )
                 self.assertEqual(warned, "")
-                self.assert_holds(told)
+                self.assert_holds(result)
 
-    def assert_distrusted(self, told, warned):
-        self.assertIsNone(told["confidence"])
+    def assert_distrusted(self, result, warned):
+        self.assertIsNone(result["confidence"])
         self.assertIn("do not read them as 95 % intervals", warned)
         printed = run("import", "device", self.root / "log.csv", "--out", self.root / "d.json")
         self.assertNotIn("95 %", printed.stdout)
@@ -390,8 +404,8 @@ class Design(unittest.TestCase):
                 self.assertGreater(np.abs(values).max(), 0.1 * force, kind)
                 # A free mass under held forces by the trapezoidal rule, which is exact in this case.
                 speed = np.concatenate([[0.0], np.cumsum(values[:-1])]) * 1e-3 / mass
-                place = np.concatenate([[0.0], np.cumsum(0.5 * (speed[1:] + speed[:-1]))]) * 1e-3
-                self.assertLessEqual(np.ptp(place), travel * (1 + 1e-9), kind)
+                position = np.concatenate([[0.0], np.cumsum(0.5 * (speed[1:] + speed[:-1]))]) * 1e-3
+                self.assertLessEqual(np.ptp(position), travel * (1 + 1e-9), kind)
 
     def test_signals_keep_their_travel_with_friction(self):
         dry, viscous = (
@@ -412,7 +426,7 @@ class Design(unittest.TestCase):
                     # Steps of 0.1 ms overestimate the travel by up to 0.5 % of a stroke.
                     self.assertLessEqual(high.max() - low.min(), 1.005 * travel)
 
-    def test_travel_that_limits_the_force_is_said(self):
+    def test_travel_that_limits_the_force_is_reported(self):
         designed = partial(
             run, "import", "device", "--out", scratch_folder(self) / "signal.csv", "--design"
         )
@@ -422,9 +436,9 @@ class Design(unittest.TestCase):
             "handle further than the travel of 0.08 m. That is enough for dry friction of up to 0.327 N",
             warned,
         )
-        asked = warned.split("force=")[1].split()[0]
+        requested = warned.split("force=")[1].split()[0]
         self.assertGreaterEqual(
-            json.loads(designed(f"chirp,travel=0.08,mass=0.1,force={asked}", "--json").stdout)[
+            json.loads(designed(f"chirp,travel=0.08,mass=0.1,force={requested}", "--json").stdout)[
                 "force_max_N"
             ],
             0.99 * 2.0,

@@ -44,7 +44,7 @@ class Command(Given):
 
     def test_writes_nothing_of_a_bad_recording(self):
         rec = self.write("t,x,y,z\n0,0,0,0\n1,0,0\n0.5,nan,0,0\n")
-        said = hapbench(
+        errors = hapbench(
             "import",
             "stroke",
             rec,
@@ -54,8 +54,8 @@ class Command(Given):
             self.root / "new" / "stroke.csv",
             expected=2,
         )
-        self.assertIn("line 3: got 3 values; allowed: 4", said)
-        self.assertIn('line 4: column 2 x: got "nan"', said)
+        self.assertIn("line 3: got 3 values; allowed: 4", errors)
+        self.assertIn('line 4: column 2 x: got "nan"', errors)
         self.assertEqual(os.listdir(self.root), ["rec.csv"])
 
     def test_does_not_depend_on_the_locale(self):
@@ -153,17 +153,17 @@ class Command(Given):
                 time.sleep(seconds)
                 is_over = process.poll() is not None
                 process.send_signal(signals.SIGINT)
-                said = process.communicate()[1]
+                errors = process.communicate()[1]
                 # A shell reports both statuses as 130; right after the start, no handler is installed.
-                self.assertIn(process.returncode, (130, -signals.SIGINT), said)
-                self.assertNotIn("Traceback", said)
-                self.assertLessEqual(said.count("\n"), 1, said)
+                self.assertIn(process.returncode, (130, -signals.SIGINT), errors)
+                self.assertNotIn("Traceback", errors)
+                self.assertLessEqual(errors.count("\n"), 1, errors)
                 self.assertFalse(is_over, "a longer recording is needed")
         self.assertEqual([name for name in os.listdir(self.root) if name.endswith(".tmp")], [])
 
     def test_any_other_failure_is_one_line(self):
         program = "from hapbench_command import stop_on_ctrl_c\nstop_on_ctrl_c('import stroke')\n"
-        for failure, said in (
+        for failure, message in (
             ("1 / 0", "internal error: ZeroDivisionError: division by zero (<string>, line 3)"),
             ("raise MemoryError", "not enough memory (<string>, line 3)"),
             (
@@ -178,7 +178,7 @@ class Command(Given):
                 env={"PYTHONPATH": str(SOURCE / "scripts" / "python")},
             )
             self.assertEqual(done.returncode, 1)
-            self.assertIn(f"hapbench: error: import stroke: {said}", done.stderr)
+            self.assertIn(f"hapbench: error: import stroke: {message}", done.stderr)
             self.assertEqual(done.stderr.count("\n"), 1)
         full = run("import", "stroke", LOG, "--preset", "hapi", "--out", self.root / "s.csv")
         self.assertEqual(full.returncode, 0)
@@ -197,7 +197,7 @@ class Command(Given):
 
     def test_the_next_command_can_be_pasted(self):
         file = self.write(STRAIGHT, "my 'log'.csv")
-        said = ran(
+        done = ran(
             PROGRAM,
             "import",
             "stroke",
@@ -208,7 +208,7 @@ class Command(Given):
             cwd=self.root,
         )
         line = (
-            json.loads(said.stdout)["next"]
+            json.loads(done.stdout)["next"]
             .replace("hapbench", shlex.quote(str(PROGRAM)))
             .partition(" && ")[0]
         )

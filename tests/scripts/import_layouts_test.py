@@ -15,18 +15,18 @@ class Layouts(Given):
     note."""
 
     TIME = 0.002 * np.arange(100)
-    PLACES = moved(TIME)
+    POSITIONS = moved(TIME)
     TURNS = Rotation.from_rotvec(
         np.column_stack([0.3 + 0.2 * np.sin(6 * TIME), 0.5 + 0 * TIME, 0.8 + 0.1 * TIME])
     )
-    PLAIN = table("t,x,y,z", TIME, PLACES)
+    PLAIN = table("t,x,y,z", TIME, POSITIONS)
 
     def columns(self, found, quantity):
         return [part["column"] for part in found["columns"][quantity]]
 
-    def assert_places(self, data, columns="time=t,position=x", places=PLACES, **options):
+    def assert_positions(self, data, columns="time=t,position=x", positions=POSITIONS, **options):
         stroke, found = self.report(data, columns, **options)
-        np.testing.assert_allclose(stroke.position, places, atol=1e-9)
+        np.testing.assert_allclose(stroke.position, positions, atol=1e-9)
         return "\n".join(found["warnings"]), found
 
     def assert_tip(self, data, columns, warned="", **options):
@@ -38,7 +38,7 @@ class Layouts(Given):
         self.assertEqual(bool(warned), bool(found["warnings"]), found["warnings"])
 
     def test_components_are_found_by_their_names(self):
-        t, (x, y, z) = self.TIME, self.PLACES.T
+        t, (x, y, z) = self.TIME, self.POSITIONS.T
         for names, columns, given, expected in (
             ("t,x,vx,y,vy,z,vz", (x, t, y, t, z, t), "position=x", [2, 4, 6]),
             ("t,px,vx,py,vy,pz,vz", (x, t, y, t, z, t), "position=px", [2, 4, 6]),
@@ -52,7 +52,7 @@ class Layouts(Given):
             ("", (x, y, z), "position=2", [2, 3, 4]),
         ):
             time = "time=1" if names == "" else "time=t"
-            warned, found = self.assert_places(table(names, t, *columns), f"{time},{given}")
+            warned, found = self.assert_positions(table(names, t, *columns), f"{time},{given}")
             self.assertEqual(self.columns(found, "position"), expected, names)
             self.assertEqual(warned, "")
         self.assertEqual(
@@ -63,10 +63,10 @@ class Layouts(Given):
         )
 
     def test_columns_that_the_names_do_not_decide_are_refused(self):
-        turned = table("t,x,y,z,q0,q1,q2,q3", self.TIME, self.PLACES, self.TURNS.as_quat())
+        turned = table("t,x,y,z,q0,q1,q2,q3", self.TIME, self.POSITIONS, self.TURNS.as_quat())
         for data, columns, problem in (
             (
-                table("t,a,b,c", self.TIME, self.PLACES),
+                table("t,a,b,c", self.TIME, self.POSITIONS),
                 "position=a",
                 'do not say which columns go with "a"; allowed: px=...,py=...,pz=..., or position=2 for',
             ),
@@ -83,16 +83,16 @@ class Layouts(Given):
             self.refusal(self.PLAIN, "time=t,position=x", set="sample_rate_Hz=500"),
         )
 
-    def test_a_number_takes_what_follows_and_says_what_the_names_say(self):
-        data = table("t,x,vx,y,z", self.TIME, self.PLACES[:, [0, 0, 1, 2]])
+    def test_a_number_takes_what_follows_and_reports_the_order_by_names(self):
+        data = table("t,x,vx,y,z", self.TIME, self.POSITIONS[:, [0, 0, 1, 2]])
         _, found = self.report(data, "time=1,position=2")
         self.assertEqual(self.columns(found, "position"), [2, 3, 4])
         self.assertIn("by their names it would be 2 x, 4 y, 5 z", found["warnings"][0])
 
     def test_a_quaternion_is_read_by_the_names_of_its_columns(self):
         xyzw = self.TURNS.as_quat()
-        last = table("t,x,y,z,qx,qy,qz,qw", self.TIME, self.PLACES, xyzw)
-        first = table("t,x,y,z,qw,qx,qy,qz", self.TIME, self.PLACES, np.roll(xyzw, 1, axis=1))
+        last = table("t,x,y,z,qx,qy,qz,qw", self.TIME, self.POSITIONS, xyzw)
+        first = table("t,x,y,z,qw,qx,qy,qz", self.TIME, self.POSITIONS, np.roll(xyzw, 1, axis=1))
         self.assert_tip(last, "orientation=qx")
         self.assert_tip(first, "orientation=qw")
         self.assert_tip(first, "orientation=qx")
@@ -121,11 +121,11 @@ class Layouts(Given):
     def test_other_orientations_are_read_by_their_names(self):
         vector = self.TURNS.as_rotvec()
         angle = np.linalg.norm(vector, axis=1)
-        turn = (self.TIME, self.PLACES, vector / angle[:, None])
+        turn = (self.TIME, self.POSITIONS, vector / angle[:, None])
         self.assert_tip(table("t,x,y,z,ax,ay,az,angle", *turn, angle), "orientation=ax")
         degrees = np.degrees(angle)
         self.assert_tip(table("t,x,y,z,ax,ay,az,angle [deg]", *turn, degrees), "orientation=ax")
-        for values, scale, said in (
+        for values, scale, warning in (
             (degrees, "1", "look like degrees"),
             (angle, "0.0174533", "look like radians"),
         ):
@@ -134,15 +134,15 @@ class Layouts(Given):
                 "time=t,position=x,orientation=ax",
                 scale=f"angle={scale}",
             )
-            self.assertIn(said, found["warnings"][0])
+            self.assertIn(warning, found["warnings"][0])
         cells = self.TURNS.as_matrix()
         by_columns = cells.transpose(0, 2, 1).reshape(-1, 9)
         names = "t,x,y,z,r11,r21,r31,r12,r22,r32,r13,r23,r33"
-        self.assert_tip(table(names, self.TIME, self.PLACES, by_columns), "orientation=r11")
+        self.assert_tip(table(names, self.TIME, self.POSITIONS, by_columns), "orientation=r11")
 
     def test_texts_of_every_program_are_the_same_numbers(self):
         comma = self.PLAIN.replace(",", ";").replace(".", ",")
-        quoted = table('"t","x","y","z"', self.TIME, self.PLACES, number='"%.9g"')
+        quoted = table('"t","x","y","z"', self.TIME, self.POSITIONS, number='"%.9g"')
         for data, warned in (
             ("\ufeff" + self.PLAIN, ""),
             (self.PLAIN.encode("utf-16"), "the text is UTF-16"),
@@ -164,18 +164,18 @@ class Layouts(Given):
             (self.PLAIN.replace("\n", ",\n").replace("z,", "z"), "at the end of 100 lines ignored"),
             (self.PLAIN.replace("z", "z,"), "a separator at the end of the header ignored"),
         ):
-            said, _ = self.assert_places(data)
-            self.assertIn(warned, said)
-            self.assertEqual(bool(warned), bool(said), said)
+            warning, _ = self.assert_positions(data)
+            self.assertIn(warned, warning)
+            self.assertEqual(bool(warned), bool(warning), warning)
         bare = comma.partition("\n")[2]
-        self.assert_places(bare, "time=1,position=2")
-        self.assertEqual(self.assert_places(comma, decimal="comma")[0], "")
+        self.assert_positions(bare, "time=1,position=2")
+        self.assertEqual(self.assert_positions(comma, decimal="comma")[0], "")
 
     def test_headers_of_several_lines_are_read(self):
         rows = self.PLAIN.partition("\n")[2]
         tabs = rows.replace(",", "\t")
         below = "the names of columns are those of line"
-        for data, columns, said in (
+        for data, columns, warning in (
             ("Time,Tip,Tip,Tip\n" + self.PLAIN, "time=t,position=x", f"{below} 2"),
             (",Tip,Tip,Tip\n,pos,pos,pos\n" + self.PLAIN, "time=t,position=x", f"{below} 3"),
             (
@@ -198,9 +198,9 @@ class Layouts(Given):
             ('"t" "x" "y" "z"\n' + rows.replace(",", " "), "time=t,position=x", ""),
             (self.PLAIN.replace("\n0.1,", "\n,,,\n0.1,"), "time=t,position=x", ""),
         ):
-            warned, _ = self.assert_places(data, columns)
-            self.assertIn(said, warned)
-            self.assertEqual(bool(said), bool(warned), warned)
+            warned, _ = self.assert_positions(data, columns)
+            self.assertIn(warning, warned)
+            self.assertEqual(bool(warning), bool(warned), warned)
         # Groups and components of which neither names a column alone are joined.
         named = "Tip,Tip,Tip,Hand,Hand,Hand\nx,y,z,x,y,z\n"
         data = (
@@ -208,7 +208,7 @@ class Layouts(Given):
             + named.replace("\n", "\n,", 1)
             + "\n".join(f"{row},1,1,1" for row in rows.splitlines())
         )
-        warned, found = self.assert_places(data, "time=Time,position=Tip")
+        warned, found = self.assert_positions(data, "time=Time,position=Tip")
         self.assertIn('join them, as in "Hand.z"', warned)
         self.assertEqual(self.columns(found, "position"), [2, 3, 4])
         # Units that are not known are asked for.
@@ -228,7 +228,7 @@ class Layouts(Given):
 
     def test_what_is_no_text_is_named(self):
         wide = self.PLAIN.encode("utf-16-le")
-        for data, said in (
+        for data, warning in (
             (wide, "the text is UTF-16; it was read as such"),
             (self.PLAIN.encode("utf-16-be"), "the text is UTF-16"),
             (self.PLAIN.encode("utf-32"), "the text is UTF-32"),
@@ -236,10 +236,10 @@ class Layouts(Given):
             (self.PLAIN.encode() + b"\0\0\0", "3 bytes after the text ignored (zero)"),
             (self.PLAIN.encode() + b"\x1a", "1 byte after the text ignored (Ctrl-Z"),
         ):
-            self.assertIn(said, self.assert_places(data)[0])
-        units = table("t [µs],x [µm],y [µm],z [µm]", 1e6 * self.TIME, 1e6 * self.PLACES)
-        self.assert_places(units.encode("cp1252"))
-        for data, said in (
+            self.assertIn(warning, self.assert_positions(data)[0])
+        units = table("t [µs],x [µm],y [µm],z [µm]", 1e6 * self.TIME, 1e6 * self.POSITIONS)
+        self.assert_positions(units.encode("cp1252"))
+        for data, warning in (
             (
                 b"\x1f\x8b\x08",
                 "rec.csv: is compressed (gzip), not a text; allowed: a text, such as CSV",
@@ -256,12 +256,12 @@ class Layouts(Given):
                 'got "t"; allowed between columns: commas, semicolons, tabs or blanks',
             ),
         ):
-            self.assertIn(said, self.refusal(data, "time=t,position=x"))
+            self.assertIn(warning, self.refusal(data, "time=t,position=x"))
 
     def test_clocks_in_two_columns_counters_and_days(self):
         log = "header.stamp.secs,header.stamp.nsecs,x,y,z\n" + "".join(
             f"{1764288000 + (2 * i) // 1000},{(2 * i) % 1000 * 10**6},{','.join(map(str, row))}\n"
-            for i, row in enumerate(self.PLACES.tolist())
+            for i, row in enumerate(self.POSITIONS.tolist())
         )
         for names in (
             "stamp_sec,stamp_nanosec",
@@ -275,11 +275,11 @@ class Layouts(Given):
             np.testing.assert_allclose(stroke.time, self.TIME, atol=1e-9)
             self.assertEqual(self.columns(found, "time"), [1, 2])
             self.assertEqual(found["warnings"], [])
-        rows = table("t,x,y,z", np.arange(100), self.PLACES)
+        rows = table("t,x,y,z", np.arange(100), self.POSITIONS)
         self.assertIn(
             "or numbers of rows? (--set sample_rate_Hz=", self.refusal(rows, "time=t,position=x")
         )
-        days = table("t,x,y,z", 46354.25 + self.TIME / 86400, self.PLACES, number="%.17g")
+        days = table("t,x,y,z", 46354.25 + self.TIME / 86400, self.POSITIONS, number="%.17g")
         _, found = self.report(days, "time=t,position=x")
         self.assertIn(
             "are the times days, as those of spreadsheets and MATLAB? (with --scale time=86400",
@@ -287,15 +287,15 @@ class Layouts(Given):
         )
         of_day = "t,x,y,z\n" + "".join(
             f"2026/11/28 05:59:{0.002 * i:06.3f},{','.join(map(str, row))}\n"
-            for i, row in enumerate(self.PLACES.tolist())
+            for i, row in enumerate(self.POSITIONS.tolist())
         )
-        self.assertIn("are read as seconds since the first", self.assert_places(of_day)[0])
+        self.assertIn("are read as seconds since the first", self.assert_positions(of_day)[0])
         self.assertIn(
             'allowed: a finite number or a time of day, such as "05:59:00.002"',
             self.refusal(of_day.replace("2026/11/28", "28.11.2026"), "time=t,position=x"),
         )
         fortran = (
-            table("t,x,y,z", self.TIME, self.PLACES, number="%.9e")
+            table("t,x,y,z", self.TIME, self.POSITIONS, number="%.9e")
             .replace("e-", "D-")
             .replace("e+", "D+")
         )
@@ -307,11 +307,11 @@ class Layouts(Given):
         force = np.sin(20 * self.TIME)
         seconds = 1764288000 + np.floor(self.TIME)
         nanoseconds = np.round(self.TIME % 1 * 1e9)
-        columns = (self.TIME, force, self.PLACES[:, 0])
+        columns = (self.TIME, force, self.POSITIONS[:, 0])
 
-        def read(data, *asked):
+        def read(data, *words):
             options = SimpleNamespace(
-                columns=list(asked),
+                columns=list(words),
                 scale=[],
                 decimal=None,
                 skip_bad_rows=False,
@@ -320,7 +320,7 @@ class Layouts(Given):
             return read_log(options)
 
         names = "time_s,force_N,position_m"
-        for data, asked, said in (
+        for data, words, warning in (
             (table(names, *columns).encode("utf-16-be"), (), "the text is UTF-16"),
             ("Time,Command,Encoder\n" + table(names, *columns), (), "those of line 2"),
             (
@@ -339,17 +339,17 @@ class Layouts(Given):
                 "the column of force is 2 position_m, which is named as position",
             ),
         ):
-            log = read(data, *asked)
+            log = read(data, *words)
             np.testing.assert_allclose(log.time - log.time[0], self.TIME, atol=1e-9)
             np.testing.assert_allclose(log.force, force, atol=1e-8)
-            np.testing.assert_allclose(log.position, self.PLACES[:, 0], atol=1e-9)
-            self.assertIn(said, "".join(log.warnings))
-            self.assertEqual(bool(said), bool(log.warnings))
+            np.testing.assert_allclose(log.position, self.POSITIONS[:, 0], atol=1e-9)
+            self.assertIn(warning, "".join(log.warnings))
+            self.assertEqual(bool(warning), bool(log.warnings))
 
     def test_names_against_quantities_and_lengths_of_axes(self):
         force = np.column_stack([0.1 + 0 * self.TIME, 0 * self.TIME, 0.5 + 0 * self.TIME])
         _, found = self.report(
-            table("t,fx,fy,fz,x,y,z", self.TIME, 1e-3 * force, self.PLACES),
+            table("t,fx,fy,fz,x,y,z", self.TIME, 1e-3 * force, self.POSITIONS),
             "time=1,position=2,force=5",
         )
         self.assertIn(
@@ -359,29 +359,29 @@ class Layouts(Given):
         self.assertIn(
             "columns of force are 5 x, 6 y, 7 z, which are named as position", found["warnings"][1]
         )
-        warned, _ = self.assert_places(
-            table("t,fx,fy,fz,x,y,z", self.TIME, force, self.PLACES), "time=1,position=5,force=2"
+        warned, _ = self.assert_positions(
+            table("t,fx,fy,fz,x,y,z", self.TIME, force, self.POSITIONS), "time=1,position=5,force=2"
         )
         self.assertEqual(warned, "")
-        for vectors, said in (
+        for vectors, warning in (
             (np.degrees(self.TURNS.as_euler("xyz")), "Euler angles"),
             (self.TURNS.as_rotvec(), "the axes have lengths of 0.9"),
         ):
             _, found = self.report(
-                table("t,x,y,z,a,b,c", self.TIME, self.PLACES, vectors),
+                table("t,x,y,z,a,b,c", self.TIME, self.POSITIONS, vectors),
                 "time=t,position=x,orientation=5",
                 orientation="axis",
             )
-            self.assertIn(said, found["warnings"][0])
+            self.assertIn(warning, found["warnings"][0])
         self.assertIn(
             "column 2 x_cm is read as m; if its name says cm, --scale position=0.01",
-            self.report(table("t,x_cm,y_cm,z_cm", self.TIME, self.PLACES), "time=t,position=x_cm")[
-                1
-            ]["warnings"],
+            self.report(
+                table("t,x_cm,y_cm,z_cm", self.TIME, self.POSITIONS), "time=t,position=x_cm"
+            )[1]["warnings"],
         )
         self.assertIn(
             "--scale position=1e-06 is for micrometres",
-            self.refusal(table("t,x,y,z", self.TIME, 1e6 * self.PLACES), "time=t,position=x"),
+            self.refusal(table("t,x,y,z", self.TIME, 1e6 * self.POSITIONS), "time=t,position=x"),
         )
 
     def test_commas_that_are_not_clear_are_refused(self):
@@ -401,7 +401,7 @@ class Layouts(Given):
             ),
         )
 
-    def test_a_fault_is_told_once_with_its_repetitions(self):
+    def test_a_fault_is_reported_once_with_its_repetitions(self):
         lines = self.PLAIN.split("\n")
         lines[10:40] = [line.rpartition(",")[0] + ",nan" for line in lines[10:40]]
         self.assertEqual(
@@ -412,7 +412,7 @@ class Layouts(Given):
 
     def test_a_log_of_rostopic_is_read_by_its_names(self):
         # Nanoseconds since 1970 exceed the precision of a double.
-        pose = np.column_stack([self.PLACES, self.TURNS.as_quat()])
+        pose = np.column_stack([self.POSITIONS, self.TURNS.as_quat()])
         ends = [f".{c}" for c in "xyz"], [f".{c}" for c in "xyzw"]
         names = ["field.pose.position" + end for end in ends[0]] + [
             "field.pose.orientation" + end for end in ends[1]
@@ -423,17 +423,17 @@ class Layouts(Given):
         )
         columns = "time=%time,position=field.pose.position.x,orientation=field.pose.orientation.x"
         self.assertIn("are times in other units? (--scale time=1e-09)", self.refusal(log, columns))
-        _, found = self.assert_places(log, columns, scale="time=1e-9")
+        _, found = self.assert_positions(log, columns, scale="time=1e-9")
         self.assertFalse(found["resampled"])
         self.assertAlmostEqual(found["rate_Hz"], 500, delta=1e-9)
         self.assertAlmostEqual(found["first_time_s"], 1600000000.123, delta=1e-3)
         self.assertTrue(found["has_roll"])
 
     def test_units_in_names_are_applied(self):
-        millimetres = table("t [ms],x [mm],y [mm],z [mm]", 1e3 * self.TIME, 1e3 * self.PLACES)
-        _, found = self.assert_places(millimetres)
+        millimetres = table("t [ms],x [mm],y [mm],z [mm]", 1e3 * self.TIME, 1e3 * self.POSITIONS)
+        _, found = self.assert_positions(millimetres)
         self.assertEqual(found["scales"], {"time": 1e-3, "position": 1e-3})
-        self.assert_places(
+        self.assert_positions(
             millimetres.replace("[", "(")
             .replace("]", ")")
             .replace("x", "X")
@@ -441,22 +441,22 @@ class Layouts(Given):
             .replace("z", "Z"),
             "time=t,position=X",
         )
-        self.assert_places(
-            table("t_ms,x_mm,y_mm,z_mm", 1e3 * self.TIME, 1e3 * self.PLACES),
+        self.assert_positions(
+            table("t_ms,x_mm,y_mm,z_mm", 1e3 * self.TIME, 1e3 * self.POSITIONS),
             "time=t_ms,position=x_mm",
         )
         rows = millimetres.partition("\n")[2]
         for header in ("t/ms,x/mm,y/mm,z/mm\n", '"t, ms","x, mm","y, mm","z, mm"\n'):
-            self.assert_places(header + rows)
-        said, _ = self.assert_places("t,x,y,z\nms,mm,mm,mm\n" + rows)
-        self.assertEqual(said, "line 2 has the units of the columns")
-        self.assert_places(self.PLAIN.replace("z\n", "z [-]\n", 1).replace("x", "x [-]"))
+            self.assert_positions(header + rows)
+        warning, _ = self.assert_positions("t,x,y,z\nms,mm,mm,mm\n" + rows)
+        self.assertEqual(warning, "line 2 has the units of the columns")
+        self.assert_positions(self.PLAIN.replace("z\n", "z [-]\n", 1).replace("x", "x [-]"))
         counts = millimetres.replace("mm", "counts")
         self.assertIn(
             'column 2 x [counts]: the unit "counts" is unknown: --scale position=...',
             self.refusal(counts, "time=t,position=x"),
         )
-        self.assert_places(counts, scale="position=0.001")
+        self.assert_positions(counts, scale="position=0.001")
         _, found = self.report(millimetres, "time=t,position=x", scale="position=0.0005")
         self.assertIn(
             "says mm, a scale of 0.001; --scale position=0.0005 was used", found["warnings"][0]
@@ -482,7 +482,7 @@ class Layouts(Given):
     def test_times_of_day_are_seconds_since_the_first(self):
         rows = self.PLAIN.partition("\n")[2].splitlines()
         midnight = datetime(2026, 11, 27, 23, 59, 59, 900000)
-        for text, said in (
+        for text, warning in (
             ("%Y-%m-%dT%H:%M:%S.%fZ", "2026-11-27T23:59:59.900000Z"),
             ("%Y-%m-%d %H:%M:%S.%f+02:00", "2026-11-27 23:59:59.900000+02:00"),
         ):
@@ -490,7 +490,9 @@ class Layouts(Given):
                 f"{(midnight + timedelta(seconds=float(time))):{text}},{row.partition(',')[2]}\n"
                 for time, row in zip(self.TIME, rows)
             )
-            self.assertIn(f'such as "{said}" are read as seconds', self.assert_places(data)[0])
+            self.assertIn(
+                f'such as "{warning}" are read as seconds', self.assert_positions(data)[0]
+            )
             self.assertIn(
                 "the times are times of day, in seconds",
                 self.refusal(data, "time=t,position=x", scale="time=0.001"),
@@ -504,7 +506,7 @@ class Layouts(Given):
             self.refusal("t,x,y,z\n" + "2026-13-01 00:00:00,0,0,0\n" * 3, "time=t,position=x"),
         )
 
-    def test_poses_held_for_several_rows_are_thinned_to_the_true_samples(self):
+    def test_poses_held_for_several_rows_are_reduced_to_the_true_samples(self):
         time = 1e-3 * np.arange(1200)
         for rows in (2, 3, 5, 10):
             held = time[np.arange(1200) // rows * rows]
@@ -533,24 +535,24 @@ class Layouts(Given):
         )
         self.assertAlmostEqual(found["rows_per_held_sample"], 4.0, delta=0.1)
         # Coarse numbers, and a constant speed in steps, are not held samples.
-        for places in (np.round(moved(time), 4), np.round(np.outer(time, [0.0025, 0, 0]), 5)):
-            _, found = self.report(table("t,x,y,z", time, places), "time=t,position=x")
+        for positions in (np.round(moved(time), 4), np.round(np.outer(time, [0.0025, 0, 0]), 5)):
+            _, found = self.report(table("t,x,y,z", time, positions), "time=t,position=x")
             self.assertEqual((found["rows_per_held_sample"], found["samples"]), (1, 1200))
 
-    def test_a_force_into_the_surface_is_told(self):
+    def test_a_force_into_the_surface_is_reported(self):
         force = np.column_stack(
             [0.1 + 0 * self.TIME, 0 * self.TIME, 0.5 + 0.3 * np.sin(8 * self.TIME)]
         )
-        for sign, by_tool, said in (
+        for sign, by_tool, warning in (
             (1, False, ""),
             (-1, False, "--set force_by_tool=true"),
             (-1, True, ""),
             (1, True, "leave out force_by_tool=true"),
         ):
             _, found = self.report(
-                table("t,x,y,z,fx,fy,fz", self.TIME, self.PLACES, sign * force),
+                table("t,x,y,z,fx,fy,fz", self.TIME, self.POSITIONS, sign * force),
                 "time=t,position=x,force=fx",
                 force_by_tool=by_tool,
             )
-            self.assertIn(said, "".join(found["warnings"]))
-            self.assertEqual(bool(said), bool(found["warnings"]))
+            self.assertIn(warning, "".join(found["warnings"]))
+            self.assertEqual(bool(warning), bool(found["warnings"]))

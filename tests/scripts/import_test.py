@@ -29,16 +29,16 @@ class Recordings(Given):
             self.assertEqual(names, "time_s px_m py_m pz_m qw qx qy qz mfx_N mfy_N mfz_N".split())
             grid = np.arange(len(stroke)) / rate
             np.testing.assert_allclose(stroke[:, 0], grid, atol=1e-12)
-            place = np.column_stack(
+            position = np.column_stack(
                 [np.interp(grid, time, part) for part in (log[:, 1:4] @ Y_UP.T).T]
             )
             force = np.column_stack(
                 [np.interp(grid, time, part) for part in (log[:, 8:11] @ Y_UP.T).T]
             )
-            smooth = signal.savgol_filter(place, window, order, axis=0, mode="interp")
+            smooth = signal.savgol_filter(position, window, order, axis=0, mode="interp")
             np.testing.assert_allclose(stroke[:, 1:4], smooth, atol=1e-13)
             np.testing.assert_allclose(stroke[:, 8:], force, atol=1e-12)
-            moved = np.linalg.norm(smooth - place, axis=1)
+            moved = np.linalg.norm(smooth - position, axis=1)
             self.assertAlmostEqual(
                 report["smoothing"]["position_largest_m"], moved.max(), delta=1e-13
             )
@@ -61,12 +61,12 @@ class Recordings(Given):
     def test_columns_are_taken_by_number_name_and_alone(self):
         rows, fast = "7,0,1,2,3\n8,1,1.5,2,3\n", {"max_speed": 10, "max_gap": 1}
         named = "n,t,x,y,z\n" + rows
-        for data, columns, place in (
+        for data, columns, position in (
             (rows, "time=2,position=3", [1.5, 2, 3]),
             (named, "time=t,position=x", [1.5, 2, 3]),
             (named.replace(",", ";"), "time=t,px=z,py=x,pz=4", [3, 1.5, 2]),
         ):
-            self.assertEqual(self.stroke(data, columns, **fast).position[1].tolist(), place)
+            self.assertEqual(self.stroke(data, columns, **fast).position[1].tolist(), position)
         header = "t,tip_x,tip_yy,tip_z\n0,0,0,0\n1,0,0,0\n"
         self.assertRegex(
             self.refusal(header, "time=t,position=tap_x"),
@@ -134,7 +134,7 @@ class Recordings(Given):
         np.testing.assert_allclose(stroke.time, [0, 0.1], atol=1e-12)
         self.assertEqual(found["first_time_s"], 5.0)
 
-    def test_every_way_to_write_an_orientation_is_the_same_turn(self):
+    def test_every_notation_of_an_orientation_is_the_same_turn(self):
         noise = np.random.default_rng(2)
         for _ in range(20):
             turn, tip = Rotation.random(random_state=noise.integers(1 << 30)), noise.normal(size=3)
@@ -243,14 +243,14 @@ class Recordings(Given):
         ):
             self.assertIn(problem, self.refusal(STRAIGHT, **options))
 
-    def test_bad_rows_are_left_out_where_asked(self):
+    def test_bad_rows_are_left_out_on_request(self):
         stroke, found = self.report(
             "0,0,0,0\n0.01,x,0,0\n0.02,0.002,0,0\n0.015,0,0,0\n0.03,9,0,0\n0.04,0.004,0,0\n",
             skip_bad_rows=True,
         )
         self.assertEqual(stroke.position[:, 0].tolist(), [0, 0.002, 0.004])
         self.assertEqual(
-            [said.split(": ")[0].rpartition(" ")[2] for said in found["warnings"][1:4]],
+            [warning.split(": ")[0].rpartition(" ")[2] for warning in found["warnings"][1:4]],
             ["2", "4", "5"],
         )
 
@@ -325,7 +325,7 @@ class Recordings(Given):
         stroke, found = self.report(buttons, "", preset="hapi_binary")
         self.assertEqual((stroke.time[1], stroke.force, stroke.has_roll), (0.25, None, False))
         self.assertEqual(
-            sum("as the preset names them: left out" in said for said in found["warnings"]),
+            sum("as the preset names them: left out" in warning for warning in found["warnings"]),
             2,
             "neither orientation nor force",
         )

@@ -1,5 +1,5 @@
-"""LaTeX compiles the tables of --table latex. Needs LaTeX with booktabs and siunitx (scripts/setup --check), so it is no
-test of ctest: scripts/check latex runs it."""
+"""LaTeX compiles the tables of --table latex. Needs LaTeX with booktabs and siunitx (scripts/setup --check), so it is
+no test of ctest: scripts/check latex runs it."""
 import re
 import unittest
 
@@ -23,6 +23,6 @@ class Latex(unittest.TestCase):
         )
         words = ("pdflatex", "-interaction=nonstopmode", "-halt-on-error", "tables.tex")
         done = ran(*words, cwd=printed_tables.ROOT)
-        said = re.sub(r"(?s)^.*?(?=^!)", "", done.stdout, flags=re.M)
-        self.assertEqual(done.returncode, 0, said[:2000])
+        log = re.sub(r"(?s)^.*?(?=^!)", "", done.stdout, flags=re.M)
+        self.assertEqual(done.returncode, 0, log[:2000])
         self.assertNotRegex(done.stdout, "Missing character|Undefined|siunitx Error")

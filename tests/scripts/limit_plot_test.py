@@ -77,11 +77,11 @@ class Limits(Given):
         plotted(rubbed)
         for text in ("linear limit", "stable (Gil, Hulin)", "exact, undamped handle"):
             self.assertNotIn(text, (rubbed / "plot.svg").read_text())
-        for words, said in (
+        for words, message in (
             ((over, limit), "one such folder alone"),
             ((limit, "--y", "force"), "allowed for it: --width, --dpi, --out"),
         ):
-            self.assertIn(said, plotted(*words, expected=2))
+            self.assertIn(message, plotted(*words, expected=2))
         (limit / "limit_runs.csv").write_text("algorithm,class\nmean,stable\n")
         self.assertIn("is not a table that hapbench wrote", plotted(limit, expected=2))
 

@@ -37,11 +37,11 @@ class Live(Page):
         )
         self.wait_for(READY)
 
-    def move(self, way, rows):
+    def move(self, displacement, rows):
         """Moves the hand by the given displacement [m] and rotation [rad] over `rows` rows."""
         self.js(
             f"(async () => {{ const p = live.pointer; live.aim(p.map((x, i) => x + "
-            f"{list(way)}[i])); await live.stepRows({rows}); }})()"
+            f"{list(displacement)}[i])); await live.stepRows({rows}); }})()"
         )
 
     def assert_program_agrees(self, view=0, **files):
@@ -72,10 +72,10 @@ class Live(Page):
         before = self.js("live.pointer")
         x, y = self.centre(".view")
         self.mouse("mousePressed", x, y, button="left", clickCount=1)
-        for way in (30, 60):
-            self.mouse("mouseMoved", x + 10, y + way, button="left", buttons=1)
+        for offset in (30, 60):
+            self.mouse("mouseMoved", x + 10, y + offset, button="left", buttons=1)
             time.sleep(0.05)
-        self.mouse("mouseReleased", x + 10, y + way, button="left", clickCount=1)
+        self.mouse("mouseReleased", x + 10, y + offset, button="left", clickCount=1)
         self.wait_for("live.shown.rows > 1000")
         self.assertTrue(self.js("live.running"))
         self.assertLess(self.js("live.pointer")[1], before[1])
@@ -96,7 +96,7 @@ class Live(Page):
         self.move((0, 0, -2 * depth, 0, 0), 800)
         self.assertGreater(self.assert_program_agrees(own__obj=cube)["steps_in_contact"], 0)
 
-    def test_faults_are_told_and_left(self):
+    def test_faults_are_reported_and_left(self):
         self.js(
             'live.takeScenario(\'wrong.json\', \'{"extends": "tap_wall", "tool": {"diameter_m": -1}}\')'
         )
@@ -106,7 +106,7 @@ class Live(Page):
         self.move((0, -1e-4, 0, 0, 0), 50)
         self.assert_program_agrees()
 
-    def test_back_is_the_same_way(self):
+    def test_back_is_the_same_path(self):
         self.move((2e-4, -1e-3, 0, 0.25, 0), 400)
         self.js("live.stepRows(1)")
         before = self.js("live.kept().then((kept) => kept.state_hash)")

@@ -168,10 +168,10 @@ class Recomputed:
         rendering, integrator = self.scenario["rendering"], self.scenario["integrator"]["type"]
         friction = rendering.get("friction") or {}
         mu_s, mu_f = (friction.get(f"mu_{x}", 0.0) for x in ("s_N_s_per_m", "f_s_per_m"))
-        most = {"leapfrog": 2.0, "velocity_verlet": 4.0}.get(integrator)
+        factor = {"leapfrog": 2.0, "velocity_verlet": 4.0}.get(integrator)
         limit = None
-        if most and not self.prescribed and not self.handle_moves and mu_f > 0.0:
-            limit = max(0.0, (most * rendering["mass_kg"] / self.dt - mu_s) / mu_f)
+        if factor and not self.prescribed and not self.handle_moves and mu_f > 0.0:
+            limit = max(0.0, (factor * rendering["mass_kg"] / self.dt - mu_s) / mu_f)
         beyond = None if limit is None else norms(self.spring) > limit
         self.known |= {
             "explicit_friction_limit_N": limit,
@@ -327,18 +327,18 @@ class Recomputed:
         }
         self.lag(m, f)
 
-    def lag(self, early, late):
+    def lag(self, first, second):
         """Compares shifts by whole steps. The metric's tolerance includes the effect of another sample spacing."""
-        most = round(0.1 / self.dt)
+        max_shift = round(0.1 / self.dt)
         scores = []
-        for shift in range(-most, most + 1):
-            a = early[max(0, -shift) : len(early) - max(0, shift)]
-            b = late[max(0, shift) : len(late) - max(0, -shift)]
+        for shift in range(-max_shift, max_shift + 1):
+            a = first[max(0, -shift) : len(first) - max(0, shift)]
+            b = second[max(0, shift) : len(second) - max(0, -shift)]
             a, b = a - a.mean(axis=0), b - b.mean(axis=0)
             scores.append(np.sum(a * b) / math.sqrt(np.sum(a**2) * np.sum(b**2)))
         best = int(np.argmax(scores))
         ends = best in (0, len(scores) - 1)
-        self.known["fidelity.force_lag_s"] = None if ends else (best - most) * self.dt
+        self.known["fidelity.force_lag_s"] = None if ends else (best - max_shift) * self.dt
         self.scores = scores
 
     def ideal_trajectory(self, rows):
@@ -375,8 +375,8 @@ class Metrics(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.root = scratch_folder(cls)
-        said = json.loads(hapbench("describe", "metrics", "--json"))
-        cls.meanings = {one["name"]: one["meaning"] for one in said[0]["metrics"]}
+        printed = json.loads(hapbench("describe", "metrics", "--json"))
+        cls.meanings = {one["name"]: one["meaning"] for one in printed[0]["metrics"]}
 
     def test_all_are_those_of_the_files(self):
         recomputed = set()

@@ -41,9 +41,9 @@ from hapbench_report.recording import (
 def drawn(command, *words, expected=0):
     """Returns the output of `hapbench plot` or `report`, called in this process, which has loaded matplotlib; standard
     error if input is refused."""
-    status, said, error = in_process(pictures, command, *words, HAPBENCH_PROGRAM=str(PROGRAM))
+    status, output, error = in_process(pictures, command, *words, HAPBENCH_PROGRAM=str(PROGRAM))
     assert status == expected, (words, status, error)
-    return error if expected == 2 else said
+    return error if expected == 2 else output
 
 
 plotted = partial(drawn, "plot")
@@ -132,14 +132,14 @@ class Columns(Given):
             list(columns.read_columns(file).values()),
             [[np.nan, 1, np.nan], [np.nan, np.nan, 2], [np.nan, 3, 3]],
         )
-        for text, said in (
+        for text, message in (
             ("a,b\n1,2\n3\n", "line 3: got 1 fields; allowed: 2"),
             ("a,b\n1,2\n3,x\n", "line 3: b: got x; allowed"),
             ("a,b\n", "holds no row"),
             ("a,c\n1,2\n", "line 1: no column b"),
         ):
             file.write_text(text)
-            with self.assertRaisesRegex(InputError, re.escape(f"{file}: {said}")):
+            with self.assertRaisesRegex(InputError, re.escape(f"{file}: {message}")):
                 columns.read_columns(file, ["a", "b"])
 
 
@@ -173,7 +173,7 @@ class Equal(Given):
         """Stripes of n coinciding lines together cover the line without overlap; other lines keep their style."""
         a, b = np.arange(9.0), np.ones(9)
         self.assertEqual(style.equal_curves([(a, b), (a, a), (a, b)]), [(0, 2), (0, 1), (1, 2)])
-        turns = [style.striped("-", place, 3) for place in range(3)]
+        turns = [style.striped("-", index, 3) for index in range(3)]
         self.assertEqual(
             {on * 3 for _, (on, _) in turns} | {on + off for _, (on, off) in turns},
             {3 * style.STRIPE},
@@ -227,16 +227,18 @@ class Moments(unittest.TestCase):
 
     def test_a_landing_sets_no_scale(self):
         force = np.array([0.0, 10.3, *np.linspace(0.9, 1.1, 500)])
-        calm = np.arange(502) > 1
-        low, high = settled_range([(calm, force, force)])
+        settled = np.arange(502) > 1
+        low, high = settled_range([(settled, force, force)])
         self.assertTrue(0.7 < low < 0.9 and 1.1 < high < 1.3)
         # The whole range is shown if the peak is not far above the settled range, without settled contact, and if the
         # run bounces to the end.
-        self.assertIsNone(settled_range([(calm, np.minimum(force, 3), np.minimum(force, 3))]))
-        self.assertIsNone(settled_range([(calm & False, force, force)]))
-        hammering = np.where(calm & (np.arange(502) % 2 > 0), 10.0, force)
+        self.assertIsNone(settled_range([(settled, np.minimum(force, 3), np.minimum(force, 3))]))
+        self.assertIsNone(settled_range([(settled & False, force, force)]))
+        hammering = np.where(settled & (np.arange(502) % 2 > 0), 10.0, force)
         self.assertIsNone(
-            settled_range([(calm & (np.arange(502) < 50) & (hammering < 2), hammering, hammering)])
+            settled_range(
+                [(settled & (np.arange(502) < 50) & (hammering < 2), hammering, hammering)]
+            )
         )
 
 
@@ -290,7 +292,7 @@ class ModelErrors(unittest.TestCase):
 
 
 class Shapes(unittest.TestCase):
-    def test_a_force_that_turns_round_is_heard(self):
+    def test_a_force_that_turns_round_is_audible(self):
         t = np.arange(4096) / 2048
         square, direction = np.sign(np.sin(2 * np.pi * 100 * t)), np.array([0.6, 0.0, 0.8])
         np.testing.assert_allclose(
@@ -306,7 +308,7 @@ class Shapes(unittest.TestCase):
         # A square wave of 100 Hz has little power below 30 Hz: its rms of 1 changes by a few per cent.
         self.assertAlmostEqual(packed["rms"], 1, delta=0.05)
 
-    def test_the_tool_is_a_cylinder_or_what_the_summary_says(self):
+    def test_the_tool_is_a_cylinder_or_as_in_the_summary(self):
         self.assertEqual(
             tool_profile({"tool": {"diameter_m": 2, "length_m": 5, "tip": "flat"}}, {}),
             [[-5, 0], [-5, 1], [0, 1], [0, 0]],
@@ -334,7 +336,7 @@ def contrast(first, second):
 
 
 class Looks(unittest.TestCase):
-    def test_algorithms_are_told_apart(self):
+    def test_algorithms_are_distinguishable(self):
         names = {
             entry["name"]
             for entry in json.loads(hapbench("describe", "--json"))
@@ -350,14 +352,14 @@ class Looks(unittest.TestCase):
     def test_an_algorithm_without_an_entry_has_a_look_by_its_name(self):
         looks = [hapbench_looks.look(f"law_{i}") for i in range(200)]
         # Another process gives the same result: nothing depends on the order of calls or on the hash seed.
-        said = must(
+        output = must(
             sys.executable,
             "-c",
             "import hapbench_looks; print(hapbench_looks.look('law_7'))",
             PYTHONPATH=str(SOURCE / "scripts" / "python"),
             PYTHONHASHSEED="1",
         )
-        self.assertEqual(said.strip(), repr(looks[7]))
+        self.assertEqual(output.strip(), repr(looks[7]))
         # With 360 hues, 4 dashes and 7 markers, few of 200 names have the same look.
         self.assertGreater(len({(look.colour, look.dash, look.marker) for look in looks}), 190)
 
@@ -384,7 +386,7 @@ class Looks(unittest.TestCase):
                         contrast(colour, ground), 4.5, (look.label, colour, ground)
                     )  # required contrast of text, WCAG 2.1, level AA
 
-    def test_colours_are_told_apart_with_every_kind_of_colour_vision(self):
+    def test_colours_are_distinguishable_with_every_kind_of_colour_vision(self):
         """Simulated by the method of Machado, Oliveira and Fernandes (IEEE TVCG 15, 2009, severity 1). A CIEDE2000
         difference of 1 is just noticeable side by side; 6 is clearly visible between lines of a figure.
         """
@@ -394,29 +396,29 @@ class Looks(unittest.TestCase):
                 colours = [getattr(look, ground) for look in among]
                 for vision, matrix in hapbench_looks.VISIONS.items():
                     lab = rgb2lab(simulated(colours, matrix))
-                    apart = deltaE_ciede2000(lab[:, None], lab[None]) + 99 * np.eye(len(lab))
-                    self.assertGreaterEqual(apart.min(), smallest, (ground, vision))
+                    differences = deltaE_ciede2000(lab[:, None], lab[None]) + 99 * np.eye(len(lab))
+                    self.assertGreaterEqual(differences.min(), smallest, (ground, vision))
         # No two algorithms have the same marker, and no two series have the same marker or dash.
         for part, among in (("marker", algorithms), ("marker", series), ("dash", series)):
             found = [getattr(look, part) for look in among]
             self.assertEqual(len(set(found)), len(found), part)
 
-    def test_own_laws_are_told_apart_from_the_others_of_a_picture(self):
+    def test_own_laws_are_distinguishable_from_the_others_of_a_picture(self):
         """In a picture of two user laws and six other laws, all colours differ by at least 5 in CIEDE2000. This
-        corresponds to APART, which is a difference in OKLab. If the colours depended on the names alone, many user laws
-        would look alike."""
+        corresponds to MIN_DISTANCE, which is a difference in OKLab. If the colours depended on the names alone, many
+        user laws would look alike."""
         others = ("mean", "shaped_stiffness", "summation", "proxy", "least_squares", "tandpasta")
         too_close = 0
         for first in range(12):
             own = (f"law_{first}", f"own{7 * first}")
-            hapbench_looks.tell_apart((*own, *others))
+            hapbench_looks.distinguish((*own, *others))
             by_name = [hapbench_looks.by_name(name) for name in own]
             drawn = [hapbench_looks.look(name) for name in (*own, *others)]
             self.assertEqual(len({one.marker for one in drawn}), len(drawn))
             too_close += closest([*by_name, *drawn[2:]]) < 6.0
             self.assertGreaterEqual(closest(drawn), 5.0, own)
         self.assertGreater(too_close, 3)
-        hapbench_looks.tell_apart(())
+        hapbench_looks.distinguish(())
 
     def test_the_titles_of_metrics_have_the_words_of_the_tables(self):
         """The headings are in scenarios/program/run_table.hpp."""
@@ -449,8 +451,8 @@ def closest(looks):
     for ground in ("colour", "dark"):
         for matrix in hapbench_looks.VISIONS.values():
             lab = rgb2lab(simulated([getattr(one, ground) for one in looks], matrix))
-            apart = deltaE_ciede2000(lab[:, None], lab[None]) + 99 * np.eye(len(lab))
-            smallest = min(smallest, apart.min())
+            differences = deltaE_ciede2000(lab[:, None], lab[None]) + 99 * np.eye(len(lab))
+            smallest = min(smallest, differences.min())
     return smallest
 
 

@@ -62,16 +62,16 @@ class Pip(unittest.TestCase):
         )
         must(hapbench, *run, cwd=root, env=clean)
         must(hapbench, "plot", "out", cwd=root, env=clean)
-        said = must(venv / "bin/python", "-c", script, cwd=root, env=clean)
-        self.assertIn(str(venv / "lib"), said)
-        self.assertIn("completes", said)
+        output = must(venv / "bin/python", "-c", script, cwd=root, env=clean)
+        self.assertIn(str(venv / "lib"), output)
+        self.assertIn("completes", output)
         self.assertTrue((root / "run.png").stat().st_size > 1000)
         must(*pip, "uninstall", "--yes", "hapbench", env=env, cwd=root)
         after = everything_in(venv)
         self.assertEqual({file for file in after - before if "__pycache__" not in file}, set())
         self.assertFalse([file for file in after if "hapbench" in file])
 
-    def test_says_how_long_it_takes_before_it_compiles(self):
+    def test_prints_how_long_it_takes_before_it_compiles(self):
         """The test replaces cmake by a command that stops at once."""
         root = scratch_folder(self)
         (root / "bin").mkdir()

@@ -75,7 +75,7 @@ class Plot(Given):
         plotted(run, "--y", "force", "--from", after, "--to", 0.24)
         self.assertNotIn("peak", (run / "plot.svg").read_text())
 
-    def test_labels_tell_runs_apart(self):
+    def test_labels_distinguish_runs(self):
         runs = given_runs([self.root / "peg"])
         self.assertEqual(labels(runs), ["mean", "proxy", "shaped stiffness", "summation"])
         runs = given_runs([self.root / "peg" / "mean", self.root / "springs"])
@@ -91,12 +91,12 @@ class Plot(Given):
         runs = self.variants({}, {})
         self.assertEqual(labels(runs), ["mean, 0/springs", "mean, 1/springs"])
 
-    def variants(self, *changes, places="{}/springs"):
+    def variants(self, *changes, pattern="{}/springs"):
         """Returns copies of a run whose scenarios have other values."""
         folder = Path(tempfile.mkdtemp(dir=self.root))
         for i, change in enumerate(changes):
-            shutil.copytree(self.root / "springs", folder / places.format(i))
-            file = folder / places.format(i) / "scenario.effective.json"
+            shutil.copytree(self.root / "springs", folder / pattern.format(i))
+            file = folder / pattern.format(i) / "scenario.effective.json"
             scenario = json.loads(file.read_text())
             for path, value in change.items():
                 section, _, name = path.rpartition(".")
@@ -108,7 +108,7 @@ class Plot(Given):
         runs = self.variants({"seed": 1}, {"seed": 2}, {"seed": 3})
         self.assertEqual(list(legend_of(looks(runs, *named(runs)))), ["mean (3 seeds)"])
         jittered = [{"seed": i, "initial.position_m": [0.001 * i, 0, 0]} for i in range(3)]
-        runs = self.variants(*jittered, places="mean/seed_{}")
+        runs = self.variants(*jittered, pattern="mean/seed_{}")
         self.assertEqual(list(legend_of(looks(runs, *named(runs)))), ["mean (3 seeds)"])
         runs = self.variants(*jittered)
         self.assertEqual(len(legend_of(looks(runs, *named(runs)))), 3)
@@ -132,7 +132,7 @@ class Plot(Given):
 
     def test_bad_input(self):
         mesh, sweep = self.root / "mesh", self.root / "sweep"
-        for words, said in (
+        for words, message in (
             ((mesh, "--y", "forse"), 'nearest valid name: "force"'),
             ((mesh, "--y", "qqq"), "or a column of trajectory.csv: step, time_s,"),
             ((mesh, "--y", "energy"), "run it with --set record.energy=true"),
@@ -162,7 +162,9 @@ class Plot(Given):
                 drawn(*words, expected=2) if words[0] == "report" else plotted(*words, expected=2)
             )
             self.assertTrue(
-                error.startswith("hapbench: error: ") and said in error and error.count("\n") == 1,
+                error.startswith("hapbench: error: ")
+                and message in error
+                and error.count("\n") == 1,
                 error,
             )
 
@@ -177,7 +179,7 @@ class Plot(Given):
         self.assertGreaterEqual(min(marks[m].get_markersize() for m in "os"), 6)  # [points]
         plt.close(figure)
 
-    def test_scenes_apart_have_panels_of_their_own(self):
+    def test_distinct_scenes_have_panels_of_their_own(self):
         """Two scenes have separate panels. A scene that is moved far away also has a separate panel; a scene that is
         moved a little does not."""
         runs = given_runs([self.root / "mesh", self.root / "springs"])
@@ -229,9 +231,9 @@ class Plot(Given):
             figure = draw_runs(given_runs([run]), [], True, ALWAYS)
             (ax,) = figure.axes
             self.assertEqual(bool(ax.collections), filled, mesh)
-            said = ax.get_xlabel().replace("\n", " ")
-            self.assertEqual("section of the solid" in said, filled, said)
-            self.assertEqual("an open scan" in said, not filled, said)
+            label = ax.get_xlabel().replace("\n", " ")
+            self.assertEqual("section of the solid" in label, filled, label)
+            self.assertEqual("an open scan" in label, not filled, label)
             plt.close(figure)
 
     @mock.patch.dict(os.environ, {"HAPBENCH_PROGRAM": str(PROGRAM)})

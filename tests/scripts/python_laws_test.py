@@ -182,7 +182,7 @@ class Laws(Scratch):
         self.assertEqual(hapbench.run(PEG, SHORT).outcome, "completes")
 
     def test_answers_that_are_no_force(self):
-        for answer, said in (
+        for answer, message in (
             (np.ones(1000), "shape"),
             (np.nan, "nan"),
             ("text", "str"),
@@ -192,7 +192,7 @@ class Laws(Scratch):
             (np.ones((2, 2)), "shape"),
         ):
             hapbench.force_law("test_wrong")(eval("lambda depths: answer", {"answer": answer}))
-            with self.assertRaisesRegex(ValueError, f'force law "test_wrong": .*{said}'):
+            with self.assertRaisesRegex(ValueError, f'force law "test_wrong": .*{message}'):
                 hapbench.run(PEG, {**SHORT, "rendering.algorithm": "test_wrong"})
 
     def test_laws_on_the_command_line(self):

@@ -89,8 +89,8 @@ class Manual(unittest.TestCase):
         )
         Path("manual.py").write_text(script, encoding="utf-8")
         env = {**ENVIRONMENT, "PYTHONPATH": str(PACKAGES)}
-        said = must(sys.executable, "manual.py", env=env)
-        means = [float(word) for word in said.splitlines()[-1].split()[1:]]
+        output = must(sys.executable, "manual.py", env=env)
+        means = [float(word) for word in output.splitlines()[-1].split()[1:]]
         self.assertEqual(len(means), 2 * 2)
         self.assertTrue(np.isfinite(means).all())
         self.assertTrue(Path("laws.pdf").read_bytes().startswith(b"%PDF"))

@@ -192,7 +192,7 @@ class Runs(Scratch):
 
 
 class Errors(Scratch):
-    def test_say_where_and_what(self):
+    def test_name_position_and_problem(self):
         with self.assertRaises(hapbench.ScenarioError) as caught:
             hapbench.run({"extends": PEG, "rendering": {"algoritm": "mean"}})
         self.assertEqual(
@@ -217,8 +217,11 @@ class Errors(Scratch):
         )
 
     def test_of_results(self):
-        for folder, said in ((self.root / "nothing", "is not a folder"), (self.root, "no results")):
-            with self.assertRaisesRegex(hapbench.ResultError, said):
+        for folder, message in (
+            (self.root / "nothing", "is not a folder"),
+            (self.root, "no results"),
+        ):
+            with self.assertRaisesRegex(hapbench.ResultError, message):
                 hapbench.load(folder)
 
     def test_without_the_module_results_can_be_read(self):

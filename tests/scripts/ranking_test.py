@@ -18,7 +18,7 @@ from hapbench_pictures.bands import band
 from hapbench_pictures.given import given_runs, labels
 from hapbench_pictures.many_runs import between
 from hapbench_pictures.ranking_plot import draw_panel, draw_ranking
-from hapbench_pictures.standings import FAILURES, Law, Scene, scenes_of
+from hapbench_pictures.ranking_values import FAILURES, Law, Scene, scenes_of
 from hapbench_report.markup import known_number
 from hapbench_style import SHEETS, plt
 
@@ -56,7 +56,7 @@ class WithRuns(Given):
         return scenes_of(given_runs([self.many]), [self.many])
 
 
-class Standings(WithRuns):
+class Rankings(WithRuns):
     def test_they_are_those_of_the_program(self):
         scenes = {scene.name: scene for scene in self.scenes()}
         rows = read_records(self.many / "ranking.csv")
@@ -64,7 +64,7 @@ class Standings(WithRuns):
         for row in rows:
             scene = scenes[row["scenario"]]
             law = next(law for law in scene.laws if law.algorithm == row["algorithm"])
-            found = scene.standings(row["metric"])[law.label]
+            found = scene.entries(row["metric"])[law.label]
             self.assertEqual(len(law.failures), int(row["failed"]), row)
             self.assertEqual(len(scene.seeds), int(row["common_seeds"]), row)
             self.assertEqual("" if found.rank is None else str(found.rank), row["rank"], row)
@@ -104,9 +104,9 @@ class Standings(WithRuns):
             ]
             scene = Scene("s", laws, {"m": "less"})
             self.assertEqual(list(scene.ranks("m").values()), ranks)
-            said = list(between(scene, "m"))
-            self.assertEqual(len(said), 2)
-            for sentence in said:
+            sentences = list(between(scene, "m"))
+            self.assertEqual(len(sentences), 2)
+            for sentence in sentences:
                 self.assertEqual("cannot be told apart" in sentence, error == 5.0, sentence)
 
     def test_a_number_below_its_error_is_a_bound(self):
@@ -169,7 +169,7 @@ class Picture(WithRuns):
         panels = [(scene, metric) for scene in scenes for metric in ("inside_max_m", "force_max_N")]
         self.assertEqual(len([ax for ax in figure.axes if ax.get_visible()]), len(panels))
         for ax, (scene, metric) in zip(figure.axes, panels):
-            laws, found = scene.sorted_laws(metric), scene.standings(metric)
+            laws, found = scene.sorted_laws(metric), scene.entries(metric)
             factor = 1e3 if "[mm]" in ax.get_xlabel() else 1.0
             dots = curves_of(ax, "o")
             for row, law in enumerate(laws):
@@ -238,7 +238,7 @@ class Page(WithRuns):
         drawn("report", *words, "--out", out)
         return out.read_text(encoding="utf-8")
 
-    def test_a_comparison_over_seeds_says_what_lies_between_laws(self):
+    def test_a_comparison_over_seeds_reports_the_difference_of_laws(self):
         out = made(
             "seeds",
             "compare",
@@ -254,7 +254,7 @@ class Page(WithRuns):
             "--by",
             "force_max_N",
         )
-        said = re.findall(
+        compared = re.findall(
             r"<code>force_max_N</code>: ([\w ]+) is (\S+) ± (\S+) above ([\w ]+) over 4 seeds: (\w+)",
             re.search(r'<section id="seeds".*?</section>', self.page(out), re.S)[0],
         )
@@ -265,8 +265,8 @@ class Page(WithRuns):
         )
         (scene,) = scenes_of(given_runs([out]))
         succeeding = [law for law in scene.laws if not law.failures]
-        self.assertGreater(len(said), 0)
-        self.assertEqual(len(said) + len(alike), len(succeeding) - 1)
+        self.assertGreater(len(compared), 0)
+        self.assertEqual(len(compared) + len(alike), len(succeeding) - 1)
         value = lambda law: np.array(
             [
                 json.loads(
@@ -275,15 +275,15 @@ class Page(WithRuns):
                 for k in range(4)
             ]
         )
-        for law, mean, within, least, word in said:
-            more = value(law) - value(least)
+        for law, mean, within, best, word in compared:
+            more = value(law) - value(best)
             low, high = stats.t.interval(0.95, 3, more.mean(), stats.sem(more))
             self.assertAlmostEqual(float(mean) / more.mean(), 1, delta=0.006)
             self.assertAlmostEqual(float(within) / (0.5 * (high - low)), 1, delta=0.06)
             self.assertEqual(word, "significant" if low > 0 else "not")
-        for law, least in alike:
-            difference = (value(law) - value(least)).mean()
-            self.assertLessEqual(abs(difference), 1e-3 * value(least).max())
+        for law, best in alike:
+            difference = (value(law) - value(best)).mean()
+            self.assertLessEqual(abs(difference), 1e-3 * value(best).max())
 
     def test_it_begins_with_laws_by_metrics(self):
         page = self.page(self.many)
@@ -310,10 +310,10 @@ class Page(WithRuns):
             }
             file.write_text(json.dumps(summary))
         page = self.page(folder)
-        said = re.search(r'<section id="warnings".*?</section>', page, re.S)[0]
-        self.assertEqual(said.count("<li>"), 1)
-        self.assertIn("<b>32 runs</b>", said)
-        self.assertEqual(len(re.findall(r"the tool moved by [\d.]+ mm", said)), 1)
+        section = re.search(r'<section id="warnings".*?</section>', page, re.S)[0]
+        self.assertEqual(section.count("<li>"), 1)
+        self.assertIn("<b>32 runs</b>", section)
+        self.assertEqual(len(re.findall(r"the tool moved by [\d.]+ mm", section)), 1)
 
     def test_one_command_runs_all_again(self):
         page = self.page(self.many)

@@ -12,7 +12,7 @@ setUpModule = make_root
 
 class Regression(Given):
     @staticmethod
-    def told(a, b, tolerance="0", expected=0):
+    def compared(a, b, tolerance="0", expected=0):
         return drawn("report", a, b, "--tolerance", tolerance, expected=expected)
 
     def repeated(self, name, *more):
@@ -24,7 +24,7 @@ class Regression(Given):
         a, b = self.repeated("once"), self.repeated(
             "nudged", "--set", f"rendering.stiffness_N_per_m={math.nextafter(20000, 30000)!r}"
         )
-        self.assertIn("the results are equal\n", self.told(a, self.repeated("again")))
+        self.assertIn("the results are equal\n", self.compared(a, self.repeated("again")))
         found = differences(a, b)
         self.assertEqual([are_equal(found, tolerance) for tolerance in (0.0, 1e-9)], [False, True])
         x, y = (
@@ -53,11 +53,11 @@ class Regression(Given):
             ],
             expected,
         )
-        said = self.told(
+        output = self.compared(
             a, self.repeated("stiffer", "--set", "rendering.stiffness_N_per_m=20002"), expected=3
         )
-        self.assertRegex(said, r"field +rendering.stiffness_N_per_m +20000 +20002")
-        self.assertTrue("force_max_N" in said and "not equal" in said, said)
+        self.assertRegex(output, r"field +rendering.stiffness_N_per_m +20000 +20002")
+        self.assertTrue("force_max_N" in output and "not equal" in output, output)
 
     def test_runs_and_sweeps_are_paired_by_their_paths(self):
         for out, law, start in (("a", "summation", "0.005"), ("b", "proxy", "0.006")):
@@ -105,4 +105,4 @@ class Regression(Given):
             (run, "-1"),
             (run, "nan"),
         ):
-            self.assertEqual(self.told(run, other, tolerance, 2).count("\n"), 1)
+            self.assertEqual(self.compared(run, other, tolerance, 2).count("\n"), 1)

@@ -60,7 +60,7 @@ class Replays(Given):
         (table / "replay_comparison.csv").write_text("algorithm,calls\nmean,5\n")
         copy = self.root / "copy.csv"
         shutil.copy(LOG, copy)
-        for words, said in (
+        for words, message in (
             ((table,), 'allowed: a folder of "hapbench run --replay"'),
             ((folder, copy, LOG), "or two of them for their difference"),
             ((folder, "--y", "force"), "allowed for them: --width, --dpi, --out"),
@@ -68,7 +68,7 @@ class Replays(Given):
             ((folder, "--out", self.root / "a.svg", "--dpi", "300"), "has no pixels"),
             ((folder, "--out", self.root / "a.png", "--dpi", "5"), "allowed: 50 to 1200"),
         ):
-            self.assertIn(said, plotted(*words, expected=2))
+            self.assertIn(message, plotted(*words, expected=2))
 
     def test_resolution_and_fonts(self):
         folder, sizes = self.other(), []

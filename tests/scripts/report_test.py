@@ -217,15 +217,15 @@ class Page(WithResults):
                         for x, y, z in (contact[4:7] for contact in contacts)
                     ]
                     if ratios:
-                        least, most = (
+                        smallest, largest = (
                             dict(zip(MEASURED_COLUMNS, row))[name]
                             for name in ("ratio_min", "ratio_max")
                         )
                         # Two sums of n products in different orders have n rounding errors each, of sums below the
                         # largest ratio.
-                        tolerance = 2 * (len(contacts) + 10) * 2.0**-53 * max(1.0, most)
-                        self.assertAlmostEqual(min(ratios), least, delta=tolerance)
-                        self.assertAlmostEqual(max(ratios), most, delta=tolerance)
+                        tolerance = 2 * (len(contacts) + 10) * 2.0**-53 * max(1.0, largest)
+                        self.assertAlmostEqual(min(ratios), smallest, delta=tolerance)
+                        self.assertAlmostEqual(max(ratios), largest, delta=tolerance)
 
 
 class BadInput(WithResults):
@@ -238,7 +238,7 @@ class BadInput(WithResults):
             bad / "figures.json",
         )
         of_claims, of_figures = (self.results, "--claims", claims), (self.results, "--figures", bad)
-        for file, text, words, said in (
+        for file, text, words, message in (
             (summary, "{", (bad / "results",), "not JSON"),
             (
                 summary,
@@ -264,5 +264,5 @@ class BadInput(WithResults):
             file.write_text(text)
             done = report(*words, "--out", self.root / "refused" / "page.html")
             self.assertEqual((done.returncode, done.stderr.count("\n")), (2, 1), done.stderr)
-            self.assertIn(said, done.stderr)
+            self.assertIn(message, done.stderr)
             self.assertFalse((self.root / "refused").exists())

@@ -47,11 +47,11 @@ def distances(points, tip, turn):
     out = across / rho[:, None]
     side, end = rho - RADIUS, np.maximum(s, -LENGTH - s)
     forward = np.where(s >= -LENGTH - s, 1.0, -1.0)[:, None] * axis
-    edge = np.hypot(side, end)
+    radial = np.hypot(side, end)
     beyond = (side > 0) & (end > 0)
-    distance = np.where(beyond, edge, np.maximum(side, end))
+    distance = np.where(beyond, radial, np.maximum(side, end))
     with np.errstate(invalid="ignore", divide="ignore"):
-        corner = (side[:, None] * out + end[:, None] * forward) / edge[:, None]
+        corner = (side[:, None] * out + end[:, None] * forward) / radial[:, None]
     normal = np.where(beyond[:, None], corner, np.where((side >= end)[:, None], out, forward))
     return distance, normal
 
@@ -115,8 +115,8 @@ class Problem:
         for _ in range(PASSES):
             wanted = np.linalg.solve(lower, gradient(x))
             rows = np.linalg.solve(lower, derivative(self.gaps, x).T).T
-            least = -self.gaps(x) + rows @ wanted
-            matrix = np.vstack([rows.T, least])
+            slack = -self.gaps(x) + rows @ wanted
+            matrix = np.vstack([rows.T, slack])
             aim = np.r_[np.zeros(9), 1.0]
             rest = matrix @ nnls(matrix, aim, maxiter=1000)[0] - aim
             step = np.linalg.solve(lower.T, -rest[:9] / rest[9] - wanted)

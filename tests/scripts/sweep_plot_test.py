@@ -61,10 +61,10 @@ class Sweeps(Given):
             "lhs:40",
             *FEW_STEPS,
         )
-        said = plotted(folder, "--metric", "force_max_N")
+        output = plotted(folder, "--metric", "force_max_N")
         found = {
             line.split()[0]: line.split()[1:]
-            for line in said.splitlines()
+            for line in output.splitlines()
             if line.startswith(("rendering.", "seed")) and len(line.split()) >= 4
         }
         self.assertGreater(float(found["rendering.stiffness_N_per_m"][0]), 0.5)
@@ -102,10 +102,10 @@ class Sweeps(Given):
             ("force_max_N!=-1", 5),
         ):
             kept = Sweep(folder, "force_max_N", [condition]).rows
-            said = json.loads(hapbench("sweep", folder, "--where", condition, "--json"))
+            output = json.loads(hapbench("sweep", folder, "--where", condition, "--json"))
             self.assertEqual(len(kept), count, condition)
             self.assertEqual(
-                [int(row["index"]) for row in kept], [row["index"] for row in said["rows"]]
+                [int(row["index"]) for row in kept], [row["index"] for row in output["rows"]]
             )
         both = ["rendering.mass_kg<0.3", "rendering.algorithm=mean"]
         self.assertEqual(len(Sweep(folder, None, both).rows), 2)
@@ -140,8 +140,8 @@ class Sweeps(Given):
             (x[2], (x[2] + pi) / (2 * pi)),
             (texts, None),
         ]
-        for (column, place), variance in zip(columns, own):
-            found = sensitivity(column, place, y)
+        for (column, coordinate), variance in zip(columns, own):
+            found = sensitivity(column, coordinate, y)
             # Six cosines miss 0.1 % of sin(x). For independent points, the jackknife's standard error is close to the
             # true error.
             self.assertLess(abs(found.first_order - variance / total), 3 * found.error + 1e-3)
@@ -167,17 +167,17 @@ class Sweeps(Given):
         self.assertGreater(decides.of_logarithm, other.of_logarithm + 3 * other.error_of_logarithm)
 
     def test_the_logarithm_has_an_index_if_values_span_a_decade(self):
-        place = np.linspace(0, 1, 100)
+        coordinate = np.linspace(0, 1, 100)
         for y, exists in (
-            (1 + 9.1 * place, True),
-            (1 + 8.9 * place, False),
-            (place, False),  # zero has no logarithm
-            (-1 - 20 * place, False),
+            (1 + 9.1 * coordinate, True),
+            (1 + 8.9 * coordinate, False),
+            (coordinate, False),  # zero has no logarithm
+            (-1 - 20 * coordinate, False),
         ):
-            found = sensitivity(place, place, y)
+            found = sensitivity(coordinate, coordinate, y)
             self.assertEqual(found.of_logarithm is not None, exists, y[-1])
         # y is an exponential function of the field: its logarithm is linear.
-        found = sensitivity(place, place, np.exp(12 * place))
+        found = sensitivity(coordinate, coordinate, np.exp(12 * coordinate))
         self.assertGreater(found.of_logarithm, 0.998)
         self.assertLess(found.first_order, found.of_logarithm - 0.05)
 
@@ -194,18 +194,18 @@ class Sweeps(Given):
             "lhs:40",
             *FEW_STEPS,
         )
-        said = plotted(folder, "--metric", "force_step_max_N")
-        self.assertIn("of the logarithm", said.splitlines()[0])
+        output = plotted(folder, "--metric", "force_step_max_N")
+        self.assertIn("of the logarithm", output.splitlines()[0])
         lines = {
             line.split()[0]: line.split()[1:]
-            for line in said.splitlines()
+            for line in output.splitlines()
             if line.startswith("rendering.")
         }
         self.assertEqual({len(cells) for cells in lines.values()}, {5})
         self.assertEqual(list(lines)[0], "rendering.stiffness_N_per_m")
         self.assertIn(
             "Of the logarithm: the index of the logarithm of force_step_max_N",
-            " ".join(said.split()),
+            " ".join(output.split()),
         )
         self.assert_shows(folder / "plot.svg", "of the logarithm")
 

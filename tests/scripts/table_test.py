@@ -75,7 +75,7 @@ class Tables(unittest.TestCase):
             self.assertTrue(all(row[heads.index(name)] for row in rows if row[0] == "T3"))
 
     def test_what_cannot_be_a_table_is_refused(self):
-        for words, said in (
+        for words, message in (
             (("run", "tap_wall", "--table", "html"), 'allowed: "markdown", "latex", "csv"'),
             (("run", "tap_wall", "--table", "csv", "--json"), "--json"),
             (("describe", "mean", "--table", "csv"), "allowed: with a list, such as claims"),
@@ -83,7 +83,7 @@ class Tables(unittest.TestCase):
         ):
             done = ran(PROGRAM, *words, cwd=printed_tables.ROOT)
             self.assertEqual(done.returncode, 2, words)
-            self.assertIn(said, done.stderr)
+            self.assertIn(message, done.stderr)
 
     def test_several_csv_tables_are_announced(self):
         done = ran(PROGRAM, *COMMANDS["latency"], "--table", "csv", cwd=printed_tables.ROOT)

@@ -68,7 +68,7 @@ def unproven_numbers(text, printed):
 
 
 class Tutorials(unittest.TestCase):
-    def test_each_runs_and_says_what_it_prints(self):
+    def test_each_runs_and_prints_what_it_shows(self):
         self.assertEqual(len(TUTORIALS), 6)
         texts = {file.stem: file.read_text(encoding="utf-8") for file in TUTORIALS}
         with ThreadPoolExecutor(2) as pool:

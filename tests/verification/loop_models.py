@@ -247,7 +247,7 @@ def random_device(random, kind):
     return device
 
 
-def edge_of(stable, low=1e-3, high=1e9):
+def limit_of(stable, low=1e-3, high=1e9):
     """Returns the largest value for which `stable` is true, or None if there is no single boundary below `high`. A
     single boundary requires values (each 1.1 times the previous value) that are stable from `low` to the boundary and
     unstable up to 20 times the boundary."""

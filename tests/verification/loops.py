@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
-from loop_models import MAPS, between, edge_of, radius, random_device, random_hand
+from loop_models import MAPS, between, limit_of, radius, random_device, random_hand
 
 PROGRAM = Path(sys.argv[1]).resolve()
 COUNT = int(sys.argv[2]) if len(sys.argv) > 2 else 2
@@ -24,8 +24,8 @@ SPRINGS_AGREE = 1e-7
 # an error of 1e-7. The limit depends on it about linearly.
 SURFACES_AGREE = 1e-5
 # Runs have a stiffness K below and above the limit by the fraction BESIDE. A run takes about three times the number of
-# steps in which its amplitude changes by the factor GROWN. The run is skipped if this number exceeds MOST_STEPS.
-BESIDE, GROWN, MOST_STEPS = 0.05, 100.0, 200_000
+# steps in which its amplitude changes by the factor GROWN. The run is skipped if this number exceeds MAX_STEPS.
+BESIDE, GROWN, MAX_STEPS = 0.05, 100.0, 200_000
 
 
 def random_scene(device, hand):
@@ -47,7 +47,7 @@ def random_scene(device, hand):
     }
 
 
-def told(folder, *words):
+def output_of(folder, *words):
     ran = subprocess.run(
         [PROGRAM, *map(str, words), "--json", "--out", folder / "out"],
         capture_output=True,
@@ -62,7 +62,7 @@ def told(folder, *words):
 def limit(folder, scene, low, high, *words):
     file = folder / "scene.json"
     file.write_text(json.dumps(scene))
-    return told(
+    return output_of(
         folder, "limit", file, "--between", f"{low:.6g}:{high:.6g}", "--stable", "settled", *words
     )["limits"][0]
 
@@ -71,7 +71,7 @@ def grows(folder, scene, A, K):
     """Returns True if the amplitude of a run at the stiffness K grows, and False if it decays. Returns None if the run
     would take too many steps. `A`: matrix of the loop at K, which gives the number of steps."""
     steps = int(np.log(GROWN) / abs(np.log(radius(A)))) + 100
-    if steps > MOST_STEPS:
+    if steps > MAX_STEPS:
         return None
     scene = json.loads(json.dumps(scene))
     scene["time"]["steps"] = 3 * steps
@@ -79,7 +79,7 @@ def grows(folder, scene, A, K):
     scene["expect"] = {"outcome": ["completes", "diverges"]}
     file = folder / "run.json"
     file.write_text(json.dumps(scene))
-    ends = told(folder, "run", file)
+    ends = output_of(folder, "run", file)
     if "diverges" in json.dumps(ends):
         return True
     rows = np.genfromtxt(folder / "out" / "trajectory.csv", delimiter=",", names=True)
@@ -105,17 +105,17 @@ def check_springs(folder, faults):
         while made < COUNT:
             scene = random_scene(device, hand)
             loop = lambda K: MAPS[device](scene, K)
-            edge = edge_of(lambda K: radius(loop(K)) <= 1 + 1e-11)
-            if edge is None:
+            expected = limit_of(lambda K: radius(loop(K)) <= 1 + 1e-11)
+            if expected is None:
                 continue
             made += 1
             name = f"{device}, hand {hand}, {made}"
-            row = limit(folder, scene, edge / 5, 5 * edge, "--resolution", 0.3)
-            check(name, row["theoretical_limit"], edge, SPRINGS_AGREE, faults)
+            row = limit(folder, scene, expected / 5, 5 * expected, "--resolution", 0.3)
+            check(name, row["theoretical_limit"], expected, SPRINGS_AGREE, faults)
             if made > 2:
                 continue
             for factor in (1 - BESIDE, 1 + BESIDE):
-                K = factor * edge
+                K = factor * expected
                 seen = grows(folder, scene, loop(K), K)
                 if seen is not None and seen != (factor > 1):
                     print(
@@ -167,11 +167,11 @@ def check_surfaces(folder, faults):
         scene["rendering"]["damping_N_s_per_m"] = 1.5
         still = json.loads(json.dumps(scene))
         still["hand"] = {"type": "none"}
-        edge = edge_of(
+        expected = limit_of(
             lambda K: radius(MAPS["impedance"](still, slope_of_flat_tip(K, F, 0.002))) <= 1, low=300
         )
-        row = limit(folder, scene, edge / 4, 4 * edge, "--resolution", 0.05)
-        check(f"flat tip, {F} N", row["linear_limit"], edge, SURFACES_AGREE, faults)
+        row = limit(folder, scene, expected / 4, 4 * expected, "--resolution", 0.05)
+        check(f"flat tip, {F} N", row["linear_limit"], expected, SURFACES_AGREE, faults)
     for damping in (20, 60):
         drag = {
             "type": "drag",
@@ -200,9 +200,9 @@ def check_surfaces(folder, faults):
             "stiffness_N_per_m": 0.0,
             "damping_N_s_per_m": damping,
         }
-        edge = edge_of(lambda K: radius(MAPS["impedance"](along, K)) <= 1)
-        row = limit(folder, scene, edge / 8, 2 * edge, "--resolution", 0.2)
-        check(f"drag, b_n = {damping}", row["linear_limit"], edge, SURFACES_AGREE, faults)
+        expected = limit_of(lambda K: radius(MAPS["impedance"](along, K)) <= 1)
+        row = limit(folder, scene, expected / 8, 2 * expected, "--resolution", 0.2)
+        check(f"drag, b_n = {damping}", row["linear_limit"], expected, SURFACES_AGREE, faults)
 
 
 def main():

@@ -78,7 +78,7 @@ def driven(K, B, force=0.0, k=0.0, b=0.0, amplitude=0.0, omega=0.0):
     return lambda *_: linear(A, np.array([0, force / M, 0, 0]), (X0, V0, 0.0, 1.0))[:2]
 
 
-def late(K, b, tau):
+def delayed_spring(K, b, tau):
     """Returns a function that computes (position, velocity) at END_S for M x'' = -b x' - K x(t - tau), with a spring
     force of zero before tau [s]. The motions in successive intervals of length tau form one linear system.
     """
@@ -251,7 +251,7 @@ def cases(laws):
             f"{1e3 * tau:g} ms, {samples:g} samples of 1 ms",
             1,
             scene(device=device),
-            late(K, 40.0, tau),
+            delayed_spring(K, 40.0, tau),
             "the rendered force is held",
             lambda step, _, tau=tau: {"device": {**device, "delay_samples": tau / step}},
         )

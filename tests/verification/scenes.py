@@ -41,10 +41,10 @@ AGREE = 3e-5
 # Largest difference of an eigenvalue from 1 for a mode that moves freely. Rounding changes a double eigenvalue by the
 # square root of the machine precision.
 FREE = 1e-6
-# DURATION_S: duration of a run [s]. CUTOFF_HZ: cutoff of the filter for vibration. MOST_M_PER_S: largest velocity of
+# DURATION_S: duration of a run [s]. CUTOFF_HZ: cutoff of the filter for vibration. MAX_M_PER_S: largest velocity of
 # low vibration. UNSURE: factor around a threshold within which a run has no verdict.
 DURATION_S = 0.8
-CUTOFF_HZ, MOST_M_PER_S, UNSURE = 30.0, 1e-3, 1.3
+CUTOFF_HZ, MAX_M_PER_S, UNSURE = 30.0, 1e-3, 1.3
 
 # Weight c of each contact for n contacts with parallel normals. With the depths d, the force is f = -K sum c d. The
 # stiffness ratio is S = sum c. None means that only the deepest contact has a force.
@@ -315,7 +315,7 @@ class Motion:
         more than 1 mm/s."""
         speed = np.linalg.norm(self.fast_part(self.v), axis=1)
         amplitude = [speed[self.quarter(i)].max() for i in range(4)]
-        return amplitude[3] > MOST_M_PER_S and bool(np.all(np.diff(amplitude) > 0))
+        return amplitude[3] > MAX_M_PER_S and bool(np.all(np.diff(amplitude) > 0))
 
     def is_stable(self):
         """Returns True or False by the rule of stability; None if the motion is near a threshold of the rule."""
@@ -324,7 +324,7 @@ class Motion:
         if self.is_scripted:
             if self.grows():
                 return False
-            much = self.vibration() / MOST_M_PER_S
+            much = self.vibration() / MAX_M_PER_S
             return None if 1 / UNSURE < much < UNSURE else much < 1
         amplitude = [np.linalg.norm(self.v[self.quarter(i)], axis=1).max() for i in range(4)]
         turns = [np.diff(np.sign(axis[axis != 0])) for axis in self.v[self.quarter(3)].T]
@@ -406,26 +406,26 @@ def check_cause(scene, bench, row):
     if not found:
         kind = re.split(r"[;,:(]", reason)[0].strip()
         return None, kind
-    K, says = float(found[1]), found[2]
+    K, behaviour = float(found[1]), found[2]
     exact = row["stable_high"]
     rows, _ = bench.rows(exact if abs(exact / K - 1) < 1e-5 else K)
     motion = Motion(scene, rows)
-    if away := re.search(r"out of contact in ([0-9.e+-]+) %", says):
+    if away := re.search(r"out of contact in ([0-9.e+-]+) %", behaviour):
         seen, share = 100 * motion.share_away(), float(away[1])
         return (
             None if abs(seen - share) < 0.06 * share + 0.3 else f"{reason}: {seen:.3g} %"
         ), "out of contact"
-    if "dry friction acts" in says:
+    if "dry friction acts" in behaviour:
         is_held = scene["device"].get("coulomb_N", 0) > 0 and motion.rests()
         return (None if is_held else f"{reason}: is not held"), "friction holds"
-    if "comes to rest" in says:
+    if "comes to rest" in behaviour:
         return (None if motion.rests() else f"{reason}: moves"), "comes to rest"
-    if vibrates := re.search(r"vibrates by ([0-9.e+-]+)", says):
+    if vibrates := re.search(r"vibrates by ([0-9.e+-]+)", behaviour):
         seen = motion.vibration()
         return (
             None if abs(seen / float(vibrates[1]) - 1) < 0.1 else f"{reason}: {seen:.3g}"
         ), "vibrates"
-    if "gains and loses" in says:
+    if "gains and loses" in behaviour:
         points = rows["colliding"][motion.quarter(3)]
         return None, f"contact points change ({'count' if np.ptp(points) else 'not the count'})"
     # A run that "shows no growth in its duration" is stable by the rule and not at rest. It must not lose contact.
@@ -442,16 +442,16 @@ def check_quote(scene, bench, row):
         claims.append((0.9 * quoted, True, "0.9 of the quoted value"))
     if (row["stable_high"] or 0) >= 1.1 * quoted:
         claims.append((1.1 * quoted, True, "1.1 of the quoted value"))
-    elif "farther beyond are stable" not in row["quoted_reason"]:
+    elif "beyond it are stable" not in row["quoted_reason"]:
         claims.append((1.1 * quoted, False, "1.1 of the quoted value"))
     if row["first_unstable"] is not None:
         claims.append((row["first_unstable"], False, "the first unstable value"))
-    for K, said, name in claims:
+    for K, is_stable, name in claims:
         rows, summary = bench.rows(K)
         completes = summary[0]["outcome"] == "completes"
         seen = Motion(scene, rows).is_stable() if completes else False
         runs += 1
-        if seen is not None and seen != said:
+        if seen is not None and seen != is_stable:
             faults.append(f"the run at {name}, {K:.6g}, is {'' if seen else 'not '}stable")
     return faults, runs
 

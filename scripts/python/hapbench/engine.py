@@ -33,7 +33,7 @@ Scenario = str | os.PathLike[str] | dict[str, Any]
 Overrides = Mapping[str, object] | None
 Names = str | Sequence[str] | None
 Mounted = tuple[Sequence[float], Sequence[float]]  # position [m] and quaternion w, x, y, z
-Place = str | os.PathLike[str] | None
+OutputFolder = str | os.PathLike[str] | None
 Progress = Callable[[str, int, int], object] | bool | None
 
 
@@ -85,7 +85,7 @@ def compare(
     by: Names = None,
     full: bool = False,
     jobs: int | None = None,
-    out: Place = None,
+    out: OutputFolder = None,
     progress: Progress = None,
 ) -> "Report":
     """Run scenarios with several algorithms (default: all), as `hapbench compare` does.
@@ -121,7 +121,7 @@ def sweep(
     resume: bool = False,
     full: bool = False,
     jobs: int | None = None,
-    out: Place = None,
+    out: OutputFolder = None,
     progress: Progress = None,
 ) -> "Report":
     """Run a scenario over a grid or a sample of values of any fields, as `hapbench sweep` does.
@@ -163,7 +163,7 @@ def limit(
     stable: str | None = None,
     resolution: float | None = None,
     jobs: int | None = None,
-    out: Place = None,
+    out: OutputFolder = None,
     progress: Progress = None,
 ) -> "Report":
     """Search the stability limit of a field, as `hapbench limit` does, for each value of other fields (`over`, in the
@@ -192,8 +192,8 @@ def command(*words: object, progress: Progress = None) -> Any:
     """Run a command of the program, such as `hapbench.command("describe", "mean")`, and return the parsed output of
     --json. Returns Empty if the command prints nothing. Raises ScenarioError if the program rejects the input.
     """
-    status, text, said, errors = _hapbench.command([*map(str, words), "--json"], progress)
-    _warn(said + errors, status)
+    status, text, messages, errors = _hapbench.command([*map(str, words), "--json"], progress)
+    _warn(messages + errors, status)
     return json.loads(text) if text else None
 
 
@@ -208,8 +208,8 @@ def describe(name: str = "") -> Text:
     """Explain a name of hapbench (a law, field, metric, column, device, claim or term), as `hapbench describe` does, or
     list all names. `hapbench.command("describe", name)` returns the same as data."""
     words = ["describe", *([name] if name else [])]
-    status, text, said, errors = _hapbench.command(words, False)
-    _warn(said + errors, status)
+    status, text, messages, errors = _hapbench.command(words, False)
+    _warn(messages + errors, status)
     return Text(text)
 
 
@@ -434,16 +434,16 @@ def _report(words, scenarios, overrides, out, progress, **options):
         words = [*words, "--set", word]
     folder = Path(out) if out is not None else scratch.path / "out"
     words = [*words, "--out", str(folder), "--json", "--", *map(scratch.file_of, given)]
-    status, text, said, errors = scratch.call(_hapbench.command, words, progress)
-    _warn(said + errors, status)
+    status, text, messages, errors = scratch.call(_hapbench.command, words, progress)
+    _warn(messages + errors, status)
     return Report(folder, status, json.loads(text) if text else None, scratch)
 
 
-def _warn(said, status):
-    for warning in said:
+def _warn(messages, status):
+    for warning in messages:
         warnings.warn(warning, ScenarioWarning, stacklevel=4)
     if status == 1:
-        raise RuntimeError(said[-1] if said else "hapbench: a run could not be computed")
+        raise RuntimeError(messages[-1] if messages else "hapbench: a run could not be computed")
 
 
 def _words(overrides):

@@ -56,7 +56,7 @@ def force_law(
 
     def add(law):
         is_class = inspect.isclass(law)
-        own = {
+        specified = {
             key: value
             if isinstance(value, Parameter)
             else Parameter(float(value), min(0.0, float(value)), 1e12)
@@ -65,15 +65,17 @@ def force_law(
         texts = (
             _summary(law),
             formula or "as written in Python",
-            source or _place(law),
+            source or _location(law),
             known_failure or "unknown",
         )
-        table = [(key, p.default, p.least, p.greatest, p.unit, p.meaning) for key, p in own.items()]
+        table = [
+            (key, p.default, p.least, p.greatest, p.unit, p.meaning) for key, p in specified.items()
+        ]
         _hapbench.add_force_law(
             name,
             law,
             is_class,
-            _arguments(name, law, own),
+            _arguments(name, law, specified),
             table,
             texts,
             depth_model or "",
@@ -84,7 +86,7 @@ def force_law(
     return add
 
 
-def _arguments(name, law, own):
+def _arguments(name, law, specified):
     function = law.__call__ if inspect.isclass(law) else law
     given = list(inspect.signature(function).parameters.values())[
         1 if inspect.isclass(law) else 0 :
@@ -94,11 +96,12 @@ def _arguments(name, law, own):
             raise TypeError(
                 f"force law {name!r}: argument {parameter.name!r} must be one that is given by its place"
             )
-        if parameter.name not in (*_ARGUMENTS, *own):
+        if parameter.name not in (*_ARGUMENTS, *specified):
             raise TypeError(
-                f"force law {name!r}: unknown argument {parameter.name!r}; allowed: {', '.join((*_ARGUMENTS, *own))}"
+                f"force law {name!r}: unknown argument {parameter.name!r}; "
+                f"allowed: {', '.join((*_ARGUMENTS, *specified))}"
             )
-    unused = set(own) - {parameter.name for parameter in given}
+    unused = set(specified) - {parameter.name for parameter in given}
     if unused:
         raise TypeError(f"force law {name!r}: parameter {min(unused)!r} is none of its arguments")
     return [parameter.name for parameter in given]
@@ -117,6 +120,6 @@ def _summary(law):
     return lines[0].rstrip(".") if lines else "a law written in Python"
 
 
-def _place(law):
+def _location(law):
     module = getattr(law, "__module__", "?")
     return f"Python, {module}.{getattr(law, '__qualname__', '?')}"

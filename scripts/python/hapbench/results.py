@@ -41,12 +41,12 @@ def shown(value):
     return text if len(text) <= 60 else text[:57] + "…"
 
 
-def member(value, key, kind, file, place="", default=None):
+def member(value, key, kind, file, pointer="", default=None):
     """Returns value[key], or `default` if the key is missing. Raises ResultError if the member is not of this kind
     (object, array, string)."""
     found = value.get(key, default)
     if found is not default and not isinstance(found, kind):
-        raise ResultError(f"{file}: {place}/{key}: got {shown(found)}; allowed: {KINDS[kind]}")
+        raise ResultError(f"{file}: {pointer}/{key}: got {shown(found)}; allowed: {KINDS[kind]}")
     return found
 
 
@@ -168,8 +168,8 @@ class Run(_WithTables):
 
     @property
     def warnings(self) -> list[str]:
-        said = self.summary.get("warnings")
-        return [str(warning) for warning in said] if isinstance(said, list) else []
+        texts = self.summary.get("warnings")
+        return [str(warning) for warning in texts] if isinstance(texts, list) else []
 
     @property
     def metrics(self) -> dict[str, Any]:

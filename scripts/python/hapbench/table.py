@@ -34,9 +34,9 @@ UNITS = {
     "Hz": "Hz",
     "bytes": "bytes",
 }
-MOST_NAMED = 16
+MAX_NAMED = 16
 # Largest numbers of rows and of characters per line in a printed table.
-MOST_PRINTED, WIDEST = 20, 100
+MAX_PRINTED, WIDEST = 20, 100
 
 
 def ending_of(name: str) -> str:
@@ -138,22 +138,22 @@ class Table(Mapping[str, Column]):
 
     def __repr__(self) -> str:
         names = list(self._columns)
-        more = f" and {len(names) - MOST_NAMED} more" if len(names) > MOST_NAMED else ""
-        return f"<{self.name}: {self.rows} rows of {', '.join(names[:MOST_NAMED])}{more}>"
+        more = f" and {len(names) - MAX_NAMED} more" if len(names) > MAX_NAMED else ""
+        return f"<{self.name}: {self.rows} rows of {', '.join(names[:MAX_NAMED])}{more}>"
 
     def __str__(self) -> str:
         """Returns the first rows, aligned, with as many columns as fit, and a note about what was omitted."""
         shown, width = [], 0
         for name, values in self._columns.items():
-            cells = [name, *map(_cell, values[:MOST_PRINTED])]
+            cells = [name, *map(_cell, values[:MAX_PRINTED])]
             wide = max(map(len, cells))
             width += wide + 2
             if width > WIDEST and shown:
                 break
             shown.append([cell.rjust(wide) for cell in cells])
         lines = ["  ".join(row) for row in zip(*shown)]
-        if self.rows > MOST_PRINTED:
-            lines.append(f"and {self.rows - MOST_PRINTED} more rows")
+        if self.rows > MAX_PRINTED:
+            lines.append(f"and {self.rows - MAX_PRINTED} more rows")
         if left := list(self._columns)[len(shown) :]:
             lines += textwrap.wrap(f"and columns {', '.join(left)}", WIDEST)
         return "\n".join(lines)
@@ -168,23 +168,23 @@ class Table(Mapping[str, Column]):
         )
         rows = "".join(
             "<tr>" + "".join(f"<td>{html.escape(_cell(v))}</td>" for v in row) + "</tr>"
-            for row in zip(*(values[:MOST_PRINTED] for values in self._columns.values()))
+            for row in zip(*(values[:MAX_PRINTED] for values in self._columns.values()))
         )
-        more = (
-            f"<p>and {self.rows - MOST_PRINTED} more rows</p>" if self.rows > MOST_PRINTED else ""
-        )
+        more = f"<p>and {self.rows - MAX_PRINTED} more rows</p>" if self.rows > MAX_PRINTED else ""
         return f"<table><thead><tr>{heads}</tr></thead><tbody>{rows}</tbody></table>{more}"
 
 
 def joined(tables: Mapping[str, Table], column: str, name: str) -> Table:
     """Concatenates the rows of several tables. The first column holds the key of each table. If a table lacks a column,
     its rows have NaN in this column."""
-    names = list(dict.fromkeys(own for table in tables.values() for own in table))
+    names = list(dict.fromkeys(column_name for table in tables.values() for column_name in table))
     keys = [key for key, table in tables.items() for _ in range(len(table))]
     columns: dict[str, Column] = {column: np.array(keys, dtype=object)}
-    for own in names:
-        parts = [t[own] if own in t else np.full(len(t), np.nan) for t in tables.values()]
-        columns[own] = np.concatenate(parts)
+    for column_name in names:
+        parts = [
+            t[column_name] if column_name in t else np.full(len(t), np.nan) for t in tables.values()
+        ]
+        columns[column_name] = np.concatenate(parts)
     first = next(iter(tables.values()))
     return Table(columns, first.units, first.meanings, name)
 

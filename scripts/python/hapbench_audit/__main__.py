@@ -9,7 +9,7 @@ from hapbench_command import (
     answer,
     exit_status,
     leave,
-    say_error,
+    print_error,
     shell_line,
     stop_on_ctrl_c,
     table_text,
@@ -31,6 +31,8 @@ NOTES = [
     "net created energy (energy_mJ). If the log begins in contact, the energy stored there is "
     'subtracted, which needs a stiffness. "Without holding": the same if the force changes '
     "linearly between rows.",
+    "Motion: record several taps, presses to several depths at several speeds, and releases. A constant press shows no "
+    "stiffness.",
     "Contacts: from touch to release. The first 0.05 s are a landing, the rest is settled contact, as in `run`.",
     "Stiffness: regression of the force on position and velocity, along the normal of the "
     "surface, over delays of whole rows; the weighted median of the contacts. A number that the "
@@ -62,7 +64,7 @@ def command_line():
         "--device",
         "<device>",
         'print the stiffness as a multiple of the linear limit of this device: a preset ("hapbench '
-        'describe devices") or FILE.json',
+        'describe presets") or FILE.json',
     )
     line.texts(
         "--columns",
@@ -137,12 +139,12 @@ def run(options):
     below = "\n".join(below_table(audit))
     answer(options, f"{columns}\n\n{table}\n{below}\n\nresults in {out}", audit)
     for one in unmet:
-        say_error(one)
+        print_error(one)
     return DIFFERENT if unmet else None
 
 
 if __name__ == "__main__":
     stop_on_ctrl_c("audit")
-    asked_for = command_line().parse(sys.argv[1:])
-    doing = "" if asked_for.quiet else "auditing"
-    leave(exit_status("audit", doing, lambda: run(asked_for)))
+    requested = command_line().parse(sys.argv[1:])
+    doing = "" if requested.quiet else "auditing"
+    leave(exit_status("audit", doing, lambda: run(requested)))

@@ -133,8 +133,8 @@ def measured_lag(log, contacts):
     if log.measured is None or not contacts.in_contact.any():
         return None
     a, b = log.force - log.force.mean(axis=0), log.measured - log.measured.mean(axis=0)
-    most = min(200, len(a) // 4)
-    products = [float(np.sum(a[: len(a) - lag] * b[lag:])) for lag in range(most + 1)]
+    max_lag = min(200, len(a) // 4)
+    products = [float(np.sum(a[: len(a) - lag] * b[lag:])) for lag in range(max_lag + 1)]
     lag = int(np.argmax(products))
     return {
         "delay_s": lag * log.interval,

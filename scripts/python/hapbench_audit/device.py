@@ -2,9 +2,9 @@
 import json
 
 import numpy as np
-from hapbench_command import asked_of_program
+from hapbench_command import output_of_program
 
-MOST_DELAYS = 5  # largest number of delays for which the limit is computed
+MAX_DELAYS = 5  # largest number of delays for which the limit is computed
 
 
 def device_limit(device, interval, contact):
@@ -18,7 +18,7 @@ def device_limit(device, interval, contact):
         return None
     stiffness, loops = contact["stiffness_N_per_m"], contact["loops"]
     delays = sorted({delay for delay, _ in loops})
-    some = np.linspace(0, len(delays) - 1, min(len(delays), MOST_DELAYS)).round().astype(int)
+    some = np.linspace(0, len(delays) - 1, min(len(delays), MAX_DELAYS)).round().astype(int)
     chosen = [delays[i] for i in some.tolist()]
     answers = [
         loop_of(device, interval, stiffness, damping, delay)
@@ -72,7 +72,7 @@ def loop_of(device, interval, stiffness, damping, delay):
     """Returns the linear analysis of a device that renders a wall, computed by the program. Arguments: period
     `interval` [s], stiffness [N/m], damping [N s/m], and delay [s] in addition to the delay of the device.
     """
-    answer = asked_of_program(
+    answer = output_of_program(
         "knows devices and their linear limits",
         "audit",
         "--linear-loop",

@@ -5,7 +5,7 @@ import math
 from functools import lru_cache
 
 import numpy as np
-from hapbench_command import asked_of_program
+from hapbench_command import output_of_program
 
 from .contacts import runs_of
 from .force import CUTOFF
@@ -26,7 +26,7 @@ NOISE = 4.0
 def rules():
     """Returns the rules of the program by name. Each rule has a unit, a threshold, and a sentence `says` in which {}
     stands for the number of the rule."""
-    answer = asked_of_program("has the rules of the diagnosis", "describe", "diagnosis", "--json")
+    answer = output_of_program("has the rules of the diagnosis", "describe", "diagnosis", "--json")
     return {rule["rule"]: rule for rule in json.loads(answer)}
 
 
@@ -68,7 +68,7 @@ def findings_of(log, contacts, audit):
     vibrates = (vibration or 0.0) > HAS_BUZZ or (force["contacts_lost_per_s"] or 0.0) > HAMMERS
     ratio = device["ratio"] if device and vibrates else None
     if ratio is not None:
-        found.add("edge", ratio, against_edge(device), edge_text(audit))
+        found.add("edge", ratio, ratio_to_limit(device), limit_text(audit))
     found.add("buzz", vibration, against_buzz(audit, ratio), buzz_text(audit["buzz"]))
     found.add(
         "pop",
@@ -111,7 +111,7 @@ def buzz_text(buzz):
     )
 
 
-def edge_text(audit):
+def limit_text(audit):
     device = audit["device"]
     text = (
         f" of {device['device']} ({device['linear_limit_N_per_m']:.4g} N/m at {device['delay_samples']:.3g} samples of "
@@ -120,7 +120,7 @@ def edge_text(audit):
     return text if device["expected_frequency_Hz"] is None else f"{text}: {expected_text(audit)}"
 
 
-def against_edge(device):
+def ratio_to_limit(device):
     good = device["linear_limit_N_per_m"] / GAIN_MARGIN
     text = f"a stiffness of {good:.3g} N/m (half the limit), a higher rate"
     return (
@@ -191,8 +191,8 @@ def against_pop(log, contacts, audit):
         changed = np.diff(log.contacts) != 0.0
         if large.any():
             part = float(changed[large].mean())
-            said = f"the number of contacts changes in {100.0 * part:.0f} % of these steps"
-            return said + (
+            sentence = f"the number of contacts changes in {100.0 * part:.0f} % of these steps"
+            return sentence + (
                 ": forces that fade in and out with depth, or contacts that are kept from step to step"
                 if part > 0.5
                 else f": look at normals and depths of the contacts there (the tool moves by {1e3 * moved:.3g} mm "
@@ -213,9 +213,11 @@ def travel_share(log, contacts, row):
     """Returns the displacement along the force from the row before to `row`, as a fraction of the travel of all rows in
     contact."""
     rows = np.flatnonzero(contacts.in_contact)
-    place = log.position @ main_direction(log.force[rows])
-    travel = float(np.ptp(place[rows]))
-    return abs(float(place[row] - place[row - 1])) / travel if row > 0 and travel > 0.0 else 0.0
+    position = log.position @ main_direction(log.force[rows])
+    travel = float(np.ptp(position[rows]))
+    return (
+        abs(float(position[row] - position[row - 1])) / travel if row > 0 and travel > 0.0 else 0.0
+    )
 
 
 def share_of_largest(log, row):
@@ -286,16 +288,16 @@ def saturated_share(log, contacts, stiffness):
     if not len(rows):
         return None
     normal = np.array(stiffness["direction"]) if stiffness else main_direction(log.force[rows])
-    place, resolution = log.position @ normal, float(np.abs(normal) @ log.quantum_m)
+    position, resolution = log.position @ normal, float(np.abs(normal) @ log.quantum_m)
     # Smallest travel [m] of saturated rows. Over a shorter travel, the force of a spring changes by less than the
     # fraction 1 - AT_LIMIT of its range, or the position changes by at most two steps of its resolution.
-    least = max((1.0 - AT_LIMIT) * float(np.ptp(place[rows])), 2.0 * resolution)
+    threshold = max((1.0 - AT_LIMIT) * float(np.ptp(position[rows])), 2.0 * resolution)
     at = contacts.in_contact & (size >= AT_LIMIT * size.max())
     # A limit cuts off the peaks of the force, so that consecutive rows have the same force.
     flat = at[1:] & at[:-1] & (np.abs(np.diff(size)) <= 1e-6 * size.max())
     count = 0
     for first, after in runs_of(flat, np.zeros(len(flat) - 1, bool)).tolist():
-        if np.ptp(place[first : after + 1]) > least:
+        if np.ptp(position[first : after + 1]) > threshold:
             count += after - first + 1
     part = share(float(count), float(len(rows)))
     return part if count >= FLAT and part < CONSTANT else None

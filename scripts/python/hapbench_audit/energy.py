@@ -31,8 +31,8 @@ class Port:
         )
 
 
-def work(force, way):
-    return np.einsum("ij,ij->i", force, way)
+def work(force, displacement):
+    return np.einsum("ij,ij->i", force, displacement)
 
 
 def stored_at(log, contacts, row, spring):

@@ -36,16 +36,16 @@ def expectations(words, audit):
             fail(f"--expect: got {quoted(word)}; allowed: METRIC=MAX or METRIC=MIN:MAX")
         require_name("--expect: got", name, list(metrics))
         low, _, high = bound.rpartition(":")
-        least = _number(word, low) if low else -math.inf
-        most = _number(word, high)
+        minimum = _number(word, low) if low else -math.inf
+        maximum = _number(word, high)
         value = metrics[name]
         found.append(
             {
                 "metric": name,
                 "value": value,
-                "min": least if low else None,
-                "max": most,
-                "met": value is not None and least <= value <= most,
+                "min": minimum if low else None,
+                "max": maximum,
+                "met": value is not None and minimum <= value <= maximum,
             }
         )
     return found

@@ -8,18 +8,18 @@ from scipy.signal import sosfilt
 from .contacts import SETTLING
 
 CUTOFF = 30.0  # cutoff of the high-pass filter [Hz]; equals kVibrationCutoff of the program
-LEAST_SETTLED = 1.0 / CUTOFF  # shortest total time of settled contact with metrics [s]
+MIN_SETTLED = 1.0 / CUTOFF  # shortest total time of settled contact with metrics [s]
 STEP_SHARE = 0.1  # force steps above this fraction of the mean force are counted
-MOST_PEAKS = 3  # largest number of spectral peaks that are reported
+MAX_PEAKS = 3  # largest number of spectral peaks that are reported
 # Smallest amplitude of a peak, as a fraction of the amplitude of the strongest peak.
 SMALLEST_PEAK = 0.1
 LOWEST_PEAK = 10.0  # lowest frequency of a peak [Hz]; voluntary motion of a hand is slower
 # Relative tolerance of the frequencies that count as multiples of another frequency.
 HARMONIC = 0.02
-LEAST_PEAK = 0.01  # smallest amplitude of the strongest peak, as a fraction of the mean force
+MIN_PEAK = 0.01  # smallest amplitude of the strongest peak, as a fraction of the mean force
 SHORTEST_SPECTRUM = 64  # smallest number of rows of a spectrum
 # Smallest number of periods of an oscillation in a contact: two in its middle third.
-LEAST_PERIODS = 6.0
+MIN_PERIODS = 6.0
 # Smallest amplitude in the middle third of a contact, as a fraction of the amplitude in the whole contact.
 LASTING = 0.5
 FALSE_ALARM = 0.01  # probability that noise alone causes a peak in a log
@@ -70,7 +70,7 @@ def force_of(log, contacts):
     reverses = np.append(False, np.einsum("ij,ij->i", log.force[1:], log.force[:-1]) < 0.0)
     settled, landing = contacts.settled, contacts.landing
     settled_s = float(settled.sum() * interval)
-    enough = settled_s >= LEAST_SETTLED
+    enough = settled_s >= MIN_SETTLED
     mean = float(size[settled].mean()) if enough else None
     found = {
         "force_max_N": float(size.max()),
@@ -183,7 +183,7 @@ def peaks_of(log, contacts, spectrum, mean):
         return []
     frequency, amplitude, seconds = spectrum
     resolution = 4.0 / seconds  # width of a peak of the Hann window
-    above = frequency > max(LOWEST_PEAK, LEAST_PERIODS / seconds)
+    above = frequency > max(LOWEST_PEAK, MIN_PERIODS / seconds)
     if log.held_force is not None:
         # A held force repeats its spectrum around multiples of the loop's rate. Frequencies above half of this rate are
         # such copies.
@@ -198,8 +198,8 @@ def peaks_of(log, contacts, spectrum, mean):
     third = (after - first) // 3
     found = []
     for i in sorted(np.flatnonzero(top & above), key=lambda i: -amplitude[i]):
-        least = SMALLEST_PEAK * found[0]["amplitude_N"] if found else LEAST_PEAK * mean
-        if amplitude[i] < least or len(found) == MOST_PEAKS:
+        threshold = SMALLEST_PEAK * found[0]["amplitude_N"] if found else MIN_PEAK * mean
+        if amplitude[i] < threshold or len(found) == MAX_PEAKS:
             break
         near = np.abs(frequency - frequency[i]) < max(10.0 * resolution, 0.2 * frequency[i])
         is_peak = amplitude[i] > max(stands_out, 4.0) * np.median(amplitude[near])

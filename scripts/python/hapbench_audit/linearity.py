@@ -17,14 +17,14 @@ def linearity(motion, fit):
     stiffness."""
     keep = motion.known(fit.model.delay)
     before = motion.rows[keep] - fit.model.delay
-    place = motion.place[before]
+    position = motion.position[before]
     force = motion.force[keep] + fit.damping * motion.speeds[fit.model.kind][before]
-    middle = 0.5 * (place.min() + place.max())
+    middle = 0.5 * (position.min() + position.max())
     slopes = []
-    for half in (place < middle, place >= middle):
-        if half.sum() < FEWEST or np.ptp(place[half]) == 0.0:
+    for half in (position < middle, position >= middle):
+        if half.sum() < FEWEST or np.ptp(position[half]) == 0.0:
             return None
-        slopes.append(-np.polyfit(place[half] - middle, force[half], 1)[0])
+        slopes.append(-np.polyfit(position[half] - middle, force[half], 1)[0])
     # The force points out of the surface, so that the deeper half has the smaller positions.
     deep, shallow = slopes
     return float(deep / shallow) if shallow > 0.0 else None

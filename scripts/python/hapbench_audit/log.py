@@ -23,7 +23,7 @@ FASTEST = 5.0  # largest plausible speed of a hand [m/s]
 CLEAR = 0.25
 SEVERAL = 20  # number of time steps over which the mean interval is measured
 # Largest number of missing rows that are counted between two rows; equals the longest delay of a model [rows].
-MOST_MISSING = 50
+MAX_MISSING = 50
 FOLLOWED = 0.05  # smallest fraction of a time stamp's error by which the mean clock is corrected
 # Usual names of the first column of each quantity. Names are in lower case, without units and without any character
 # other than letters and digits.
@@ -86,8 +86,8 @@ class Log:
 
     @cached_property
     def counted(self):
-        """Row numbers that also count missing rows, but at most MOST_MISSING missing rows in each gap."""
-        return np.append(0, np.cumsum(1 + np.minimum(self.missing, MOST_MISSING)))
+        """Row numbers that also count missing rows, but at most MAX_MISSING missing rows in each gap."""
+        return np.append(0, np.cumsum(1 + np.minimum(self.missing, MAX_MISSING)))
 
     @cached_property
     def interval_error(self):
@@ -109,23 +109,23 @@ def layout_of(options):
     """Returns (options of an import; names of the columns that the user gave for quantities of EXTRA; force above which
     a row is in contact [N], or None)."""
     touches = [word for word in options.set if word.startswith(TOUCH)]
-    own = [word for word in options.columns if word.partition("=")[0] in EXTRA]
-    asked = SimpleNamespace(
+    extra = [word for word in options.columns if word.partition("=")[0] in EXTRA]
+    requested = SimpleNamespace(
         **{name: getattr(options, name) for name in ("preset", "scale", "decimal")},
         set=[word for word in options.set if word not in touches],
-        columns=[word for word in options.columns if word not in own],
+        columns=[word for word in options.columns if word not in extra],
         orientation=options.orientation,
         skip_bad_rows=options.skip_bad_rows,
         **dict.fromkeys(("format", "frame", "smooth", "rate")),
     )
     for word in options.columns:
         require_name("columns: got", word.partition("=")[0], ALL)
-    layout = options_of(asked)
+    layout = options_of(requested)
     if not any(word.startswith("max_speed") for word in options.set):
         layout.max_speed = float("inf")
     layout.held_rows = "keep"
     touch = touch_of(touches[-1]) if touches else None
-    return layout, dict(word.split("=", 1) for word in own if "=" in word), touch
+    return layout, dict(word.split("=", 1) for word in extra if "=" in word), touch
 
 
 def touch_of(word):
@@ -140,7 +140,7 @@ def log_of_table(table, columns, scale, force_by_tool, touch):
     """Returns the Log of a mapping from column names to arrays, such as a Table or a pandas.DataFrame. `columns` and
     `scale`: column and factor to SI units by quantity, like the options of the command line. `force_by_tool`: true if
     the forces act on the object. `touch`: Log.touch [N]."""
-    asked = SimpleNamespace(
+    requested = SimpleNamespace(
         log=None,
         columns=[f"{quantity}={column}" for quantity, column in columns.items()],
         scale=[f"{quantity}={factor!r}" for quantity, factor in scale.items()],
@@ -148,7 +148,7 @@ def log_of_table(table, columns, scale, force_by_tool, touch):
         skip_bad_rows=False,
         **dict.fromkeys(("preset", "decimal", "orientation")),
     )
-    layout, wanted, _ = layout_of(asked)
+    layout, wanted, _ = layout_of(requested)
     log = log_of(recording_of(table), layout, wanted)
     log.touch = touch
     return log
@@ -269,15 +269,15 @@ def missing_rows(steps):
 def of_mean_clock(steps):
     """Returns (number of missing rows, error [intervals]) of each step. Each step is measured from the mean clock of
     the earlier rows. `steps`: time steps in intervals."""
-    # `late`: last time stamp minus the mean clock, in intervals.
-    found, errors, late = [], [], 0.0
+    # `lag`: last time stamp minus the mean clock, in intervals.
+    found, errors, lag = [], [], 0.0
     for row, step in enumerate(steps):
-        rows = max(round(step + late), 1)
-        error = step + late - rows
+        rows = max(round(step + lag), 1)
+        error = step + lag - rows
         gain = max(1.0 / (row + 2.0), FOLLOWED)
         found.append(rows - 1)
         errors.append(error)
-        late = (1.0 - gain) * error
+        lag = (1.0 - gain) * error
     return np.array(found), np.array(errors)
 
 
@@ -424,14 +424,16 @@ def with_zeros(recording, count):
         zeros = [np.zeros(len(recording.rows))] * count
         arrays = [recording.rows[name] for name in recording.names] + zeros
         rows = np.rec.fromarrays(arrays, names=recording.names + added)
-        return Recording(recording.file, recording.names + added, rows, recording.places, "row")
+        return Recording(
+            recording.file, recording.names + added, rows, recording.row_numbers, "row"
+        )
     width = len(recording.names)
     rows = [row + [b"0"] * count if len(row) == width else row for row in recording.rows]
     return Recording(
         recording.file,
         recording.names + added,
         rows,
-        recording.places,
+        recording.row_numbers,
         recording.row_word,
         recording.notes,
         recording._decimal,
@@ -460,7 +462,7 @@ def extra_columns(names, quantity, word, axes):
     if axes == 1:
         return [column]
     if by_number:
-        if column + 3 > len(names.own()):
+        if column + 3 > len(names.in_file()):
             names.fail(quantity, f"takes columns {column + 1} ... {column + 3}")
         return [column, column + 1, column + 2]
     found = names.components(column, ("x", "y", "z"))

@@ -9,9 +9,9 @@ from scipy.fft import irfft, next_fast_len, rfft
 from scipy.signal import lfilter
 from scipy.stats import t as student
 
-from .log import MOST_MISSING
+from .log import MAX_MISSING
 
-MOST_DELAY = MOST_MISSING  # longest delay of a model [rows]
+MAX_DELAY = MAX_MISSING  # longest delay of a model [rows]
 FEWEST = 10  # smallest number of rows of a fit
 # Largest jitter, as a fraction of the interval, for which logged times and a constant time step give nearly the same
 # velocities.
@@ -23,7 +23,7 @@ EVEN = "even "  # prefix of the kinds of velocities that assume a constant time 
 # Prefix of the kinds of velocities in a control loop that is slower than the positions of the log.
 LOOP = "loop "
 # Rows before the fitted rows that are needed: the longest delay, and the decay of a filter's initial state.
-BEFORE = MOST_DELAY + 10 * max(LOW_PASSES)
+BEFORE = MAX_DELAY + 10 * max(LOW_PASSES)
 BLOCKS = 10  # number of blocks of the jackknife
 # Largest number of values per column that are processed together, so that they fit in the processor's cache.
 AT_ONCE = 20_000
@@ -69,11 +69,11 @@ class Motion:
         part = slice(self.first, min(int(rows[-1]) + 2, len(log.time)))
         # Row numbers that also count missing rows, so that a delay of a number of rows is always the same time.
         counted = log.counted[part] - log.counted[part.start]
-        place, at = log.position[part] @ direction, np.arange(counted[-1] + 1)
+        position, at = log.position[part] @ direction, np.arange(counted[-1] + 1)
         last = np.searchsorted(counted, at, side="right") - 1
-        self.place = np.interp(at, counted, place)
+        self.position = np.interp(at, counted, position)
         self.speeds = {
-            kind: speed[last] for kind, speed in speeds(log, part, place, direction).items()
+            kind: speed[last] for kind, speed in speeds(log, part, position, direction).items()
         }
         self.force = log.force[rows] @ direction
         self.rows = counted[rows - self.first]
@@ -83,7 +83,7 @@ class Motion:
         self.fits = {}  # cache of fit_of(): Fit by (Model, with_sign)
         # With a delay longer than half of the contact, most forces would depend on positions before the contact.
         half = int(self.rows[-1] - self.rows[0] + 1) // 2
-        self.most = min(MOST_DELAY, half, max(int(self.rows[-1]) - FEWEST, 0))
+        self.max_delay = min(MAX_DELAY, half, max(int(self.rows[-1]) - FEWEST, 0))
         self.interval = log.interval * (1.0 if log.held is None else log.held.rows)
         self.resolution = float(np.abs(direction) @ log.quantum_m)
         within = slice(int(self.rows[0]), int(self.rows[-1]) + 1)
@@ -106,11 +106,13 @@ class Motion:
             # The time constant of the engine differs by at most half the distance to the next modelled time constant.
             # The fit of position and velocity absorbs most of this error; only the remaining error counts.
             kinds = (f"{LOW_PASS}{constant // 2}" if constant > 1 else "backward", kind)
-            near, own = (self.speeds[one][within] for one in kinds)
-            place = self.place[within]
-            columns = np.column_stack([np.ones(len(own)), place - place.mean(), own])
+            near, modelled = (self.speeds[one][within] for one in kinds)
+            position = self.position[within]
+            columns = np.column_stack(
+                [np.ones(len(modelled)), position - position.mean(), modelled]
+            )
             columns /= np.maximum(np.linalg.norm(columns, axis=0), 1e-300)
-            error = 0.5 * (own - near)
+            error = 0.5 * (modelled - near)
             error -= columns @ np.linalg.lstsq(columns, error, rcond=1e-9)[0]
             found += np.mean(error**2)
         return float(found)
@@ -137,7 +139,7 @@ class Motion:
         """Returns the delays [rows] of the models with the velocity `kind`. A forward difference represents an implicit
         step and has the delay 0 only. With a delay of d rows, its velocity would equal the velocity of a backward
         difference with a delay of d - 1 rows."""
-        return np.arange(1 if kind.endswith("forward") else self.most + 1)
+        return np.arange(1 if kind.endswith("forward") else self.max_delay + 1)
 
     def models(self):
         """Returns all models: each velocity with each of its delays."""
@@ -148,7 +150,7 @@ class Motion:
     def usable(self):
         """Returns True for rows whose delayed row exists for every delay. The first row is never a delayed row, because
         its velocity would need an earlier row."""
-        return self.rows > self.most
+        return self.rows > self.max_delay
 
     def known(self, delay):
         """Returns True for usable rows whose delayed row is not affected by missing rows."""
@@ -159,7 +161,7 @@ class Motion:
         delayed position, the delayed velocity, and `with_sign` the sign of the delayed velocity."""
         keep = self.known(model.delay)
         before = self.rows[keep] - model.delay
-        x, v, f = self.place[before], self.speeds[model.kind][before], self.force[keep]
+        x, v, f = self.position[before], self.speeds[model.kind][before], self.force[keep]
         columns = [x - x.mean(), v - v.mean()]
         if with_sign:
             moving = np.sign(np.where(np.abs(v) > 1e-3 * np.abs(v).max(), v, 0.0))
@@ -179,36 +181,36 @@ def low_pass_of(kind):
     return int(kind.removeprefix(LOW_PASS)) if kind.startswith(LOW_PASS) else 0
 
 
-def speeds(log, part, place, direction):
+def speeds(log, part, position, direction):
     """Returns the velocities [m/s] along the direction in the rows `part`, by kind: the method by which an engine may
-    compute them. `place`: positions of these rows along the direction [m]."""
+    compute them. `position`: positions of these rows along the direction [m]."""
     time = log.time[part]
-    fresh = np.arange(len(place)) if log.held is None else np.flatnonzero(log.held.fresh[part])
+    fresh = np.arange(len(position)) if log.held is None else np.flatnonzero(log.held.fresh[part])
     if len(fresh) < 3:
         return {}
     # Each new sample keeps its velocity until the next new sample.
-    sample = np.maximum(np.searchsorted(fresh, np.arange(len(place)), side="right") - 1, 0)
+    sample = np.maximum(np.searchsorted(fresh, np.arange(len(position)), side="right") - 1, 0)
     found = {} if log.velocity is None else {"logged": log.velocity[part] @ direction}
     steps = np.diff(time[fresh])
-    found |= differences(np.diff(place[fresh]) / steps, sample, "")
+    found |= differences(np.diff(position[fresh]) / steps, sample, "")
     counted = np.append(0, np.cumsum(1 + log.missing))[part]
     even = np.diff(counted[fresh]) * log.interval
     if np.std(steps - even) > JITTER * log.interval:
         # The engine may assume a constant step, even if the clock of the log has jitter.
-        found |= differences(np.diff(place[fresh]) / even, sample, EVEN)
+        found |= differences(np.diff(position[fresh]) / even, sample, EVEN)
     if log.held is None and log.held_force is not None:
         # The engine reads positions only in the rows with a new force.
-        found |= loop_speeds(log, part, place)
+        found |= loop_speeds(log, part, position)
     return found
 
 
-def loop_speeds(log, part, place):
+def loop_speeds(log, part, position):
     """Returns velocities [m/s] by kind, computed from the positions of the rows in which the force is new."""
     fresh = np.flatnonzero(log.held_force.fresh[part])
     if len(fresh) < 3:
         return {}
-    sample = np.maximum(np.searchsorted(fresh, np.arange(len(place)), side="right") - 1, 0)
-    return differences(np.diff(place[fresh]) / np.diff(log.time[part][fresh]), sample, LOOP)
+    sample = np.maximum(np.searchsorted(fresh, np.arange(len(position)), side="right") - 1, 0)
+    return differences(np.diff(position[fresh]) / np.diff(log.time[part][fresh]), sample, LOOP)
 
 
 def differences(rates, sample, clock):
@@ -273,18 +275,18 @@ def residuals_of(motion):
         return {}
     found = {}
     at_once = max(AT_ONCE // len(rows), 1)
-    for first in range(0, motion.most + 1, at_once):
-        delays = np.arange(first, min(first + at_once, motion.most + 1))
+    for first in range(0, motion.max_delay + 1, at_once):
+        delays = np.arange(first, min(first + at_once, motion.max_delay + 1))
         before = rows - delays[:, None]
         known = ~motion.unknown[before]
-        place = centred(motion.place[before], known)
+        position = centred(motion.position[before], known)
         pushed = centred(np.broadcast_to(force, before.shape), known)
         for kind, speed in motion.speeds.items():
             some = slice(np.isin(delays, motion.delays_of(kind)).sum())
             if delays[some].size:
                 across = centred(speed[before[some]], known[some])
                 found |= residuals_of_kind(
-                    motion, kind, delays[some], place[some], across, pushed[some], known[some]
+                    motion, kind, delays[some], position[some], across, pushed[some], known[some]
                 )
     return found
 
@@ -301,9 +303,10 @@ def centred(values, known):
     return (values - (values * known).sum(axis=1, keepdims=True) / count) * known
 
 
-def residuals_of_kind(motion, kind, delays, place, speed, force, known):
-    """Returns the Residual by Model of the velocity `kind` for some delays, by Gram-Schmidt orthogonalization. `place`,
-    `speed`, `force`: centred values, with one array row per delay; 0 where `known` is false."""
+def residuals_of_kind(motion, kind, delays, position, speed, force, known):
+    """Returns the Residual by Model of the velocity `kind` for some delays, by Gram-Schmidt orthogonalization.
+    `position`, `speed`, `force`: centred values, with one array row per delay; 0 where `known` is false.
+    """
 
     def dot(a, b):
         return np.einsum("ij,ij->i", a, b)
@@ -312,8 +315,8 @@ def residuals_of_kind(motion, kind, delays, place, speed, force, known):
         return np.where(size > 0.0, size, 1.0)
 
     count, total = known.sum(axis=1), dot(force, force)
-    size, length = np.sqrt(dot(place, place)), np.sqrt(dot(speed, speed))
-    along = place / by(size)[:, None]
+    size, length = np.sqrt(dot(position, position)), np.sqrt(dot(speed, speed))
+    along = position / by(size)[:, None]
     shared = dot(speed, along)
     across = speed - shared[:, None] * along
     independent = np.sqrt(dot(across, across))

@@ -11,7 +11,7 @@ FEWEST_COUNTS = 10  # smallest travel, in steps of the position's resolution
 # Largest unexplained fraction of the variance for which the model is the exact law of the engine.
 EXACTLY = 1e-9
 TILTS = 8  # largest number of iterations of the search for the normal
-MOST_ROWS = 500  # largest number of rows of the search
+MAX_ROWS = 500  # largest number of rows of the search
 SEARCHED = ("logged", "backward", "central", "low-pass 4")  # kinds of velocities in the search
 # Smallest number of rows with a new force that is above 0 and below the largest force.
 FEWEST_NEW = 15
@@ -19,12 +19,12 @@ BLOCKS = 10  # number of residuals that count as independent
 AS_GOOD = 0.5  # a normal is better if it reduces the unexplained fraction below this factor
 # Fraction of the median speed below which the direction of sliding is uncertain.
 SLOW = 0.2
-MOST_FRICTION = 1.0  # largest coefficient of friction
+MAX_FRICTION = 1.0  # largest coefficient of friction
 # Largest error of a normal, as the tangent of an angle. Such an error changes a stiffness by 1 - cos = 0.1 %.
 KNOWN_TILT = 0.05
 # Largest fraction of the sum of squared tangential forces that friction leaves unexplained.
 EXPLAINED_REST = 0.25
-MOST_EVALUATIONS = 50  # largest number of evaluations in the search by friction
+MAX_EVALUATIONS = 50  # largest number of evaluations in the search by friction
 
 
 def main_direction(force):
@@ -82,7 +82,7 @@ def normal_by_friction(log, rows, direction):
         return None
     speed = np.linalg.norm(velocity, axis=1)
     chosen = np.flatnonzero(speed > np.median(speed) * SLOW)
-    chosen = chosen[np.linspace(0, len(chosen) - 1, min(len(chosen), MOST_ROWS)).astype(int)]
+    chosen = chosen[np.linspace(0, len(chosen) - 1, min(len(chosen), MAX_ROWS)).astype(int)]
     force, velocity = log.force[rows][chosen], velocity[chosen]
     force = force / math.sqrt(np.mean(np.sum(force**2, axis=1)))
     sides = np.linalg.svd(direction[None])[2][1:]
@@ -99,12 +99,12 @@ def normal_by_friction(log, rows, direction):
         sideways = force - np.outer(along, normal)
         return (sideways + values[2] * along[:, None] * sliding).ravel()
 
-    found = least_squares(rest, [0.0, 0.0, 0.1], max_nfev=MOST_EVALUATIONS)
+    found = least_squares(rest, [0.0, 0.0, 0.1], max_nfev=MAX_EVALUATIONS)
     # Residuals of neighbouring rows are correlated, so that only BLOCKS residuals count as independent.
     variance = 2.0 * found.cost / max(BLOCKS - 3, 1)
     error = np.sqrt(variance * np.diag(np.linalg.pinv(found.jac.T @ found.jac)))[:2].max()
     before = np.sum((force - np.outer(force @ direction, direction)) ** 2)
-    is_found = 0.0 <= found.x[2] <= MOST_FRICTION and error <= KNOWN_TILT
+    is_found = 0.0 <= found.x[2] <= MAX_FRICTION and error <= KNOWN_TILT
     is_friction = 2.0 * found.cost < EXPLAINED_REST * before
     return normal_at(found.x[:2]) if is_found and is_friction else None
 
@@ -115,7 +115,7 @@ def sliding_velocity(log, rows):
     """
     if log.velocity is not None:
         return log.velocity[rows]
-    position, most = log.position, len(rows) // 8
+    position, longest = log.position, len(rows) // 8
     half = 1 if log.held is None else max(round(log.held.rows), 1)
     while True:
         first = np.maximum(rows - half, 0)
@@ -125,7 +125,7 @@ def sliding_velocity(log, rows):
         if typical > FEWEST_COUNTS * float(log.quantum_m.max()) and typical > 0.0:
             return moved / (log.time[last] - log.time[first])[:, None]
         half *= 2
-        if half > most:
+        if half > longest:
             return None
 
 
@@ -135,7 +135,7 @@ def gradient_of(log, rows, normal, space, model):
     the fit; None searches the best Model."""
     keep = space[0].usable()
     force = (log.force[rows] @ normal)[keep]
-    some = np.linspace(0, keep.sum() - 1, min(keep.sum(), MOST_ROWS)).astype(int)
+    some = np.linspace(0, keep.sum() - 1, min(keep.sum(), MAX_ROWS)).astype(int)
     force = force[some] - force[some].mean()
     moving = [
         i for i in range(3) if np.ptp(log.position[rows, i]) > FEWEST_COUNTS * log.quantum_m[i]
@@ -146,7 +146,7 @@ def gradient_of(log, rows, normal, space, model):
     tried = [one for one in space[0].models() if one.kind in SEARCHED] if model is None else [model]
     for one in tried:
         before = space[0].rows[keep][some] - one.delay
-        parts = [part for i in moving for part in (space[i].place, space[i].speeds[one.kind])]
+        parts = [part for i in moving for part in (space[i].position, space[i].speeds[one.kind])]
         columns = np.column_stack([part[before] - part[before].mean() for part in parts])
         sizes = np.maximum(np.linalg.norm(columns, axis=0), 1e-300)
         slopes = np.linalg.lstsq(columns / sizes, force, rcond=1e-6)[0]

@@ -10,7 +10,7 @@ from hapbench_report.page import whole_page
 from .picture import colours_of
 from .text import table_rows
 
-MOST_CONTACTS = 200  # largest number of contacts in the table of the page; audit.json has all
+MAX_CONTACTS = 200  # largest number of contacts in the table of the page; audit.json has all
 
 
 def page_of(log, audit, drawing, line):
@@ -80,7 +80,7 @@ def curves(drawing):
 
 def contacts_table(audit):
     rows = []
-    for one in audit["contacts"][:MOST_CONTACTS]:
+    for one in audit["contacts"][:MAX_CONTACTS]:
         spring = one["spring"] or {}
         rows.append(
             [

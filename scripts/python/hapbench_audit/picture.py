@@ -6,8 +6,8 @@ from hapbench_style import SETTINGS, curve, lettered, panels, picture, plt
 from .energy import Port
 
 SPANS = 1200  # number of intervals of a curve; each shows its smallest and its largest value
-MOST_POINTS = 4000  # largest number of points of force against position
-MOST_SHADED = 200  # largest number of shaded contacts
+MAX_POINTS = 4000  # largest number of points of force against position
+MAX_SHADED = 200  # largest number of shaded contacts
 SMALL = 5e-5  # travel below which positions are drawn in micrometres [m]
 
 
@@ -36,7 +36,7 @@ class Drawing:
         size = np.linalg.norm(self.log.force, axis=1)
         ax.plot(*curve(self.time, size, size, SPANS), color=colours[0], lw=1.0)
         ends = np.minimum(self.contacts.runs, len(self.time) - 1)
-        for first, after in ends[:MOST_SHADED].tolist():
+        for first, after in ends[:MAX_SHADED].tolist():
             ax.axvspan(self.time[first], self.time[after], color=colours[1], alpha=0.12, lw=0)
         at = self.audit["metrics"]["time_of_largest_step_s"]
         row = int(np.argmin(np.abs(self.time - at)))
@@ -73,13 +73,13 @@ class Drawing:
         is_used = (log.time >= spring["start_s"]) & (log.time <= spring["end_s"])
         rows = np.flatnonzero(is_used & self.contacts.in_contact)
         delay = spring["delay_rows"] or 0
-        rows = rows[delay :: max(1, len(rows) // MOST_POINTS)]
-        place = log.position[rows - delay] @ direction
-        unit, factor = ("um", 1e6) if np.ptp(place) < SMALL else ("mm", 1e3)
-        place, along = factor * place, log.force[rows] @ direction
-        ax.plot(place, along, ".", ms=1.5, color=colours[0])
-        x = np.array([place.min(), place.max()])
-        line = along.mean() - spring["stiffness_N_per_m"] / factor * (x - place.mean())
+        rows = rows[delay :: max(1, len(rows) // MAX_POINTS)]
+        position = log.position[rows - delay] @ direction
+        unit, factor = ("um", 1e6) if np.ptp(position) < SMALL else ("mm", 1e3)
+        position, along = factor * position, log.force[rows] @ direction
+        ax.plot(position, along, ".", ms=1.5, color=colours[0])
+        x = np.array([position.min(), position.max()])
+        line = along.mean() - spring["stiffness_N_per_m"] / factor * (x - position.mean())
         low, high = along.min(), along.max()
         ax.plot(x, line, color=colours[1], ls="--", lw=1.0)
         ax.set(

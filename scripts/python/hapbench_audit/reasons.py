@@ -2,7 +2,7 @@
 import numpy as np
 
 EXTREMES = 10.0  # standard deviations between the extremes of a million normal errors
-LEAST_CHANGE = 0.01  # smallest change of the force, as a fraction of the largest force
+MIN_CHANGE = 0.01  # smallest change of the force, as a fraction of the largest force
 
 
 def no_travel_text(travel, resolution, force, noise):
@@ -15,11 +15,11 @@ def no_travel_text(travel, resolution, force, noise):
     text = f"the position along the force {moves}"
     size = np.linalg.norm(force, axis=1)
     change = float(np.ptp(size)) - EXTREMES * noise
-    if change <= LEAST_CHANGE * float(size.max()):
+    if change <= MIN_CHANGE * float(size.max()):
         return text
     text = f"{text}, and the force changes by {change:.3g} N"
-    least = change / max(travel + resolution, 1e-12)
-    return f"{text}, as in a rigid contact (more than {least:.2g} N/m)"
+    bound = change / max(travel + resolution, 1e-12)
+    return f"{text}, as in a rigid contact (more than {bound:.2g} N/m)"
 
 
 def why_unknown(best, stiffness, delays, interval):

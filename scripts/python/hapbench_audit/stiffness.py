@@ -33,12 +33,12 @@ UNLIKELY = 5.0
 # Relative change of a coefficient that the sampling of the motion may cause: (2 pi f T)^2 / 6 for a motion of f = 17 Hz
 # at the sampling period T = 1 ms.
 SAMPLED = 2e-3
-MOST_TRIED = 60  # largest number of models in the search for a model without negative damping
+MAX_TRIED = 60  # largest number of models in the search for a model without negative damping
 CERTAIN = 20.0  # largest log-likelihood difference that one contact contributes
 # Relative difference of mean squares that does not count, because the residuals are not white noise.
 SIMILAR = 0.1
 # Largest factor above the smallest mean square that the sampling of a velocity can explain.
-MOST_EXCUSED = 2.0
+MAX_EXCUSED = 2.0
 NEGLIGIBLE = 1e-12  # fraction of the variance that rounding may leave unexplained
 # Largest unexplained fraction of a well explained contact, relative to the fraction of a typical contact.
 TYPICAL = 10.0
@@ -58,7 +58,7 @@ class Evidence:
     dampings: dict = field(default_factory=dict)  # least-squares damping by Model [N s/m]
     # Fraction of the best model's squared residuals that is not white noise.
     systematic: float = 0.0
-    place: np.ndarray | None = None  # positions of the rows along the direction [m]
+    position: np.ndarray | None = None  # positions of the rows along the direction [m]
     resolution: float = 0.0  # resolution of the position along the direction [m]
     rows: np.ndarray | None = None  # numbers of the rows in the log
     # Motion along another normal that explains the force about as well, or None.
@@ -118,8 +118,8 @@ def evidence_of_rows(log, rows, given=None):
     sideways = np.linalg.norm(force - np.outer(force @ direction, direction)) / np.linalg.norm(
         force
     )
-    place = log.position[rows] @ direction
-    resolution, travel = float(np.abs(direction) @ log.quantum_m), float(np.ptp(place))
+    position = log.position[rows] @ direction
+    resolution, travel = float(np.abs(direction) @ log.quantum_m), float(np.ptp(position))
     # The noise of the force is the part that neither the model nor neighbouring rows explain. 1.4826 times the median
     # absolute value is the standard deviation of normal errors. Second differences of white noise have 6 times its
     # variance.
@@ -161,7 +161,7 @@ def evidence_of_rows(log, rows, given=None):
         likelihoods(motion, known, best),
         {model: one.damping for model, one in known.items()},
         systematic_share(motion, rest),
-        place,
+        position,
         resolution,
         rows,
         other,
@@ -175,17 +175,17 @@ def likelihoods(motion, found, best):
     although its sum of squares may be larger. An engine that renders the rounded positions themselves leaves smaller
     residuals than rounding would: `share` is the measured fraction of the expected residuals.
     """
-    least = found[best]
-    floor = NEGLIGIBLE * least.total
-    share = min(1.0, least.mean_square / max(least.rounding + least.sampling, 1e-300))
+    smallest = found[best]
+    floor = NEGLIGIBLE * smallest.total
+    share = min(1.0, smallest.mean_square / max(smallest.rounding + smallest.sampling, 1e-300))
     independent = fit_of(motion, best).independent
 
     def below(one):
         # The effect of rounding is known exactly. The error of a sampled velocity is known only roughly, so that its
-        # effect is limited to MOST_EXCUSED.
-        usual = least.mean_square + share * (one.sampling - least.sampling)
-        usual = min(max(usual, least.mean_square), MOST_EXCUSED * least.mean_square)
-        usual += share * max(one.rounding - least.rounding, 0.0) + floor
+        # effect is limited to MAX_EXCUSED.
+        usual = smallest.mean_square + share * (one.sampling - smallest.sampling)
+        usual = min(max(usual, smallest.mean_square), MAX_EXCUSED * smallest.mean_square)
+        usual += share * max(one.rounding - smallest.rounding, 0.0) + floor
         return max(math.log((one.mean_square + floor) / (1.0 + SIMILAR) / usual), 0.0)
 
     return {model: 0.5 * independent * below(one) for model, one in found.items()}
@@ -229,15 +229,15 @@ def as_good(log, evidences):
 
     scores = {model: score(model) for model in models}
     order = sorted(models, key=lambda model: (scores[model], model))
-    least = scores[order[0]]
-    found = [model for model in order if scores[model] <= least + UNLIKELY]
-    calm = [model for model in found if not is_negative(log, evidences, model)]
-    if calm:
-        return calm
+    lowest = scores[order[0]]
+    found = [model for model in order if scores[model] <= lowest + UNLIKELY]
+    non_negative = [model for model in found if not is_negative(log, evidences, model)]
+    if non_negative:
+        return non_negative
     # All models in `found` have negative damping. If no model fits well, this can be wrong, so that the best model
     # without negative damping is added.
-    near = [m for m in order if scores[m] <= least + 0.5 * CERTAIN * len(evidences)]
-    best = next((m for m in near[:MOST_TRIED] if not is_negative(log, evidences, m)), None)
+    near = [m for m in order if scores[m] <= lowest + 0.5 * CERTAIN * len(evidences)]
+    best = next((m for m in near[:MAX_TRIED] if not is_negative(log, evidences, m)), None)
     return found if best is None else [*found, best]
 
 
@@ -440,7 +440,7 @@ def noise_share(evidence, fit, interval):
 
 def stiffness_half(evidence, fit):
     # Rounding of the position reduces a slope by the ratio of the rounding's variance to the position's variance.
-    shrink = evidence.resolution**2 / 12.0 / max(float(np.var(evidence.place)), 1e-300)
+    shrink = evidence.resolution**2 / 12.0 / max(float(np.var(evidence.position)), 1e-300)
     return fit.halves[0] + (1e-6 + shrink) * abs(fit.stiffness)
 
 

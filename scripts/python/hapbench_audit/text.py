@@ -49,8 +49,8 @@ def clock_rows(clock):
     for what in ("position", "force"):
         if clock[f"rows_per_{what}"] > 1.0:
             rows.append((f"held {what}", f"each in {clock[f'rows_per_{what}']:.4g} rows"))
-    place, force = clock["position_resolution_m"], clock["force_resolution_N"]
-    shown = [f"{1e6 * place:.3g} um" if place else "position to all digits"]
+    position, force = clock["position_resolution_m"], clock["force_resolution_N"]
+    shown = [f"{1e6 * position:.3g} um" if position else "position to all digits"]
     shown.append(f"{force:.3g} N" if force else "force to all digits")
     return [*rows, ("resolution", ", ".join(shown))]
 

@@ -6,7 +6,7 @@ import sys
 import tempfile
 from pathlib import Path
 
-from hapbench_command import FAILED, SUCCESS, Arguments, exit_status, say_error, write
+from hapbench_command import FAILED, SUCCESS, Arguments, exit_status, print_error, write
 
 from .manuals import (
     MAKERS,
@@ -98,7 +98,7 @@ def run(chosen):
                 write(manual.file, text)
                 print(f"renewed {name}")
     if stale:
-        say_error("the manuals are not current; scripts/docs renews them")
+        print_error("the manuals are not current; scripts/docs renews them")
     return FAILED if stale else SUCCESS
 
 

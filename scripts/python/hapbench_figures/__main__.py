@@ -10,7 +10,7 @@ from pathlib import Path
 import hapbench_style as style
 from hapbench.errors import InputError, ResultError
 from hapbench.results import Files, MissingResult, read_json
-from hapbench_command import BAD_INPUT, SUCCESS, Arguments, exit_status, say_error, write
+from hapbench_command import BAD_INPUT, SUCCESS, Arguments, exit_status, print_error, write
 
 from .scene import LEDGER
 
@@ -25,7 +25,8 @@ PAGE = """# Stored figures
 *Reference.* This page shows every figure of the thesis that a simulation can draw, and some figures of this project.
 `scripts/figures RESULTS --out DIR --record results/reference/figures` draws them from the results of
 `scripts/reproduce`. *Data: ours* marks numbers that hapbench computed, *published* marks numbers of the thesis. Numbers
-such as 3.2 and C.4.2 are sections of the thesis. *Differs* states how a figure differs from the thesis's figure, and why.
+such as 3.2 and C.4.2 are sections of the thesis. *Differs* states how a figure differs from the thesis's figure, and
+why.
 """
 
 
@@ -223,7 +224,7 @@ def run(chosen):
             file=sys.stderr,
         )
     for line in bad:
-        say_error(line)
+        print_error(line)
     print(f"{len(entries)} figures in {directory}, {time.monotonic() - started:.0f} s")
     return BAD_INPUT if bad else SUCCESS if entries else NOTHING_DRAWN
 

@@ -158,5 +158,5 @@ def corner(results):
     axes[0, 2].set(title="change in one step", ylabel="|Δ model force| [N]")
     style.plt.setp(axes[0], xlabel="tip's way towards the wall [mm]")
     axes[0, 1].legend(loc="upper left", handlelength=1.5, fontsize=6.5, borderaxespad=0.1)
-    said = ", and also with continuous normal projection (brown), whose curve nearly covers it"
-    return style.lettered(figure, axes[0]), {"continuous": said if ours else ""}
+    remark = ", and also with continuous normal projection (brown), whose curve nearly covers it"
+    return style.lettered(figure, axes[0]), {"continuous": remark if ours else ""}

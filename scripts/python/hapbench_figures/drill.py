@@ -17,13 +17,13 @@ def samples(results):
     the compared tilts are included. Lengths in millimetres."""
     rows = results.table(f"{RUN}/ideal_trajectory.csv")
     range_ = scene.PUBLISHED["J1.tilt"]
-    own = (
+    selected = (
         (rows["time_s"] > SETTLED)
         & (rows["tilt_rad"] >= range_["at_least"])
         & (rows["tilt_rad"] <= range_["at_most"])
     )
     firm = rows["hand_force_N"] >= scene.published("J1.split")
-    groups = [own & ~firm, own & firm]
+    groups = [selected & ~firm, selected & firm]
     if not all(group.any() for group in groups):
         raise MissingResult(f"no row at the compared tilts in {RUN}")
     return [
@@ -75,7 +75,7 @@ def trajectory(results):
     draw_block(section, environment)
     bottom = 1e3 * environment["hole_depth_m"]
     drawn, errors = samples(results), []
-    for rows, name, own in zip(drawn, ("below 2 N", "from 2 N on"), style.SERIES):
+    for rows, name, series in zip(drawn, ("below 2 N", "from 2 N on"), style.SERIES):
         errors.append(
             f"{name} {np.mean(rows['height_m'] - rows['ideal_height_m']):.2f}, "
             f"{np.abs(rows['lateral_m'] - rows['ideal_lateral_m']).max():.2f} and "
@@ -84,8 +84,8 @@ def trajectory(results):
         pick = slice(None, None, max(1, -(-len(rows["tilt_rad"]) // MARKS)))
         thin = {key: column[pick] for key, column in rows.items()}
         look = {
-            "color": own.colour,
-            "marker": own.marker,
+            "color": series.colour,
+            "marker": series.marker,
             "ls": "none",
             "ms": 2.3,
             "mec": "none",

@@ -25,11 +25,11 @@ DP, HS = "original_averaging", "shaped_stiffness"
 METHODS = ((DP, "DP"), (HS, "HS"))
 
 
-def subject_means(records, place, column):
+def subject_means(records, target, column):
     """Returns the mean of each subject over its targets at a position, if any value was measured."""
-    own = [row for row in records if row["place"] == str(place)]
-    subjects = numbers(own, "subject")
-    values = numbers(own, column)
+    selected = [row for row in records if row["place"] == str(target)]
+    subjects = numbers(selected, "subject")
+    values = numbers(selected, column)
     with warnings.catch_warnings():
         warnings.simplefilter(
             "ignore", RuntimeWarning
@@ -88,11 +88,11 @@ def questionnaires(results):
     return style.lettered(figure, axes[0]), {}
 
 
-def draw_measure(ax, tables, place, claim, measure):
+def draw_measure(ax, tables, target, claim, measure):
     name, column, _, scale = measure
     both = []
     for x, (method, _) in enumerate(METHODS):
-        values = subject_means(tables[method], place, column)
+        values = subject_means(tables[method], target, column)
         both.append(values)
         finite = scale * values[np.isfinite(values)]
         look = style.look(method)
@@ -138,9 +138,9 @@ def experiment(results, task):
         for method, _ in METHODS
     }
     figure, axes = style.panels(2, 4, 5.0, sharex=True, sharey="col")
-    for row, (place, claim, title) in zip(axes, TARGETS[task]):
+    for row, (target, claim, title) in zip(axes, TARGETS[task]):
         for ax, measure in zip(row, MEASURES):
-            draw_measure(ax, tables, place, claim, measure)
+            draw_measure(ax, tables, target, claim, measure)
         row[0].set_ylabel(title)
     for ax, measure in zip(axes[0], MEASURES):
         ax.set_title(f"{measure[2]}\n \n ")  # two blank lines leave room for the test results
@@ -161,22 +161,22 @@ CHECKED = (
 )
 
 
-def recorded(results, task, place, method):
+def recorded(results, task, target, method):
     """Returns the success rate at a target position in the recorded runs: the fraction of the targets that the subjects
     removed, over all subjects. In these runs the task compares the force of every step with the threshold, without
     low-pass filter and grace period."""
     rows = results.records(f"thesis/{task}_peg_in_hole_{method}/targets.csv")
-    return numbers([row for row in rows if row["place"] == str(place)], "removed").mean()
+    return numbers([row for row in rows if row["place"] == str(target)], "removed").mean()
 
 
-def checked(results, task, place):
+def checked(results, task, target):
     """Yields (cutoff [Hz] or None, grace period [s], success rate) of the original algorithm for each setting of the
     low-pass filter and of the grace period in the sweep."""
     for row in results.records("checked_force/sweep.csv"):
         if row["scenario"] == f"{task}_peg_in_hole_{DP}":
             threshold = json.loads(row["hand.task.threshold"])
             yield threshold["cutoff_Hz"], threshold["grace_s"], float(
-                row[f"targets.{place}.success_rate.mean"]
+                row[f"targets.{target}.success_rate.mean"]
             )
 
 
@@ -184,10 +184,10 @@ def threshold(results):
     """Draws the success rate of the original algorithm over the grace period, with and without a low-pass filter of the
     checked force, beside the success rate of stiffness shaping."""
     figure, axes = style.panels(1, 4, 2.7, sharey=True)
-    said = []
-    for ax, (task, place, claim, title) in zip(axes[0], CHECKED):
-        every = recorded(results, task, place, DP)
-        others = list(checked(results, task, place))
+    texts = []
+    for ax, (task, target, claim, title) in zip(axes[0], CHECKED):
+        every = recorded(results, task, target, DP)
+        others = list(checked(results, task, target))
         graces = [(0.0, every)] + sorted(
             (1e3 * grace, success) for cutoff, grace, success in others if cutoff is None
         )
@@ -204,7 +204,7 @@ def threshold(results):
             label="DP, 30 Hz",
         )
         ax.axhline(
-            recorded(results, task, place, HS),
+            recorded(results, task, target, HS),
             color=style.look(HS).colour,
             label="HS, every sample",
         )
@@ -215,9 +215,9 @@ def threshold(results):
         ax.set(title=title, xlabel="grace [ms]", xlim=(-0.3, 25), ylim=(-0.05, 1.08))
         ax.set_xticks([0, 1, 2, 5], ["0", "1", "2", "5"])
         ax.minorticks_off()
-        said.append(
+        texts.append(
             f"{title}: {every:.2f}, {graces[-1][1]:.2f} and {max(success for _, success in slow):.2f}"
         )
     axes[0, 0].set_ylabel("success rate")
     axes[0, 3].legend(loc="lower right", fontsize=6)
-    return style.lettered(figure, axes[0]), {"success": "; ".join(said)}
+    return style.lettered(figure, axes[0]), {"success": "; ".join(texts)}

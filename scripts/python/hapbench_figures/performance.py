@@ -6,7 +6,7 @@ from matplotlib.legend import Legend
 
 import hapbench_style as style
 from hapbench.results import MissingResult
-from hapbench_command import asked_of_program
+from hapbench_command import output_of_program
 from hapbench_pictures.over_axes import with_room
 
 ACCURACY = "accuracy/accuracy.json"  # written by hapbench_accuracy
@@ -108,7 +108,7 @@ def knee(settings):
     """Returns the knee of the front of run time and error, as `hapbench plot` of `converge --over` marks it; the
     program finds it. Returns None if the front is straight or has fewer than four settings."""
     points = [f"{setting.time!r}:{setting.error!r}" for setting in settings]
-    found = asked_of_program("finds the knee of a front", "plot", "--knee", *points).strip()
+    found = output_of_program("finds the knee of a front", "plot", "--knee", *points).strip()
     return settings[int(found)] if found else None
 
 
@@ -116,11 +116,11 @@ def draw_panel(ax, results, title, beginnings, column, label, scale, per):
     settings = settings_of(results, beginnings, column, scale, per)
     curves = iter(style.SERIES)
     for name in dict.fromkeys(setting.series for setting in settings):
-        own = [setting for setting in settings if setting.series == name]
+        members = [setting for setting in settings if setting.series == name]
         if name or beginnings == ("shaping/",):
-            draw_series(ax, name, own, next(curves), joined=beginnings[0] not in UNORDERED)
+            draw_series(ax, name, members, next(curves), joined=beginnings[0] not in UNORDERED)
         else:
-            for setting in own:
+            for setting in members:
                 look = style.look(setting.short)
                 ax.plot(
                     setting.time,
@@ -183,7 +183,7 @@ def legends_below(axes, drawn):
     add_legend(axes[2], "e", drawn[4], "lower right", 1)
 
 
-def add_legend(ax, letters, of, place, columns):
+def add_legend(ax, letters, of, location, columns):
     handles, labels = of.get_legend_handles_labels()
     if not any(labels):
         return
@@ -191,7 +191,7 @@ def add_legend(ax, letters, of, place, columns):
         ax,
         handles,
         labels,
-        loc=place,
+        loc=location,
         ncol=columns,
         fontsize=6.5,
         handlelength=1.8,
@@ -211,7 +211,7 @@ def run_time_against_error(results):
     for ax in axes[2]:
         ax.axis("off")
     legends_below(axes[2], drawn)
-    said = "; ".join(
+    listed = "; ".join(
         f"({letter}) {found.name if found else 'none'}" for letter, found in zip("abcdef", knees)
     )
     time = {
@@ -225,4 +225,4 @@ def run_time_against_error(results):
         if len(time) == 2
         else ""
     )
-    return style.lettered(figure, drawn), {"knees": said, "skipped": skipped}
+    return style.lettered(figure, drawn), {"knees": listed, "skipped": skipped}

@@ -101,8 +101,8 @@ class Sweep:
         return int(np.argmin(np.abs(self.tilt - tilt)))
 
     def contacts(self, step):
-        own = self.all["step"] == self.rows["step"][step]
-        pick = {name: column[own] for name, column in self.all.items()}
+        selected = self.all["step"] == self.rows["step"][step]
+        pick = {name: column[selected] for name, column in self.all.items()}
         return Contacts(
             np.stack([pick["x_m"], pick["y_m"]], 1),
             np.stack([pick["nx"], pick["ny"]], 1),
@@ -137,10 +137,10 @@ def draw_hole(ax, environment, points=False):
     )
     ax.plot(*(corners[:6] * MM).T, color=style.SOIL, lw=0.9, zorder=1)
     if points:
-        way = np.append(0, np.cumsum(np.linalg.norm(np.diff(corners[:6], axis=0), axis=1)))
-        places = np.arange(0, way[-1] + 1e-9, environment["spacing_m"])
+        arc_length = np.append(0, np.cumsum(np.linalg.norm(np.diff(corners[:6], axis=0), axis=1)))
+        stations = np.arange(0, arc_length[-1] + 1e-9, environment["spacing_m"])
         ax.plot(
-            *(np.interp(places, way, corners[:6, i]) * MM for i in (0, 1)),
+            *(np.interp(stations, arc_length, corners[:6, i]) * MM for i in (0, 1)),
             ".",
             color=style.PETROL,
             ms=2.2,
@@ -163,16 +163,23 @@ def draw_segments(ax, contacts, colours):
     that the point leaves the tool."""
     ends = contacts.point + contacts.depth[:, None] * contacts.gradient
     for colour in dict.fromkeys(colours):
-        own = [c == colour for c in colours]
+        same_colour = [c == colour for c in colours]
         # One line with gaps and one row of marks, because the SVG of single elements would be much larger.
         lines = (
-            np.stack([contacts.point[own], ends[own], np.full_like(ends[own], np.nan)], 1).reshape(
-                -1, 2
-            )
+            np.stack(
+                [
+                    contacts.point[same_colour],
+                    ends[same_colour],
+                    np.full_like(ends[same_colour], np.nan),
+                ],
+                1,
+            ).reshape(-1, 2)
             * MM
         )
         ax.plot(*lines.T, color=colour, lw=1.0, zorder=4)
-        ax.plot(*(contacts.point[own] * MM).T, "o", ms=2.65, color=colour, mec="none", zorder=5)
+        ax.plot(
+            *(contacts.point[same_colour] * MM).T, "o", ms=2.65, color=colour, mec="none", zorder=5
+        )
 
 
 def draw_arrow(ax, start, vector, colour, label=None, at=(3, 3), **keywords):

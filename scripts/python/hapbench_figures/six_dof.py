@@ -30,15 +30,19 @@ def look(law):
     """Returns the look of a law. The proxies share a colour; the proxy that is matched to the hand is hollow and
     dotted."""
     if law == "matched_proxy":
-        own = style.look("proxy")
+        appearance = style.look("proxy")
         return {
-            "color": own.colour,
+            "color": appearance.colour,
             "ls": (0, (1, 1.2)),
             "marker": "D",
             "mfc": "white",
         }, "matched proxy (ours)"
-    own = style.look(law)
-    return {"color": own.colour, "ls": own.line, "marker": own.marker}, own.label
+    appearance = style.look(law)
+    return {
+        "color": appearance.colour,
+        "ls": appearance.line,
+        "marker": appearance.marker,
+    }, appearance.label
 
 
 def rows_of(results):

@@ -35,12 +35,12 @@ def paths(results, kind):
     """Returns damping and force; `kind` is "limited" or "unlimited"."""
     figure, axes = style.panels(2, 4, 4.3, sharex=True, sharey=True)
     proposed = results.table(f"thesis/springs_{kind}_shaped_stiffness/trajectory.csv")
-    own = [
+    names = [
         name
         for name in style.ALGORITHMS
         if results.has(f"thesis/springs_{kind}_{name}/trajectory.csv")
     ]
-    for ax, name in zip(axes.flat, own):
+    for ax, name in zip(axes.flat, names):
         look = style.look(name)
         rows = results.table(f"thesis/springs_{kind}_{name}/trajectory.csv")
         outcome = results.json(f"thesis/springs_{kind}_{name}/summary.json")["outcome"]
@@ -103,12 +103,12 @@ def root_locus(results):
     for ax, (id_, title, symbol, unit, ours, at) in zip(axes[0], cases):
         value = scene.published(id_)
         ax.plot(np.cos(turn), np.sin(turn), color=style.BLACK, lw=0.8)
-        for way, colour, line in zip(
+        for locus, colour, line in zip(
             np.array([at(v) for v in np.linspace(0, 1.25 * value, 401)]).T,
             (style.PETROL, style.AMBER),
             ("-", (0, (4, 1.2))),
         ):
-            ax.plot(way.real, way.imag, color=colour, ls=line, lw=1.5)
+            ax.plot(locus.real, locus.imag, color=colour, ls=line, lw=1.5)
         leaving = min(
             at(value), key=lambda pole: pole.real
         )  # the pole that leaves the unit circle at -1; the other pole stays inside or at 1

@@ -24,8 +24,8 @@ def trajectory(results, task, density="signed_distance"):
 def ratios(results, task, iteration, density="signed_distance"):
     """Returns the rows of one iteration that have contacts."""
     table = results.table(f"thesis/{task}_{density}/ratios.csv")
-    own = (table["iteration"] == iteration) & (table["rendered"] > 0)
-    return {name: column[own] for name, column in table.items()}
+    selected = (table["iteration"] == iteration) & (table["rendered"] > 0)
+    return {name: column[selected] for name, column in table.items()}
 
 
 def cases(results, id_):
@@ -123,12 +123,12 @@ def count_distribution(results):
         (axes[0, 0], "colliding", "raw", "before the reduction"),
         (axes[0, 1], "rendered", "reduced", "after the reduction"),
     ):
-        for place, (id_, task, _) in enumerate(TASKS):
-            y = len(TASKS) - place
+        for index, (id_, task, _) in enumerate(TASKS):
+            y = len(TASKS) - index
             for (density, name), above, marker in zip(DENSITIES, (0.2, 0.0), "os"):
                 rows = trajectory(results, task, density)
                 values = rows[column][rows["colliding"] > 0]
-                draw_distribution(ax, y + above, values, marker, name if place == 0 else None)
+                draw_distribution(ax, y + above, values, marker, name if index == 0 else None)
             for k, suffix in enumerate(("", ".C3")):
                 if f"{id_}.{what}{suffix}" in scene.PUBLISHED:
                     entry = scene.PUBLISHED[f"{id_}.{what}{suffix}"]
@@ -322,8 +322,8 @@ def ratio_over_time(results, extreme):
         ax.fill_between(time, low, high, color=colour, alpha=0.75, lw=0.4, edgecolor=colour)
         ax.axhline(1, color=style.BLACK, lw=0.7, ls="--")
         # Prints the extreme value, because the curve may coincide with the dashed line.
-        said = f"≤ {rows[column].max():.4g}" if above else f"≥ {rows[column].min():.4g}"
-        style.note(ax, 0.5, 0.8 if above else 0.15, said, colour, ha="center", va="center")
+        bound = f"≤ {rows[column].max():.4g}" if above else f"≥ {rows[column].min():.4g}"
+        style.note(ax, 0.5, 0.8 if above else 0.15, bound, colour, ha="center", va="center")
         if ITERATIONS[i] == 1:
             ax.axhline(scene.PUBLISHED["R1.once"][published_end], **style.PUBLISHED_LINE)
 

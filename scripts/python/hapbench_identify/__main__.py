@@ -31,7 +31,7 @@ from hapbench_import.stroke import columns_text, number_text
 
 from .fit import MASS, fit
 from .log import read_log
-from .model import FRICTION_TOLD, KINDS, NAMES, design, force_to_ask, range_of
+from .model import IDENTIFIABLE_FRICTION, KINDS, NAMES, design, range_of, required_force
 from .units import LONGEST_STEP, is_likely, is_usual, likely_units, scale_option, turned_round
 
 NOTES = [
@@ -68,7 +68,7 @@ UNITS = {
 UNTRUSTED = "The true values can lie outside of the intervals: do not read them as 95 % intervals"
 NEGLIGIBLE = 1e-3  # offset force that counts as negligible, relative to the largest force
 # Largest number of drawn samples, which limits the size of the picture of a long log.
-MOST_DRAWN = 6000
+MAX_DRAWN = 6000
 IN_DEVICE = (
     "handle_mass_kg",
     "viscous_N_s_per_m",
@@ -175,18 +175,18 @@ def identify(options, out):
         refuse_units(options, log, f"the log has a mean interval of {log.step:.4g} s")
     found = fit(log)
     require_right_sign(options, log, found)
-    told = parameters_of(log, found)
+    parameters = parameters_of(log, found)
     if not options.scale and not is_likely(found.values[MASS], log.encoder_step):
         handle = f"a handle of {found.values[MASS]:.3g} kg and an encoder step of {log.encoder_step:.3g} m"
         refuse_units(options, log, f"the fit gives {handle}", found)
-    if told["handle_mass_kg"]["value"] is None:
+    if parameters["handle_mass_kg"]["value"] is None:
         fail(
             f"the mass cannot be identified from this log: the simulated position is off by {found.rms:.3g} m "
             "(rms). Is a hand or a spring on the handle, or is a sign or a unit wrong? "
             '"hapbench import device --design" makes a suitable signal',
             options.log,
         )
-    warnings = log.warnings + warnings_of(told, found, log)
+    warnings = log.warnings + warnings_of(parameters, found, log)
     if not found.misfit and not is_usual(log, found.values[MASS]):
         warnings.append(
             f"a handle of {found.values[MASS]:.3g} kg, a travel of "
@@ -195,7 +195,9 @@ def identify(options, out):
             f"{units_text(options, log, found)}".rstrip()
         )
     device = {"type": "impedance"} | {
-        name: float(f"{told[name]['value']:.6g}") for name in IN_DEVICE if told[name]["value"]
+        name: float(f"{parameters[name]['value']:.6g}")
+        for name in IN_DEVICE
+        if parameters[name]["value"]
     }
     missing = not_in_log()
     write(Path(out), json.dumps(device, indent=2) + "\n")
@@ -207,10 +209,10 @@ def identify(options, out):
             value_text(name, one, np.abs(log.force).max()),
             *map(shown_end, one["interval"]),
         ]
-        for name, one in told.items()
+        for name, one in parameters.items()
     ]
     table.append(["residual [m]", f"{found.rms:.3g}", "", ""])
-    return table, told | {
+    return table, parameters | {
         "confidence": 0.95 if found.trusted else None,
         "step_s": log.step,
         "residual_m": found.rms,
@@ -229,29 +231,36 @@ def identify(options, out):
 def parameters_of(log, found):
     """Returns value and interval of each parameter by name, in the order of UNITS. A value is None if the log does not
     determine it, and an end of an interval is None if it is infinite."""
-    told = {
-        name: {"value": None if name in found.untold else value, "interval": ends}
+    parameters = {
+        name: {"value": None if name in found.undetermined else value, "interval": ends}
         for name, value, ends in zip(NAMES, found.values.tolist(), found.intervals.tolist())
     }
-    late = told["delay_s"]
-    told["delay_samples"] = {
-        "value": late["value"] if late["value"] is None else late["value"] / log.step,
-        "interval": [end / log.step for end in late["interval"]],
+    delay = parameters["delay_s"]
+    parameters["delay_samples"] = {
+        "value": delay["value"] if delay["value"] is None else delay["value"] / log.step,
+        "interval": [end / log.step for end in delay["interval"]],
     }
     step = log.encoder_step
-    told["encoder_step_m"] = {"value": step, "interval": [step * (1.0 - 1e-9), step * (1.0 + 1e-9)]}
+    parameters["encoder_step_m"] = {
+        "value": step,
+        "interval": [step * (1.0 - 1e-9), step * (1.0 + 1e-9)],
+    }
     count = np.isfinite(found.residual).sum() / found.memory
     beyond = found.rms**2 - step**2 / 12.0
     spread = found.rms**2 * math.sqrt(2.0 / count) * 1.96
-    told["position_noise_m"] = unless_wide(
+    parameters["position_noise_m"] = unless_wide(
         math.sqrt(max(beyond, 0.0)),
-        [math.sqrt(max(beyond + way * spread, 0.0)) for way in (-1.0, 1.0)],
+        [math.sqrt(max(beyond + sign * spread, 0.0)) for sign in (-1.0, 1.0)],
     )
-    if told["offset_N"]["value"] is not None:
-        told["offset_N"] = unless_wide(*told["offset_N"].values())
+    if parameters["offset_N"]["value"] is not None:
+        parameters["offset_N"] = unless_wide(*parameters["offset_N"].values())
     return {
-        name: told[name]
-        | {"interval": [end if math.isfinite(end) else None for end in told[name]["interval"]]}
+        name: parameters[name]
+        | {
+            "interval": [
+                end if math.isfinite(end) else None for end in parameters[name]["interval"]
+            ]
+        }
         for name in UNITS
     }
 
@@ -331,17 +340,17 @@ def shown_end(end):
     return "any" if end is None else f"{end:.4g}"
 
 
-def warnings_of(told, found, log):
+def warnings_of(parameters, found, log):
     warnings = [
         f"{name} cannot be identified from this log: {why}; "
         f"{'95 % interval' if found.trusted else 'estimated interval'} "
-        f"{' ... '.join(map(shown_end, told[name]['interval']))}"
-        for name, why in found.untold.items()
+        f"{' ... '.join(map(shown_end, parameters[name]['interval']))}"
+        for name, why in found.undetermined.items()
         if name in IN_DEVICE
     ]
-    if told["offset_N"]["value"] is not None:
+    if parameters["offset_N"]["value"] is not None:
         warnings.append(
-            f"a constant force of {told['offset_N']['value']:.3g} N acts in addition to the commanded "
+            f"a constant force of {parameters['offset_N']['value']:.3g} N acts in addition to the commanded "
             "force (such as weight or a cable); device files cannot represent it"
         )
     if found.misfit:
@@ -373,7 +382,7 @@ def draw(file, log, found):
 
     plt.rcParams.update(SETTINGS)
     figure, ((above,), (below,)) = panels(2, 1, 4.0, sharex=True)
-    every = max(1, len(log.time) // MOST_DRAWN)
+    every = max(1, len(log.time) // MAX_DRAWN)
     time, position, residual = (
         log.time[::every] - log.time[0],
         log.position[::every],
@@ -427,7 +436,7 @@ def play(kind, numbers, out):
         ["signal", KINDS[kind]],
         ["samples", str(len(time))],
         ["largest force [N]", f"{peak:.3g}"],
-        ["largest identifiable dry friction [N]", f"{FRICTION_TOLD * peak:.3g}"],
+        ["largest identifiable dry friction [N]", f"{IDENTIFIABLE_FRICTION * peak:.3g}"],
         [f"travel of {numbers['mass']:g} kg or more [m]", f"{high - low:.3g}"],
         ["positions from the start [m]", f"{low:.3g} ... {high:.3g}"],
     ]
@@ -446,18 +455,18 @@ def limited_by_travel(kind, numbers, peak):
     force = numbers["force"]
     if peak > 0.99 * force:
         return []
-    said = (
+    text = (
         f"the signal has at most {peak:.3g} N, not {force:g} N: it begins at a low frequency, where a larger force "
         f"moves the handle further than the travel of {numbers['travel']:g} m. That is enough for dry friction of up "
-        f"to {FRICTION_TOLD * peak:.3g} N. "
+        f"to {IDENTIFIABLE_FRICTION * peak:.3g} N. "
     )
-    asked = force_to_ask(kind, numbers)
+    required = required_force(kind, numbers)
     return [
-        said
+        text
         + (
-            f"For more, ask for force={asked:.3g} so that the signal begins at a higher frequency and reaches "
-            f"{force:g} N, enough for {FRICTION_TOLD * force:.3g} N"
-            if asked
+            f"For more, ask for force={required:.3g} so that the signal begins at a higher frequency and reaches "
+            f"{force:g} N, enough for {IDENTIFIABLE_FRICTION * force:.3g} N"
+            if required
             else "A device with more dry friction needs more travel, or mass= above "
             f"{numbers['mass']:g} if its mass is known to be larger"
         )
@@ -465,6 +474,6 @@ def limited_by_travel(kind, numbers, peak):
 
 
 if __name__ == "__main__":
-    asked_for = command_line().parse(sys.argv[1:])
-    doing = "" if asked_for.quiet else "designing" if asked_for.design else "identifying"
-    leave(exit_status("import device", doing, lambda: run(asked_for)))
+    requested = command_line().parse(sys.argv[1:])
+    doing = "" if requested.quiet else "designing" if requested.design else "identifying"
+    leave(exit_status("import device", doing, lambda: run(requested)))

@@ -46,7 +46,7 @@ class Fit:
     # True if noise and encoder error explain the residual and its slow part, so that the intervals are 95 % intervals.
     trusted: bool
     # Names of the parameters that the log does not determine, with the reason.
-    untold: dict = field(default_factory=dict)
+    undetermined: dict = field(default_factory=dict)
 
 
 class Cost:
@@ -57,7 +57,7 @@ class Cost:
         self.rows = int(min(len(log.time), max(100.0, seconds / log.step)))
         known = np.flatnonzero(np.isfinite(log.position[: self.rows]))
         self.all_known = len(known) == self.rows
-        self.known, self._simulate, self._asked = known, simulate, None
+        self.known, self._simulate, self._last_parameters = known, simulate, None
         pieces = known // max(8.0, piece / log.step)
         self.starts = np.flatnonzero(np.diff(pieces, prepend=-1.0) > 0.0)
         self.counts = np.diff(self.starts, append=len(known))
@@ -71,11 +71,11 @@ class Cost:
     def simulated(self, parameters):
         """Returns the simulated positions. The latest result is cached, because derivatives are evaluated at the same
         parameters as the residual."""
-        if not np.array_equal(parameters, self._asked):
-            places = self._simulate(parameters, self.rows)
-            self._asked, self._answer = (
+        if not np.array_equal(parameters, self._last_parameters):
+            positions = self._simulate(parameters, self.rows)
+            self._last_parameters, self._answer = (
                 np.array(parameters),
-                places if self.all_known else places[self.known],
+                positions if self.all_known else positions[self.known],
             )
         return self._answer
 
@@ -159,21 +159,21 @@ def fit(log):
 def _fit(log, simulate):
     log = without_unknown_start(log)
     known = np.isfinite(log.position)
-    place = np.interp(np.arange(len(log.time)), np.flatnonzero(known), log.position[known])
-    noise, way = noise_of(log.position[known]), np.ptp(place)
-    count = max(log.encoder_step, 1e-9 * way)
-    if way < FEWEST_COUNTS * max(count, noise):
+    position = np.interp(np.arange(len(log.time)), np.flatnonzero(known), log.position[known])
+    noise, travel = noise_of(log.position[known]), np.ptp(position)
+    count = max(log.encoder_step, 1e-9 * travel)
+    if travel < FEWEST_COUNTS * max(count, noise):
         fail(
-            f"the handle hardly moves: its range is {way:.3g} m, {way / count:.3g} encoder steps, with "
+            f"the handle hardly moves: its range is {travel:.3g} m, {travel / count:.3g} encoder steps, with "
             f"noise of {noise:.3g} m, so that nothing can be identified. Use a larger force, or "
             "change it more slowly"
         )
     peak = float(np.abs(log.force).max())
     lag = max(1, round(0.01 / log.step))
-    fast = max(float(np.abs(place[lag:] - place[:-lag]).max()) / (lag * log.step), 1e-9)
+    fast = max(float(np.abs(position[lag:] - position[:-lag]).max()) / (lag * log.step), 1e-9)
     scale = np.array([0.1, peak / fast, peak, log.step, peak, fast])
     whole = Cost(simulate, log)
-    found = _search(Cost(simulate, log, SCORED, PIECE), whole, log, place, scale)
+    found = _search(Cost(simulate, log, SCORED, PIECE), whole, log, position, scale)
     samples = len(whole.known)
     resting = least_squares(
         whole,
@@ -193,14 +193,14 @@ def _fit(log, simulate):
     residual = whole(found.x)
     memory = memory_of(residual)
     slow = slow_part(log, whole, found.x, residual)
-    intervals, untold, seen = _intervals(
+    intervals, undetermined, seen = _intervals(
         whole, log, found, scale, residual, memory, noise, spread if by_pieces else None
     )
     if slow > WIDENED and not by_pieces:
         wide = without_blocks(whole, found, scale)
         intervals[:, 0] = np.minimum(intervals[:, 0], found.x - wide)
         intervals[:, 1] = np.maximum(intervals[:, 1], found.x + wide)
-    untold = _wide_intervals(intervals, found.x, log.step, peak, fast) | untold
+    undetermined = _wide_intervals(intervals, found.x, log.step, peak, fast) | undetermined
     intervals[:OFFSET, 0] = np.maximum(intervals[:OFFSET, 0], 0.0)
     filled = np.full(len(log.time), np.nan)
     filled[whole.known] = residual
@@ -212,7 +212,7 @@ def _fit(log, simulate):
         memory,
         misfit,
         not misfit and slow <= DISTRUSTED,
-        {NAMES[i]: f"{why} ({seen})" for i, why in sorted(untold.items()) if i != SPEED},
+        {NAMES[i]: f"{why} ({seen})" for i, why in sorted(undetermined.items()) if i != SPEED},
     )
 
 
@@ -221,21 +221,21 @@ def _wide_intervals(intervals, x, step, peak, fast):
     force [N], `fast`: largest speed [m/s]."""
     half = 0.5 * np.diff(intervals)[:, 0]
     return {
-        i: f"its interval is wider than +- {said}"
-        for i, most, said in (
+        i: f"its interval is wider than +- {limit}"
+        for i, largest, limit in (
             (MASS, 0.25 * x[MASS], "25 % of the value"),
             (DELAY, 2.0 * step, "2 samples"),
             (DRY, 0.1 * peak, "10 % of the largest force"),
             (VISCOUS, 0.1 * peak / fast, "10 % of the largest force at full speed"),
         )
-        if not half[i] <= most
+        if not half[i] <= largest
     }
 
 
-def _search(first, whole, log, place, scale):
+def _search(first, whole, log, position, scale):
     """Returns the smallest sum of squares on the `whole` log. The `first` part of the log selects the starting
     values."""
-    starts = starts_of(log, place[: first.rows], log.force[: first.rows])
+    starts = starts_of(log, position[: first.rows], log.force[: first.rows])
     scores = [np.sum(first(start) ** 2) for start in starts]
     tried = [least_squares(first, starts[i], scale, 15, 1e-4) for i in np.argsort(scores)[:KEPT]]
     distinct = []
@@ -260,7 +260,7 @@ def _intervals(cost, log, found, scale, residual, memory, noise, spread):
     """Returns the intervals, the reasons for undetermined parameters by index, and the observed motion of the handle.
     `spread`: half-widths of the intervals if they are known."""
     units = _units(scale, found.x)
-    places = cost.simulated(found.x)
+    positions = cost.simulated(found.x)
     J = np.vstack(
         [
             cost.sensitivities(found.x, units, np.ones(len(NAMES), bool), central=True),
@@ -269,13 +269,15 @@ def _intervals(cost, log, found, scale, residual, memory, noise, spread):
     )
     if found.x[SPEED] == 0.0:
         J[SPEED] = 0.0
-    strokes = Strokes(places, 3.0 * max(log.encoder_step, noise))
-    untold = _degenerate(J, strokes)
+    strokes = Strokes(positions, 3.0 * max(log.encoder_step, noise))
+    undetermined = _degenerate(J, strokes)
     rms = np.sqrt(np.mean(residual**2))
-    by_samples, by_dwells = (units * one for one in _spreads(J, places, log.encoder_step, rms))
+    by_samples, by_dwells = (units * one for one in _spreads(J, positions, log.encoder_step, rms))
     errors = np.maximum(by_dwells, by_samples * np.sqrt(memory))
     profiled = (
-        [i for i in (DRY, OFFSET) if strokes.one_way and i not in untold] if spread is None else []
+        [i for i in (DRY, OFFSET) if strokes.unidirectional and i not in undetermined]
+        if spread is None
+        else []
     )
     spread = TWO_SIDED * errors if spread is None else spread
     intervals = found.x[:, None] + spread[:, None] * np.array([-1.0, 1.0])
@@ -283,7 +285,7 @@ def _intervals(cost, log, found, scale, residual, memory, noise, spread):
         intervals[i] = profile(
             cost, found, scale, i, errors[i], (rms * errors[i] / by_samples[i]) ** 2
         )
-    return intervals, untold, strokes.said(log.encoder_step)
+    return intervals, undetermined, strokes.text(log.encoder_step)
 
 
 def _refined(cost, tried, scale):
@@ -304,17 +306,19 @@ class Strokes:
     """Strokes of the handle: motions in one direction. If the handle moves in one direction only, dry friction cannot
     be distinguished from a constant force."""
 
-    def __init__(self, places, least):
-        steps = np.diff(places)
+    def __init__(self, positions, threshold):
+        steps = np.diff(positions)
         moves = steps[steps != 0.0]
         turns = np.flatnonzero(np.diff(np.sign(moves)) != 0.0) + 1
-        ways = np.add.reduceat(moves, np.concatenate([[0], turns])) if len(moves) else np.zeros(0)
+        strokes = (
+            np.add.reduceat(moves, np.concatenate([[0], turns])) if len(moves) else np.zeros(0)
+        )
         self.rest = 1.0 - len(moves) / max(1, len(steps))
-        self.up, self.down = int(np.sum(ways > least)), int(np.sum(ways < -least))
-        self.travel = float(np.ptp(places))
-        self.one_way = not (self.up and self.down)
+        self.up, self.down = int(np.sum(strokes > threshold)), int(np.sum(strokes < -threshold))
+        self.travel = float(np.ptp(positions))
+        self.unidirectional = not (self.up and self.down)
 
-    def said(self, encoder_step):
+    def text(self, encoder_step):
         counts = (
             f"{self.travel / encoder_step:.0f} encoder steps"
             if encoder_step
@@ -330,22 +334,24 @@ def _degenerate(J, strokes):
     """Returns the parameters that can change together without a change of the positions, with the reason."""
     sizes = np.sqrt(np.mean(J**2, axis=1))
     felt = np.flatnonzero(sizes > 1e-12 * sizes.max())
-    untold = {i: "it has no effect on the positions" for i in range(len(NAMES)) if i not in felt}
+    undetermined = {
+        i: "it has no effect on the positions" for i in range(len(NAMES)) if i not in felt
+    }
     unit = J[felt] / sizes[felt, None]
     values, vectors = np.linalg.eigh(unit @ unit.T / J.shape[1])
     for vector in vectors.T[values < 1e-8]:
         for i in felt[np.abs(vector) > 0.1]:
-            untold[int(i)] = "other parameters have the same effect"
-    if values[0] < 1e-5 and strokes.one_way:
-        untold |= {
+            undetermined[int(i)] = "other parameters have the same effect"
+    if values[0] < 1e-5 and strokes.unidirectional:
+        undetermined |= {
             DRY: "the handle moved in one direction only",
             OFFSET: "the handle moved in one direction only",
         }
-    untold.pop(len(NAMES), None)  # the initial position is not a parameter of the result
-    return untold
+    undetermined.pop(len(NAMES), None)  # the initial position is not a parameter of the result
+    return undetermined
 
 
-def _spreads(J, places, encoder_step, rms):
+def _spreads(J, positions, encoder_step, rms):
     """Returns two arrays of standard errors, with an entry for each row of J except the last row. Each entry is in
     units of the `scale` by which sensitivities() multiplied the row. The first array treats all samples of the residual
     as independent. The second array treats the residual as the sum of noise, whose samples are independent, and of the
@@ -365,9 +371,9 @@ def _spreads(J, places, encoder_step, rms):
     middle = (rms**2 - of_encoder) * H
     if of_encoder:
         first, begins = np.inf, []
-        for k, place in enumerate(places.tolist()):
-            if abs(place - first) > encoder_step:
-                first = place
+        for k, position in enumerate(positions.tolist()):
+            if abs(position - first) > encoder_step:
+                first = position
                 begins.append(k)
         sums = np.add.reduceat(J, begins, axis=1)
         middle = middle + of_encoder * sums @ sums.T
@@ -408,26 +414,26 @@ def slow_part(log, cost, x, residual):
     """Returns the ratio, in standard deviations, of the slow part of the residual (its means over WINDOWS) to the slow
     part that noise and encoder alone would cause. The latter is computed from simulated logs with the measured noise.
     """
-    places = cost.simulated(x)
-    places = places + np.mean(log.position[cost.known] - places)
+    positions = cost.simulated(x)
+    positions = positions + np.mean(log.position[cost.known] - positions)
     random = np.random.default_rng(1)
 
     def measured(noise):
-        noisy = places + noise * random.standard_normal(len(places))
+        noisy = positions + noise * random.standard_normal(len(positions))
         return np.round(noisy / log.encoder_step) * log.encoder_step if log.encoder_step else noisy
 
     sharp = noise_of(log.position[cost.known])
     noise = np.sqrt(max(sharp**2 - noise_of(measured(0.0)) ** 2, 0.0))
-    alone = [measured(noise) - places for _ in range(8)]
-    least = 1e-4 * (sharp**2 + log.encoder_step**2)
+    alone = [measured(noise) - positions for _ in range(8)]
+    threshold = 1e-4 * (sharp**2 + log.encoder_step**2)
     beyond = 0.0
     for window in WINDOWS:
         rows = max(2, round(window / log.step))
-        starts = np.arange(0, len(places) - rows + 1, rows)
+        starts = np.arange(0, len(positions) - rows + 1, rows)
         if len(starts) < 10:
             continue
         parts = [
-            np.mean((np.add.reduceat(one - one.mean(), starts)[:-1] / rows) ** 2) + least
+            np.mean((np.add.reduceat(one - one.mean(), starts)[:-1] / rows) ** 2) + threshold
             for one in (residual, *alone)
         ]
         expected = np.mean(parts[1:])
@@ -489,10 +495,10 @@ def profile(cost, found, scale, i, spread, variance):
 # are needed.
 
 
-def noise_of(place):
+def noise_of(position):
     """Returns the standard deviation of the white noise in the position [m]. Third differences of white noise have 20
     times its variance."""
-    return float(np.sqrt(np.mean(np.diff(place, 3) ** 2) / 20.0)) if len(place) > 3 else 0.0
+    return float(np.sqrt(np.mean(np.diff(position, 3) ** 2) / 20.0)) if len(position) > 3 else 0.0
 
 
 def kernel(rows):
@@ -502,18 +508,18 @@ def kernel(rows):
     return bell / bell.sum()
 
 
-def starts_of(log, place, force):
+def starts_of(log, position, force):
     """Returns starting values (NAMES) from a regression of the force on acceleration, speed and direction, all filtered
-    by the same kernel, and from a grid. `place`: positions of rows without a gap; `force`: their forces.
+    by the same kernel, and from a grid. `position`: positions of rows without a gap; `force`: their forces.
     """
-    step, peak, noise = log.step, float(np.abs(force).max()), noise_of(place)
-    speed = first_speed(place, step, log.encoder_step)
+    step, peak, noise = log.step, float(np.abs(force).max()), noise_of(position)
+    speed = first_speed(position, step, log.encoder_step)
     found = []
     for smoothing in SMOOTHINGS:
         bell = kernel(smoothing / step)
-        if len(bell) + 30 > len(place):
+        if len(bell) + 30 > len(position):
             continue
-        for mass, viscous, dry, delay, offset in _regressions(bell, place, force, step, noise):
+        for mass, viscous, dry, delay, offset in _regressions(bell, position, force, step, noise):
             found += [(mass, viscous, share * dry, delay, offset) for share in (1.0, 0.5, 2.0)]
     found += [(m, 0.3, c * peak, d, 0.0) for m, c, d in GRID]
     starts = np.zeros((len(found), len(NAMES)))
@@ -523,31 +529,31 @@ def starts_of(log, place, force):
     return starts
 
 
-def _regressions(bell, place, force, step, noise):
+def _regressions(bell, position, force, step, noise):
     """Yields mass, viscous and dry friction, delay [samples] and offset for the two best delays, which differ by at
     least one sample."""
     middle = slice(1, -1)
-    slope = (place[2:] - place[:-2]) / (2.0 * step)
+    slope = (position[2:] - position[:-2]) / (2.0 * step)
     speed = np.convolve(slope, bell, "valid")
-    acceleration = np.convolve(np.diff(place, 2) / step**2, bell, "valid")
+    acceleration = np.convolve(np.diff(position, 2) / step**2, bell, "valid")
     held = np.concatenate(
         [[0.0], 0.5 * (force[1:] + force[:-1])]
     )  # mean force of two samples, which determines the second difference of the positions
     push = np.concatenate([np.zeros(9), held[middle]])  # assumes no force before the log
     push = np.convolve(push, bell, "valid")  # push[k + 9] belongs to speed[k]
-    least = 4.0 * noise * np.sqrt(np.sum(np.convolve(bell, [0.5, 0.0, -0.5]) ** 2)) / step
-    way = np.where(np.abs(speed) > least, np.sign(speed), 0.0)
+    threshold = 4.0 * noise * np.sqrt(np.sum(np.convolve(bell, [0.5, 0.0, -0.5]) ** 2)) / step
+    direction = np.where(np.abs(speed) > threshold, np.sign(speed), 0.0)
     # If the handle moves in one direction over the whole kernel, the smoothed friction equals the friction.
     half = len(bell) // 2
-    sums = np.cumsum(np.concatenate([np.zeros(half + 1), way, np.zeros(half)]))
-    one_way = np.abs(sums[2 * half + 1 :] - sums[: -2 * half - 1]) == 2 * half + 1
-    rows = np.flatnonzero(one_way)
+    sums = np.cumsum(np.concatenate([np.zeros(half + 1), direction, np.zeros(half)]))
+    unidirectional = np.abs(sums[2 * half + 1 :] - sums[: -2 * half - 1]) == 2 * half + 1
+    rows = np.flatnonzero(unidirectional)
     if len(rows) < 40:
-        rows = np.flatnonzero(way)
+        rows = np.flatnonzero(direction)
     if len(rows) < 10:
         return []
-    known = np.column_stack([acceleration, speed, way, -np.ones_like(way)])[rows]
-    late = np.stack(
+    known = np.column_stack([acceleration, speed, direction, -np.ones_like(direction)])[rows]
+    delayed = np.stack(
         [
             np.where(
                 d % 1.0 == 0.0,
@@ -559,27 +565,27 @@ def _regressions(bell, place, force, step, noise):
         axis=1,
     )
     size = np.maximum(np.abs(known).max(axis=0), 1e-300)
-    terms = np.linalg.lstsq(known / size, late, rcond=1e-10)[0]
+    terms = np.linalg.lstsq(known / size, delayed, rcond=1e-10)[0]
     wrong = terms[1] < 0.0
     without = [0, 2, 3]
     terms[:, wrong] = 0.0
     terms[np.ix_(without, wrong)] = np.linalg.lstsq(
-        (known / size)[:, without], late[:, wrong], rcond=1e-10
+        (known / size)[:, without], delayed[:, wrong], rcond=1e-10
     )[0]
-    misses = np.sum((late - known / size @ terms) ** 2, axis=0)
+    misses = np.sum((delayed - known / size @ terms) ** 2, axis=0)
     terms /= size[:, None]
     order = [i for i in np.argsort(misses) if terms[0, i] > 0.0]
     best = order[:1] + [i for i in order if abs(DELAYS[i] - DELAYS[order[0]]) >= 1.0][:1]
     return [(terms[0, i], terms[1, i], max(terms[2, i], 0.0), DELAYS[i], terms[3, i]) for i in best]
 
 
-def first_speed(place, step, encoder_step):
+def first_speed(position, step, encoder_step):
     """Returns the speed at the first sample [m/s], from a parabola through the first hundredth of a second; 0 if the
     speed is not significant."""
-    rows = min(len(place), max(8, round(0.01 / step)))
+    rows = min(len(position), max(8, round(0.01 / step)))
     powers = np.vander(step * np.arange(rows), 3, increasing=True)
-    terms, *_ = np.linalg.lstsq(powers, place[:rows], rcond=None)
-    spread = np.std(place[:rows] - powers @ terms) + encoder_step / np.sqrt(12.0)
+    terms, *_ = np.linalg.lstsq(powers, position[:rows], rcond=None)
+    spread = np.std(position[:rows] - powers @ terms) + encoder_step / np.sqrt(12.0)
     return (
         float(terms[1])
         if abs(terms[1]) > 4.0 * spread * np.sqrt(np.linalg.inv(powers.T @ powers)[1, 1])

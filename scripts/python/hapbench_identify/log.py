@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from types import SimpleNamespace
 
 import numpy as np
-from hapbench_command import MOST_FAULTS, Faults, fail, finite_number, quoted, require_name
+from hapbench_command import MAX_FAULTS, Faults, fail, finite_number, quoted, require_name
 from hapbench_import.columns import NAMED_AS, Names, scale_of
 from hapbench_import.holds import hold_of
 from hapbench_import.recording import open_recording
@@ -67,9 +67,9 @@ def read_log(options):
     bad = _bad_rows(recording, time, force, position)
     faults = recording.faults(bad)
     if faults and not options.skip_bad_rows:
-        place, problem = faults[-1]
-        faults[-1] = (place, f"{problem}; --skip-bad-rows leaves bad rows out")
-        raise Faults(faults[:MOST_FAULTS])
+        location, problem = faults[-1]
+        faults[-1] = (location, f"{problem}; --skip-bad-rows leaves bad rows out")
+        raise Faults(faults[:MAX_FAULTS])
     kept = [row for row in range(len(time)) if row not in bad]
     if len(kept) < FEWEST:
         fail(
@@ -200,8 +200,8 @@ def _factor(name, word):
 def _index(names, quantity, word):
     """Returns the column of a quantity: `word`, or if it is empty the default of NAMES or the quantity with its unit,
     such as "force [N]"."""
-    asked = word if word is not None else NAMES[quantity]
-    column, _ = names.find(quantity, [asked], ())
+    requested = word if word is not None else NAMES[quantity]
+    column, _ = names.find(quantity, [requested], ())
     if column is None and word is None:
         column = next(
             (
@@ -214,7 +214,7 @@ def _index(names, quantity, word):
     if column is None:
         known = ", ".join(f"{i} {name}".rstrip() for i, name in enumerate(names.names[:20], 1))
         fail(
-            f"columns: {quantity}: no {quoted(asked)}; the file has {known} (--columns {quantity}=NAME or number)",
+            f"columns: {quantity}: no {quoted(requested)}; the file has {known} (--columns {quantity}=NAME or number)",
             names.file,
         )
     return column

@@ -12,15 +12,15 @@ KINDS = {
     "multisine": "sum of thirty sines",
 }
 # Largest identifiable dry friction, relative to the largest force; with more friction the handle moves too little.
-FRICTION_TOLD = 0.6
+IDENTIFIABLE_FRICTION = 0.6
 # Largest frequency of a signal [Hz]; higher frequencies give little information about mass and friction.
 HIGHEST = 100.0
 # Frictions for which a signal is verified to keep its travel: dry friction relative to the largest force, keyed by
 # viscous friction divided by mass [1/s].
 DRY_SHARES = {
-    0.0: np.linspace(0.0, FRICTION_TOLD, 61),
-    1.0: np.linspace(0.0, FRICTION_TOLD, 13),
-    10.0: np.linspace(0.0, FRICTION_TOLD, 13),
+    0.0: np.linspace(0.0, IDENTIFIABLE_FRICTION, 61),
+    1.0: np.linspace(0.0, IDENTIFIABLE_FRICTION, 13),
+    10.0: np.linspace(0.0, IDENTIFIABLE_FRICTION, 13),
 }
 TRAVEL_USED = (
     # Fraction of the travel that is used; for frictions between the simulated values the travel is up to 6 % longer.
@@ -67,7 +67,7 @@ def positions(time, force, parameters):
 
 def design(kind, force, travel, rate, duration, mass):
     """Returns (time, force). The force is at most `force` [N]. A handle of at least `mass` [kg] stays within `travel`
-    [m], without friction and with dry friction up to FRICTION_TOLD of the largest force."""
+    [m], without friction and with dry friction up to IDENTIFIABLE_FRICTION of the largest force."""
     steps = int(round(duration * rate))
     if steps < 100:
         fail(
@@ -122,18 +122,18 @@ def range_of(time, force, mass):
     return min(ends), max(ends)
 
 
-def force_to_ask(kind, numbers):
+def required_force(kind, numbers):
     """Returns the value of --force for which the signal reaches numbers["force"] [N] although travel limits the signal,
     rounded up to two digits. A larger --force makes the signal begin at a higher frequency. Empty if no value suffices.
     """
-    wanted = asked = numbers["force"]
+    wanted = requested = numbers["force"]
     try:
         for _ in range(8):
-            peak = np.abs(design(kind, **(numbers | {"force": asked}))[1]).max()
+            peak = np.abs(design(kind, **(numbers | {"force": requested}))[1]).max()
             if peak >= 0.99 * wanted:
-                return asked
-            digit = 10.0 ** (np.floor(np.log10(asked * wanted / peak)) - 1.0)
-            asked = float(digit * np.ceil(1.001 * asked * wanted / peak / digit))
+                return requested
+            digit = 10.0 ** (np.floor(np.log10(requested * wanted / peak)) - 1.0)
+            requested = float(digit * np.ceil(1.001 * requested * wanted / peak / digit))
     except Faults:
         pass
     return None

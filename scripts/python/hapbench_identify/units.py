@@ -15,7 +15,7 @@ STEPS, TRAVELS, PEAKS, MASSES = (1e-5, 0.05), (1e-3, 0.8), (0.05, 60.0), (5e-3, 
 LONGEST_STEP = 0.2  # [s]; a log with longer intervals is not fitted without --scale
 COARSEST = 1e-3  # largest plausible step of an encoder [m]
 ACCEPTED = (1e-3, 20.0)  # masses of handles that are accepted without --scale [kg]
-MOST_TOLD = 3
+MAX_REPORTED = 3
 
 
 def is_likely(mass, encoder_step):
@@ -56,7 +56,9 @@ def likely_units(log, found=None):
             likely.append(
                 (changes, abs(math.log10(mass / 0.1)), time, position, sign * force, mass)
             )
-    return [_said(*one[2:]) for one in sorted(likely)[:MOST_TOLD] if one[0] == min(likely)[0]]
+    return [
+        _explanation(*one[2:]) for one in sorted(likely)[:MAX_REPORTED] if one[0] == min(likely)[0]
+    ]
 
 
 def _unit_mass(log, time, position, found):
@@ -78,7 +80,7 @@ def _peak(log):
     return float(np.abs(log.force).max())
 
 
-def _said(time, position, force, mass):
+def _explanation(time, position, force, mass):
     units = f"{TIMES[time]}, {FORCES[abs(force)]}, {POSITIONS[position]}"
     turned = ", the force with the other sign" if force < 0.0 else ""
     factors = {"time": time, "force": force, "position": position}

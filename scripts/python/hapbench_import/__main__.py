@@ -146,8 +146,8 @@ def run(options):
 
     out = options.out or f"{Path(options.file).stem}_stroke.csv"
     refuse_source(out, options.file, "recording")
-    asked = options_of(options)
-    stroke, found = import_stroke(open_recording(options.file, asked), asked)
+    layout = options_of(options)
+    stroke, found = import_stroke(open_recording(options.file, layout), layout)
     write(Path(out), stroke_text(stroke))
     scenario = f"{Path(out).stem}.json"
     next_line = (
@@ -162,6 +162,6 @@ def run(options):
 
 if __name__ == "__main__":
     stop_on_ctrl_c("import stroke")
-    asked_for = command_line().parse(sys.argv[1:])
-    doing = "" if asked_for.quiet else "importing"
-    leave(exit_status("import stroke", doing, lambda: run(asked_for)))
+    requested = command_line().parse(sys.argv[1:])
+    doing = "" if requested.quiet else "importing"
+    leave(exit_status("import stroke", doing, lambda: run(requested)))

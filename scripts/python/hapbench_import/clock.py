@@ -13,7 +13,7 @@ def require_likely_clock(rows, file, scale, longest):
     those since 1970. Names the scale of time that makes them likely."""
     usable = np.isfinite(rows.time)
     usable[list(rows.clock_problems)] = False
-    time, place = rows.time[usable], rows.recorded[usable]
+    time, position = rows.time[usable], rows.recorded[usable]
     steps = np.diff(time)
     if not len(steps):
         return
@@ -22,8 +22,8 @@ def require_likely_clock(rows, file, scale, longest):
     if not median > longest and latest < LATEST:
         return
     with np.errstate(over="ignore", invalid="ignore"):
-        ways = np.linalg.norm(np.diff(place, axis=0), axis=1)
-    moved = ways[np.isfinite(ways) & (ways > 0.0)]
+        distances = np.linalg.norm(np.diff(position, axis=0), axis=1)
+    moved = distances[np.isfinite(distances) & (distances > 0.0)]
     speed = float(np.median(moved)) / median if len(moved) and median > 0.0 else 0.0
     got = (
         f"a median interval of {median:.4g} s; allowed: {longest:g} s (--set max_gap=...)"

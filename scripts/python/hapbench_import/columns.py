@@ -102,13 +102,13 @@ class Names:
         self.bare, self.units = [bare for bare, _ in parts], [unit for _, unit in parts]
 
     def fail(self, quantity, problem):
-        own = self.own()
-        known = ", ".join(f"{i} {name}".rstrip() for i, name in enumerate(own[:20], 1)) + (
-            ", ..." if len(own) > 20 else ""
+        known_names = self.in_file()
+        known = ", ".join(f"{i} {name}".rstrip() for i, name in enumerate(known_names[:20], 1)) + (
+            ", ..." if len(known_names) > 20 else ""
         )
         fail(f"columns: {quantity}: {problem}; the file has {known}", self.file)
 
-    def own(self):
+    def in_file(self):
         """Returns the names of the file's columns, without columns that a reader added."""
         return [name for name in self.names if not name.startswith(ABSENT)]
 
@@ -118,7 +118,7 @@ class Names:
     def others(self, used):
         """Returns numbers and names of the columns that are not in `used`, the columns by quantity."""
         read = {part["column"] for parts in used.values() for part in parts}
-        return [self.title(i) for i in range(len(self.own())) if i + 1 not in read]
+        return [self.title(i) for i in range(len(self.in_file())) if i + 1 not in read]
 
     def index(self, quantity, name):
         """Returns the column of this name, or None. A name matches completely, or without its unit."""
@@ -144,9 +144,9 @@ class Names:
         return None, False
 
     def unknown(self, quantity, words):
-        word, own = (words or [""])[0], list(filter(None, self.own()))
-        near = nearest(word, own)
-        if len(own) == 1 and word in own[0]:
+        word, known_names = (words or [""])[0], list(filter(None, self.in_file()))
+        near = nearest(word, known_names)
+        if len(known_names) == 1 and word in known_names[0]:
             near = "; allowed between columns: commas, semicolons, tabs or blanks"
         self.fail(quantity, f"got {quoted(word)}{near}")
 
@@ -173,19 +173,21 @@ class Names:
         if not name:
             return None
         if tokens[0] == "r11":
-            ways = cells_of_matrix(name)
+            variants = cells_of_matrix(name)
         elif tokens[-1] == "angle":
             return self._axis_and_angle(name)
         else:
-            ways = substituted(name, tokens)
-        ways += numbered(name, len(tokens)) if numbers else []
-        return next((found for way in ways if (found := self.indices(way)) is not None), None)
+            variants = substituted(name, tokens)
+        variants += numbered(name, len(tokens)) if numbers else []
+        return next(
+            (found for variant in variants if (found := self.indices(variant)) is not None), None
+        )
 
     def _axis_and_angle(self, name):
-        for way in substituted(name, ("x", "y", "z")):
-            ends = [letters.replace("\0", one) for letters in _between(way) for one in _ANGLES]
+        for variant in substituted(name, ("x", "y", "z")):
+            ends = [letters.replace("\0", one) for letters in _between(variant) for one in _ANGLES]
             for angle in (*ends, *_ANGLES):
-                if (found := self.indices([*way, angle])) is not None:
+                if (found := self.indices([*variant, angle])) is not None:
                     return found
         return None
 

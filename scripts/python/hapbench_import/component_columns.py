@@ -106,7 +106,7 @@ class Columns:
         if by_number:
             return self._consecutive(group, first, found, len(parts))
         if found is None:
-            self._ask(group, first, parts)
+            self._refuse_name(group, first, parts)
         if letters[0] not in ("w", "x") or len(letters) != 4 or letters[3] == "angle":
             if found[0] != first:
                 self.names.fail(
@@ -141,7 +141,7 @@ class Columns:
             )
         return found
 
-    def _ask(self, group, first, parts):
+    def _refuse_name(self, group, first, parts):
         """Refuses a name from which the columns of the other components do not follow."""
         names, count = self.names, len(parts)
         alone = ",".join(f"{part}=..." for part in parts)

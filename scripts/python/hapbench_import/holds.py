@@ -4,7 +4,7 @@ from dataclasses import dataclass
 import numpy as np
 
 FEWEST_CHANGES = 10
-MOST_ROWS = 200  # largest number of rows of one sample
+MAX_ROWS = 200  # largest number of rows of one sample
 ALL, NEARLY_ALL = 0.98, 0.9  # fractions of the changes that must match the rhythm
 
 
@@ -36,7 +36,7 @@ def _rhythm(runs):
     """Returns the number of rows between changes. It is an integer of which nearly all runs are multiples, or the mean
     of runs that differ by at most one row (rates that are not multiples) or two rows (a clock with jitter).
     """
-    largest = min(MOST_ROWS, int(np.median(runs)))
+    largest = min(MAX_ROWS, int(np.median(runs)))
     for n in range(largest, 1, -1):
         if np.mean(runs % n == 0) >= ALL:
             return float(n)

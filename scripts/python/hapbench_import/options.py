@@ -86,15 +86,15 @@ class Options:
             setattr(self, name, read(self, value))
 
 
-def options_of(asked):
+def options_of(requested):
     """Returns the options of the command line (__main__)."""
     options = Options()
-    if asked.preset:
-        _apply_preset(options, asked.preset)
+    if requested.preset:
+        _apply_preset(options, requested.preset)
     for name in ("format", "decimal", "orientation", "frame"):
-        if value := getattr(asked, name):
+        if value := getattr(requested, name):
             options.set(name, value)
-    columns = dict(_assignments("columns", asked.columns))
+    columns = dict(_assignments("columns", requested.columns))
     options.set("columns", columns)
     options.optional -= set(columns)
     options.named = frozenset(columns)
@@ -102,20 +102,20 @@ def options_of(asked):
         "scale",
         {
             quantity: _number("--scale", factor)
-            for quantity, factor in _assignments("scale", asked.scale)
+            for quantity, factor in _assignments("scale", requested.scale)
         },
     )
-    if asked.smooth:
-        options.smooth = _smoothing(asked.smooth)
+    if requested.smooth:
+        options.smooth = _smoothing(requested.smooth)
     if "time" in columns:
         options.sample_rate_Hz = None
-    for name, value in _assignments("set", asked.set):
+    for name, value in _assignments("set", requested.set):
         if name == "sample_rate_Hz" and "time" in columns:
             fail("--columns time and --set sample_rate_Hz: allowed: one of them")
         require_name("--set: got", name, list(_FIELDS))
         options.set(name, _value(value))
-    options.rate = asked.rate
-    options.skip_bad_rows = asked.skip_bad_rows
+    options.rate = requested.rate
+    options.skip_bad_rows = requested.skip_bad_rows
     if not 1e-9 < math.hypot(*options.tip_axis) < 1e9:
         fail("tip_axis: allowed: a direction")
     if options.sample_rate_Hz is not None and not 0.0 < options.sample_rate_Hz <= 1e6:

@@ -32,18 +32,18 @@ EXACT = 2.0**53  # integers up to this value are exact in a double
 
 class Recording:
     """The rows of a file. `names` are the names of the columns, empty if the file has none. `rows` are lists of cells,
-    or an array with the names. `places` are the positions of the rows in the file, counted in units of `row_word`.
+    or an array with the names. `row_numbers` are the positions of the rows in the file, counted in units of `row_word`.
     `notes`: skipped or repaired parts, each mentioned once."""
 
-    def __init__(self, file, names, rows, places, row_word="line", notes=(), decimal="auto"):
-        self.file, self.names, self.rows, self.places = file, names, rows, places
+    def __init__(self, file, names, rows, row_numbers, row_word="line", notes=(), decimal="auto"):
+        self.file, self.names, self.rows, self.row_numbers = file, names, rows, row_numbers
         self.row_word, self.notes, self._decimal = row_word, list(notes), decimal
         self.is_binary = isinstance(rows, np.ndarray)
         # True if the user has chosen the decimal comma, or after a note has mentioned it.
-        self._says_comma = decimal == "comma"
+        self._is_comma_noted = decimal == "comma"
 
-    def place(self, row):
-        return f"{self.file}, {self.row_word} {self.places[row]}"
+    def location(self, row):
+        return f"{self.file}, {self.row_word} {self.row_numbers[row]}"
 
     def problems(self):
         """Returns the problems of whole rows, by row."""
@@ -63,10 +63,10 @@ class Recording:
             kinds.setdefault(_kind_of(problems[row]), []).append(row)
         return [
             (
-                self.place(rows[0]),
+                self.location(rows[0]),
                 problems[rows[0]]
                 + (
-                    f" ({len(rows)} rows, the last: {self.row_word} {self.places[rows[-1]]})"
+                    f" ({len(rows)} rows, the last: {self.row_word} {self.row_numbers[rows[-1]]})"
                     if len(rows) > 1
                     else ""
                 ),
@@ -144,12 +144,12 @@ class Recording:
             fail(
                 f"column {self.title(column)}: got {self.shown(column, unclear)}: is the comma a decimal comma? "
                 "--decimal comma reads it as one; allowed otherwise: numbers without commas between thousands",
-                self.place(unclear),
+                self.location(unclear),
             )
-        if first is not None and not self._says_comma:
-            self._says_comma = True
+        if first is not None and not self._is_comma_noted:
+            self._is_comma_noted = True
             self.notes.append(
-                f"{self.row_word} {self.places[first]}: got {self.shown(column, first)}: numbers have a decimal "
+                f"{self.row_word} {self.row_numbers[first]}: got {self.shown(column, first)}: numbers have a decimal "
                 "comma and are read as such (--decimal comma; --decimal point refuses them)"
             )
         return cells

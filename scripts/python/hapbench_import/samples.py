@@ -4,16 +4,16 @@ import re
 from dataclasses import dataclass
 
 import numpy as np
-from hapbench_command import MOST_FAULTS, Faults, fail
+from hapbench_command import MAX_FAULTS, Faults, fail
 from scipy.spatial.transform import Rotation
 
 from .clock import require_likely_clock
 from .component_columns import Columns
 from .holds import hold_of
 
-MOST_SAMPLES = 10_000_000
+MAX_SAMPLES = 10_000_000
 UNIT_TOLERANCE = 1e-3  # tolerance of norms: a larger deviation from 1 is an error, not rounding
-LEAST_JUMP = (
+MIN_JUMP = (
     # [m]; a smaller jump may be caused by a clock with jitter that wrote two samples almost at once
     1e-3
 )
@@ -225,8 +225,8 @@ def read_samples(recording, options):
     columns = Columns(recording, options)
     with np.errstate(invalid="ignore", over="ignore"):
         rows = Rows(recording, columns, options)
-    if len(recording.rows) - len(rows.problems) > MOST_SAMPLES:
-        fail(f"more than {MOST_SAMPLES} samples", recording.file)
+    if len(recording.rows) - len(rows.problems) > MAX_SAMPLES:
+        fail(f"more than {MAX_SAMPLES} samples", recording.file)
     if columns.time:
         require_likely_clock(
             rows, recording.file, columns.scale("time", columns.time), options.max_gap
@@ -236,9 +236,9 @@ def read_samples(recording, options):
     problems = _with_hints(rows, len(recording.rows))
     faults = recording.faults(problems)
     if faults and not options.skip_bad_rows:
-        place, problem = faults[-1]
-        faults[-1] = (place, f"{problem}; --skip-bad-rows leaves bad rows out")
-        raise Faults(faults[:MOST_FAULTS])
+        location, problem = faults[-1]
+        faults[-1] = (location, f"{problem}; --skip-bad-rows leaves bad rows out")
+        raise Faults(faults[:MAX_FAULTS])
     if len(kept) < 2:
         fail(
             f"{len(kept)} usable samples of {len(recording.rows)}; allowed: at least 2",
@@ -275,16 +275,16 @@ def _held_rows(rows, options, notes):
     held = hold_of(np.column_stack(values)[usable]) if usable.any() else None
     if held is None:
         return None
-    said = f"each pose is repeated in {held.rows:.4g} rows"
+    text = f"each pose is repeated in {held.rows:.4g} rows"
     interval = float(np.median(np.diff(rows.time[usable][held.fresh])))
     if interval > 0.0:
-        said += f": poses were measured at {1.0 / interval:.4g} Hz"
+        text += f": poses were measured at {1.0 / interval:.4g} Hz"
     if options.held_rows == "keep":
-        notes.append(f"{said}, and steps between poses are not motion (--set held_rows=thin)")
+        notes.append(f"{text}, and steps between poses are not motion (--set held_rows=thin)")
         return None
     forces = rows.force is not None and not _is_held(rows.force[usable], held.fresh)
     notes.append(
-        f"{said}; the first row of each is used"
+        f"{text}; the first row of each is used"
         + (", and the forces of the other rows are left out" if forces else "")
         + " (--set held_rows=keep uses all rows)"
     )
@@ -318,25 +318,27 @@ def _with_hints(rows, count):
 
 
 def _in_sequence(rows, max_speed, held):
-    """Returns the rows that can follow each other, and adds the problems of the others. Repeated rows of a held sample
-    are skipped."""
+    """Returns the rows whose times increase and whose speed since the row before is at most `max_speed`. Records in
+    rows.problems why the other rows are rejected. Skips repeated rows of a held sample."""
     kept, time, position = [], rows.time.tolist(), rows.position.tolist()
     for row in range(len(time)):
         if row in rows.problems or (held is not None and not held.fresh[row]):
             continue
         if kept:
-            step, way = time[row] - time[kept[-1]], math.dist(position[row], position[kept[-1]])
+            step, distance = time[row] - time[kept[-1]], math.dist(
+                position[row], position[kept[-1]]
+            )
             if not step > 0.0:
                 rows.problems[row] = (
                     f"got time {rows.origin + time[row]:.12g} s after {rows.origin + time[kept[-1]]:.12g} s; "
                     "allowed: increasing times"
                 )
                 continue
-            if way > LEAST_JUMP and way > max_speed * step:
-                rows.jumps[row] = way / step
+            if distance > MIN_JUMP and distance > max_speed * step:
+                rows.jumps[row] = distance / step
                 rows.problems[row] = (
-                    f"got a jump of {1e3 * way:.4g} mm in {1e3 * step:.4g} ms, {way / step:.3g} m/s; allowed: "
-                    f"{max_speed:g} m/s (is the scale right?)"
+                    f"got a jump of {1e3 * distance:.4g} mm in {1e3 * step:.4g} ms, {distance / step:.3g} m/s; "
+                    f"allowed: {max_speed:g} m/s (is the scale right?)"
                 )
                 continue
         kept.append(row)

@@ -5,22 +5,22 @@ import math
 import numpy as np
 from scipy.spatial.transform import Rotation, Slerp
 
-from hapbench_command import MOST_FAULTS, Faults, fail
+from hapbench_command import MAX_FAULTS, Faults, fail
 
 from .clock import likely_unit
 from .columns import scale_text
 from .samples import DOWN, Samples, read_samples
 
 STIFFNESS = 20000.0  # default of rendering.stiffness_N_per_m [N/m]
-MOST_SAMPLES = 1e7
+MAX_SAMPLES = 1e7
 LONG_INTERVALS = 10.0  # in median intervals; a longer interval is a gap
 USUAL_RATES = (1.0, 1e5)  # usual rates of recordings [Hz]
 LONGEST, SHORTEST = 3.0, 1e-5  # largest and smallest plausible length of a hand's stroke [m]
 FASTEST = 5.0  # largest plausible speed of a hand [m/s]
 # Ranges of times that may be days: days since 1900 of the years 1982 to 2091, and days since the year 0.
 DAYS = ((3e4, 7e4), (7e5, 8e5))
-MOST_GAPS = 5  # largest number of gaps that are listed one by one
-MOST_NOT_READ = 12  # largest number of unread columns that the table names
+MAX_GAPS = 5  # largest number of gaps that are listed one by one
+MAX_NOT_READ = 12  # largest number of unread columns that the table names
 
 
 def import_stroke(recording, options):
@@ -117,13 +117,13 @@ def gaps_in(read, median, longest):
     intervals = np.diff(read.samples.time)
     faults = [
         (
-            read.recording.place(read.kept[i]),
+            read.recording.location(read.kept[i]),
             f"a gap of {intervals[i]:.4g} s follows; allowed: {longest:g} s (--set max_gap=...)",
         )
         for i in np.flatnonzero(intervals > longest).tolist()
     ]
     if faults:
-        raise Faults(faults[:MOST_FAULTS])
+        raise Faults(faults[:MAX_FAULTS])
     return [
         (i, float(intervals[i]))
         for i in np.flatnonzero(intervals >= LONG_INTERVALS * median).tolist()
@@ -158,9 +158,9 @@ def resample(samples, rate):
     """Resamples at a regular rate [Hz] from the first sample, with times relative to it: positions and forces linearly,
     orientations along the great arc."""
     time, duration = samples.time, samples.time[-1] - samples.time[0]
-    if not (rate > 0.0 and math.isfinite(rate) and duration * rate < MOST_SAMPLES):
+    if not (rate > 0.0 and math.isfinite(rate) and duration * rate < MAX_SAMPLES):
         fail(
-            f"rate: got {rate:g} Hz for {duration:.6g} s; allowed: above 0, and up to {MOST_SAMPLES:g} samples"
+            f"rate: got {rate:g} Hz for {duration:.6g} s; allowed: above 0, and up to {MAX_SAMPLES:g} samples"
         )
     # Includes a last sample that misses the grid only by rounding.
     grid = np.arange(math.floor(duration * rate * (1.0 + 1e-12)) + 1) / rate
@@ -261,13 +261,16 @@ def number_text(value):
 
 def table_of(found):
     """Returns rows of a label and a text about the result of import_stroke."""
-    least, most = found["force_min_N"], found["force_max_N"]
+    smallest, largest = found["force_min_N"], found["force_max_N"]
     return [
         ("columns", columns_text(found["columns"], found["columns_not_read"], found["scales"])),
         *recording_rows(found),
         *motion_rows(found),
         *resolution_rows(found),
-        ("force", "not measured" if least is None else f"measured, {least:.4g} ... {most:.4g} N"),
+        (
+            "force",
+            "not measured" if smallest is None else f"measured, {smallest:.4g} ... {largest:.4g} N",
+        ),
     ]
 
 
@@ -372,20 +375,20 @@ def resolution_rows(found):
 def columns_text(columns, not_read, scales):
     """Formats columns by quantity, with numbers and names: "time: column 1 t; position x, y, z: columns 2 px, 3 py, 4
     pz"."""
-    said = []
+    texts = []
     for quantity, parts in columns.items():
         titles = ", ".join(f"{part['column']} {part['name']}".rstrip() for part in parts)
         of = "angle" if quantity == "orientation" else quantity
         titles += scale_text(of, scales.get(of, 1.0))
         if len(parts) > 1:
             order = ", ".join(part["component"] for part in parts)
-            said.append(f"{quantity} {order}: columns {titles}")
+            texts.append(f"{quantity} {order}: columns {titles}")
         else:
-            said.append(f"{quantity}: column {titles}" if parts else f"{quantity}: none")
+            texts.append(f"{quantity}: column {titles}" if parts else f"{quantity}: none")
     if not_read:
-        more = f" and {len(not_read) - MOST_NOT_READ} more" if len(not_read) > MOST_NOT_READ else ""
-        said.append(f"not read: {', '.join(not_read[:MOST_NOT_READ])}{more}")
-    return "; ".join(said)
+        more = f" and {len(not_read) - MAX_NOT_READ} more" if len(not_read) > MAX_NOT_READ else ""
+        texts.append(f"not read: {', '.join(not_read[:MAX_NOT_READ])}{more}")
+    return "; ".join(texts)
 
 
 def into_surface(stroke):
@@ -407,13 +410,13 @@ def _warnings(read, gaps, found):
     warnings = list(read.notes)
     if read.left_out:
         warnings.append(f"{read.rows_left_out} bad rows were left out")
-    warnings += [f"{place}: {problem}" for place, problem in read.left_out[:20]]
+    warnings += [f"{location}: {problem}" for location, problem in read.left_out[:20]]
     warnings += [
         f"a gap of {duration:.4g} s after {read.recording.row_word} "
-        f"{read.recording.places[read.kept[i]]} is bridged by a straight line"
-        for i, duration in gaps[:MOST_GAPS]
+        f"{read.recording.row_numbers[read.kept[i]]} is bridged by a straight line"
+        for i, duration in gaps[:MAX_GAPS]
     ]
-    if len(gaps) > MOST_GAPS:
+    if len(gaps) > MAX_GAPS:
         warnings.append(f"{len(gaps)} gaps in all")
     extent = float(np.ptp(found["box_m"], axis=0).max())
     if not SHORTEST <= extent <= LONGEST:

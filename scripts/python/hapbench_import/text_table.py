@@ -11,9 +11,9 @@ from hapbench_command import fail, finite_number, quoted
 
 from .columns import UNITS
 
-MOST_COLUMNS = 1000
-MOST_ABOVE = 40  # largest number of lines above a header
-MOST_HEADERS = 8  # largest number of lines of a header
+MAX_COLUMNS = 1000
+MAX_ABOVE = 40  # largest number of lines above a header
+MAX_HEADERS = 8  # largest number of lines of a header
 SAMPLED = 20  # number of lines from which the separator is determined
 SEPARATORS = (b",", b";", b"\t", None)  # None stands for blanks
 _BLANK = b" \t\r"
@@ -64,8 +64,8 @@ def read_table(data, file, by_blanks=False, names_of=None):
         lines = _from_header_on(lines, separator, notes)
     number, first = lines[0]
     words = split(first, separator)
-    if len(words) > MOST_COLUMNS:
-        fail(f"got {len(words)} columns; allowed: {MOST_COLUMNS}", f"{file}, line {number}")
+    if len(words) > MAX_COLUMNS:
+        fail(f"got {len(words)} columns; allowed: {MAX_COLUMNS}", f"{file}, line {number}")
     if names_of:
         names, lines = names_of(words), lines[1:]
     else:
@@ -193,7 +193,7 @@ def is_number(cell):
 
 def _sample(lines):
     """Some of the first lines, and some of those below, where a file may have many lines above its header."""
-    return lines[:SAMPLED] + lines[SAMPLED + MOST_ABOVE :][:SAMPLED]
+    return lines[:SAMPLED] + lines[SAMPLED + MAX_ABOVE :][:SAMPLED]
 
 
 def _separator(lines):
@@ -219,7 +219,7 @@ def _header(words):
 
 def _from_header_on(lines, separator, notes):
     """Removes the lines above the header. The header is above the first rows of numbers with as many cells."""
-    rows = [split(line, separator) for _, line in lines[: 2 * SAMPLED + MOST_ABOVE]]
+    rows = [split(line, separator) for _, line in lines[: 2 * SAMPLED + MAX_ABOVE]]
     counts = [len(row) - (not row[-1]) for row in rows]  # a separator may be at the end
     numbers = [is_row(row) for row in rows]
     later = counts[len(counts) // 2 :]
@@ -254,7 +254,7 @@ def _names_in_header(lines, separator, notes):
     """(names, line number of the header, lines below it). The header may have several lines: groups of columns, names
     and units. The names are those of the last line that names every column differently."""
     block = []
-    for _, line in lines[:MOST_HEADERS]:
+    for _, line in lines[:MAX_HEADERS]:
         words = _header(split(line, separator))
         if not words or (block and (len(words) != len(block[0]) or MISSING.issuperset(words))):
             break
@@ -381,8 +381,10 @@ def has_decimal_commas(rows):
 
 
 def with_points(cells, is_comma_decimal):
-    """Returns (cells of a column with a decimal point, index of the first cell with a decimal comma, index of the first
-    cell with an ambiguous comma, such as "1,234"). An index is None if there is no such cell."""
+    """Returns (cells of a column, with decimal commas replaced by points; index of the first cell with a decimal comma;
+    index of the first cell with an ambiguous comma, such as "1,234"). Of the two indices, the first is searched only if
+    `is_comma_decimal`, the second only otherwise; None if there is no such cell or it is not searched.
+    """
     commas = [i for i, cell in enumerate(cells) if b"," in cell and _COMMA_NUMBER.fullmatch(cell)]
     if not is_comma_decimal:
         grouped = (i for i, cell in enumerate(cells) if _THOUSANDS.fullmatch(cell))

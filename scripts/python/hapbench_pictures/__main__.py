@@ -87,7 +87,7 @@ def plot_line():
         "--y",
         "<name,...>",
         "quantities to draw (default: force, depth, ratio, contacts, path, and what was recorded of reference, "
-        "force_error and energy)",
+        "force_error and energy; energy needs a run with --set record.energy=true)",
     )
     line.texts(
         "--metric",
@@ -136,7 +136,8 @@ def report_line():
     line.text(
         "--out",
         "<file.html>",
-        "page to write (default: report.html in the folder of the runs)",
+        "page to write (default: report.html in the folder of the runs; of several folders, in the nearest "
+        "folder that contains them all)",
         type=Path,
     )
     line.flag("--quiet", SHARED)

@@ -34,14 +34,14 @@ def band(curves, edges):
     without a value."""
     spans = len(edges) - 1
     total, count = np.zeros(spans), np.zeros(spans)
-    least, most = np.full(spans, np.inf), np.full(spans, -np.inf)
+    smallest, largest = np.full(spans, np.inf), np.full(spans, -np.inf)
     for time, low, high in curves:
         ok = np.isfinite(low) & np.isfinite(high)
         at = np.clip(np.searchsorted(edges, time[ok], side="right") - 1, 0, spans - 1)
         total += np.bincount(at, (low[ok] + high[ok]) / 2, spans)
         count += np.bincount(at, minlength=spans)
-        np.minimum.at(least, at, low[ok])
-        np.maximum.at(most, at, high[ok])
+        np.minimum.at(smallest, at, low[ok])
+        np.maximum.at(largest, at, high[ok])
     empty = count == 0
     with np.errstate(invalid="ignore", divide="ignore"):
-        return tuple(np.where(empty, np.nan, of) for of in (total / count, least, most))
+        return tuple(np.where(empty, np.nan, of) for of in (total / count, smallest, largest))

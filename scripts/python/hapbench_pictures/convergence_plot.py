@@ -25,7 +25,7 @@ def draw_converge(files, sheet=SHEET):
         numbers(files.records(TIMES), "seconds"),
     )
     series = []
-    for verdict, own in zip(orders, cycle(SERIES)):
+    for verdict, series_look in zip(orders, cycle(SERIES)):
         rows = [row for row in levels if row["metric"] == verdict["metric"]]
         error, order = (
             numbers(rows, "error_estimate") / np.abs(numbers(rows, "result")[-1]),
@@ -38,10 +38,10 @@ def draw_converge(files, sheet=SHEET):
                 numbers(rows, "value"),
                 np.where(np.isfinite(error) & (error > 0), error, np.nan),
                 {
-                    "color": own.colour,
-                    "marker": own.marker,
-                    "ls": own.line if order else "none",
-                    "mfc": own.colour if order else "white",
+                    "color": series_look.colour,
+                    "marker": series_look.marker,
+                    "ls": series_look.line if order else "none",
+                    "mfc": series_look.colour if order else "white",
                 },
             )
         )
@@ -49,7 +49,7 @@ def draw_converge(files, sheet=SHEET):
         raise InputError(
             "nothing to draw: no level has an error above 0; column reason of converge.csv explains why"
         )
-    timed = [(None, times, error, own) for _, _, error, own in series]
+    timed = [(None, times, error, shown) for _, _, error, shown in series]
     ordered = [
         (h, error) for (_, h, error, _), verdict in zip(series, orders) if verdict["observed_order"]
     ]

@@ -42,8 +42,8 @@ def looks_of(rows):
 def linear(rows):
     """Returns the linear limit of each row: the limit of the contact loop, or the theoretical limit of bilateral
     springs."""
-    own, theory = numbers(rows, "linear_limit"), numbers(rows, "theoretical_limit")
-    values = np.where(np.isfinite(own), own, theory)
+    linear_limit, theory = numbers(rows, "linear_limit"), numbers(rows, "theoretical_limit")
+    values = np.where(np.isfinite(linear_limit), linear_limit, theory)
     return np.where(np.isfinite(values) & (values > 0), values, np.nan)
 
 
@@ -86,8 +86,8 @@ def legend_of_marks(rows, along):
         (BEYOND_LABEL, ends, {**BEYOND, "marker": BEYOND_MARKERS[along]}),
     )
     entries = [
-        (Line2D([], [], color=BLACK, **{"ls": "none", **own}), label)
-        for label, values, own in marks
+        (Line2D([], [], color=BLACK, **{"ls": "none", **style}), label)
+        for label, values, style in marks
         if np.isfinite(values).any()
     ]
     if published(rows):
@@ -114,9 +114,11 @@ def title_of(found):
 
 def draw_devices_over(found, sheet):
     """Draws both limits over the last field of --over, with a colour for each device."""
-    panels, own = panels_of(found.rows), looks_of(found.rows)
+    panels, looks = panels_of(found.rows), looks_of(found.rows)
     marks = legend_of_marks(found.rows, "y")
-    entries = [(Line2D([], [], color=one.colour, lw=2), name) for name, one in own.items()] + marks
+    entries = [
+        (Line2D([], [], color=one.colour, lw=2), name) for name, one in looks.items()
+    ] + marks
     rows, columns = sheet.grid(len(panels))
     height = (
         0.3 + sheet.panel(2.6) * rows + legend_height([label for _, label in entries], sheet.width)
@@ -126,7 +128,7 @@ def draw_devices_over(found, sheet):
         series = []
         for name in dict.fromkeys(row["device"] for row in of_panel):
             mine = [row for row in of_panel if row["device"] == name]
-            series += curves_of(found, mine, own[device_of(mine[0])].colour, "[" in name)
+            series += curves_of(found, mine, looks[device_of(mine[0])].colour, "[" in name)
         y = [values for _, _, values, _ in series]
         over_axes(
             ax,
@@ -134,9 +136,9 @@ def draw_devices_over(found, sheet):
             Axis.of(title_of(found).replace("stable ", "stable\n"), np.concatenate(y)),
             series,
         )
-        mark_ends(ax, found, of_panel, own)
+        mark_ends(ax, found, of_panel, looks)
         for name, value in published(of_panel).items():
-            ax.axhline(value, color=own[name].colour, lw=1.2, ls=PUBLISHED_LINE["ls"])
+            ax.axhline(value, color=looks[name].colour, lw=1.2, ls=PUBLISHED_LINE["ls"])
         ax.set_title(title)
     for ax in axes.flat[len(panels) :]:
         ax.set_visible(False)
@@ -157,7 +159,7 @@ def curves_of(found, rows, colour, is_variant):
     ]
 
 
-def mark_ends(ax, found, rows, own):
+def mark_ends(ax, found, rows, looks):
     """Draws marks at the end of the range for the devices that are stable up to it. Each device has its own row of
     marks, shared by its variants."""
     of_device = {}
@@ -168,7 +170,7 @@ def mark_ends(ax, found, rows, own):
         return
     inches = ax.get_figure().dpi_scale_trans
     for line, (name, ends) in enumerate(of_device.items()):
-        shown = {**BEYOND, "marker": BEYOND_MARKERS["y"], "ls": "none", "color": own[name].colour}
+        shown = {**BEYOND, "marker": BEYOND_MARKERS["y"], "ls": "none", "color": looks[name].colour}
         lower = ScaledTranslation(0.0, -line * BEYOND_ROW / 72, inches)
         ax.plot(*zip(*ends), **shown, transform=ax.transData + lower)
         ax.update_datalim(list(ends))
@@ -177,38 +179,38 @@ def mark_ends(ax, found, rows, own):
 
 def draw_devices(found, sheet):
     """Draws both limits on each device, with a panel for each scene and law."""
-    panels, own = panels_of(found.rows), looks_of(found.rows)
+    panels, looks = panels_of(found.rows), looks_of(found.rows)
     devices = list(dict.fromkeys(row["device"] for row in found.rows))
     marks = legend_of_marks(found.rows, "x")
     rows, columns = sheet.grid(len(panels))
     height = rows * (0.65 + 0.24 * len(devices)) + 0.4
     figure, axes = sheet.panels(rows, columns, height, sharex=True, sharey=True)
     for ax, (title, of_panel) in zip(axes.flat, panels.items()):
-        places = np.array([devices.index(row["device"]) for row in of_panel], float)
+        heights = np.array([devices.index(row["device"]) for row in of_panel], float)
         separated, alternating, ends = simulated_kinds(of_panel)
         beyond = {**BEYOND, "marker": BEYOND_MARKERS["x"]}
         series = []
-        for name, one in own.items():
+        for name, one in looks.items():
             mine = np.array([device_of(row) == name for row in of_panel])
             shown = {"color": one.colour, "mec": one.colour, "ls": "none"}
             series += [
-                (None, linear(of_panel)[mine], places[mine], {**shown, **LINEAR}),
-                (None, separated[mine], places[mine], {**shown, **SIMULATED}),
-                (None, alternating[mine], places[mine], {**shown, **ALTERNATING}),
-                (None, ends[mine], places[mine], {**shown, **beyond}),
+                (None, linear(of_panel)[mine], heights[mine], {**shown, **LINEAR}),
+                (None, separated[mine], heights[mine], {**shown, **SIMULATED}),
+                (None, alternating[mine], heights[mine], {**shown, **ALTERNATING}),
+                (None, ends[mine], heights[mine], {**shown, **beyond}),
             ]
         limits = Axis(title_of(found), np.array([]), log=True)
         over_axes(ax, limits, Axis.of("", devices), series)
-        for place, row in zip(places, of_panel):
+        for y, row in zip(heights, of_panel):
             span = sorted(v for v in (linear([row])[0], simulated([row])[0][0]) if np.isfinite(v))
-            ax.plot(span, [place] * len(span), color=GREY, lw=0.7, zorder=1)
+            ax.plot(span, [y] * len(span), color=GREY, lw=0.7, zorder=1)
             value = published([row]).get(device_of(row))
             if value:
                 ax.vlines(
                     value,
-                    place - 0.4,
-                    place + 0.4,
-                    color=own[device_of(row)].colour,
+                    y - 0.4,
+                    y + 0.4,
+                    color=looks[device_of(row)].colour,
                     lw=1.4,
                     ls=PUBLISHED_LINE["ls"],
                 )

@@ -64,12 +64,12 @@ def results_below(folder):
 
 
 def of_runs(a, b):
-    told = [read_object(folder / SUMMARY, parse_float=str, parse_int=str) for folder in (a, b)]
+    summaries = [read_object(folder / SUMMARY, parse_float=str, parse_int=str) for folder in (a, b)]
     tables = [(folder / TRAJECTORY).is_file() for folder in (a, b)]
     return {
         "field": changed(*map(fields_of, (a, b))),
-        "result": changed(*map(results_of, told)),
-        "state hash": changed(*({"state_hash": of.get("state_hash", "")} for of in told)),
+        "result": changed(*map(results_of, summaries)),
+        "state hash": changed(*({"state_hash": of.get("state_hash", "")} for of in summaries)),
         TRAJECTORY: of_tables(a / TRAJECTORY, b / TRAJECTORY)
         if all(tables)
         else [(TRAJECTORY, *("there" if there else "-" for there in tables), NO_NUMBER, NO_NUMBER)]
@@ -93,16 +93,16 @@ def flat(value, path=""):
         yield from flat(part, f"{path}.{key}" if path else str(key))
 
 
-def results_of(told):
+def results_of(summary):
     """Returns the results of a summary. Names of metrics have no section in front, as in `expect`. Each warning is a
     separate result."""
     found = [
         pair
-        for key, value in told.items()
+        for key, value in summary.items()
         if key not in NO_RESULTS
         for pair in flat(value, "" if key == "metrics" else key)
     ]
-    return dict(found) | {f"warning: {text}": "there" for text in told.get("warnings", ())}
+    return dict(found) | {f"warning: {text}": "there" for text in summary.get("warnings", ())}
 
 
 def fields_of(run):

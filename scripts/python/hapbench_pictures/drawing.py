@@ -45,7 +45,7 @@ def on_both_grounds(draw, light, dark, title, words):
     return f"<figure><figcaption>{text(title)}</figcaption>{''.join(images)}</figure>"
 
 
-MOST_LAWS = 2  # largest number of laws for which the table is clear without the picture
+MAX_LAWS = 2  # largest number of laws for which the table is clear without the picture
 DEEPER, SHAKIER = "inside_max_m", "force_rms_above_30Hz_N"
 
 
@@ -57,7 +57,7 @@ def pareto_section(runs):
         values = (run.metric(DEEPER), run.metric(SHAKIER))
         if None not in values:
             found.setdefault(run.algorithm, []).append(values)
-    if len(found) <= MOST_LAWS:
+    if len(found) <= MAX_LAWS:
         return ""
     means = {name: np.mean(values, axis=0) * (1e3, 1.0) for name, values in found.items()}
     front = pareto(np.array(list(means.values())))

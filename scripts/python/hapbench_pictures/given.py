@@ -8,7 +8,7 @@ from pathlib import Path
 from hapbench.columns import read_records
 from hapbench.errors import InputError
 from hapbench_command import nearest
-from hapbench_looks import law_name, tell_apart
+from hapbench_looks import distinguish, law_name
 from hapbench_report.markup import column
 from hapbench_report.runs import load_run, load_runs
 
@@ -62,7 +62,7 @@ def given_runs(words):
             )
         for run in runs:
             found.setdefault(os.path.realpath(run.folder), run)
-    tell_apart(run.algorithm for run in found.values())
+    distinguish(run.algorithm for run in found.values())
     return list(found.values())
 
 
@@ -97,8 +97,8 @@ def named(runs):
     ]
     folders = relative_folders(runs)
     seeded = [f"{group}, seed {seed_of(run)}" for group, run in zip(groups, runs)]
-    placed = [f"{group}, {folder}" for group, folder in zip(groups, folders)]
-    for names, shared in ((groups, groups), (seeded, groups), (placed, placed)):
+    located = [f"{group}, {folder}" for group, folder in zip(groups, folders)]
+    for names, shared in ((groups, groups), (seeded, groups), (located, located)):
         if len(set(names)) == len(names):
             return names, shared
     return folders, folders
@@ -130,7 +130,7 @@ def field_entries(runs):
     paths = {
         path: None
         for scene in dict.fromkeys(scenes)
-        for path in differing([of for of, own in zip(fields, scenes) if own == scene and of])
+        for path in differing([of for of, name in zip(fields, scenes) if name == scene and of])
     }
     return [[entry(path, of[path], paths) for path in paths if path in of] for of in fields]
 

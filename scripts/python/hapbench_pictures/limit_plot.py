@@ -1,4 +1,5 @@
-"""Pictures of the limits that `limit` finds: alone, over another field, and on devices."""
+"""Pictures of the limits that `limit` finds: one limit, limits over the values of another field, and limits on several
+devices."""
 from textwrap import wrap
 
 import numpy as np
@@ -6,7 +7,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from hapbench.columns import is_number, numbers
-from hapbench_looks import by_class, law_name, look_of_class, tell_apart
+from hapbench_looks import by_class, distinguish, law_name, look_of_class
 from hapbench_style import BLACK, PAGE, PETROL, PLUM, SHEET, legend_above, legend_height
 
 from .device_plot import ALTERNATING_LABEL, alternate, draw_devices, draw_devices_over
@@ -54,7 +55,7 @@ class Limits:
                     ]
                 )
         self.algorithms = list(dict.fromkeys(row["algorithm"] for row in self.rows))
-        tell_apart(self.algorithms)
+        distinguish(self.algorithms)
 
     def along(self, rows):
         """Returns the values of the last field of --over in these rows; for a field of texts, their positions in the
@@ -76,13 +77,13 @@ class Limits:
         """Returns (label, values, plot style) of each limit of KNOWN that has a finite value in some row. Values of the
         limits OF_THEORY are used only in rows with a finite theoretical_limit, and are NaN in all other rows.
         """
-        found, has_edge = [], np.isfinite(numbers(rows, "theoretical_limit"))
-        for (name, label), own in zip(KNOWN.items(), KNOWN_LOOKS):
+        found, has_theory = [], np.isfinite(numbers(rows, "theoretical_limit"))
+        for (name, label), style in zip(KNOWN.items(), KNOWN_LOOKS):
             values = numbers(rows, name) if name in rows[0] else np.array([])
             if name in OF_THEORY and values.size:
-                values = np.where(has_edge, values, np.nan)
+                values = np.where(has_theory, values, np.nan)
             if np.isfinite(values).any():
-                found.append((label, values, own))
+                found.append((label, values, style))
         return found
 
     def lines(self, rows):
@@ -93,8 +94,8 @@ class Limits:
             ("limit to quote", numbers(rows, "quoted_limit"), QUOTED),
         ]
         return [
-            (label, np.where(values > 0, values, np.nan), own)
-            for label, values, own in found
+            (label, np.where(values > 0, values, np.nan), style)
+            for label, values, style in found
             if np.isfinite(values).any()
         ]
 
@@ -125,7 +126,7 @@ class Limits:
         runs, rows = (
             [row for row in of if row["algorithm"] == algorithm] for of in (self.runs, self.rows)
         )
-        x, y, edge = self.along(rows), numbers(runs, self.field), numbers(rows, "limit")
+        x, y, limits = self.along(rows), numbers(runs, self.field), numbers(rows, "limit")
         marks = [
             (
                 name,
@@ -134,11 +135,11 @@ class Limits:
             )
             for name in by_class(row["class"] for row in runs)
         ]
-        lines = [(label, x, values, own) for label, values, own in self.lines(rows)]
+        lines = [(label, x, values, style) for label, values, style in self.lines(rows)]
         over_axes(ax, self.axis(), Axis(axis(self.field), y, log=True), lines, marks)
-        edge = edge[np.isfinite(edge)]
-        if edge.size:
-            ax.set_ylim(edge.min() / 20, edge.max() * 20)
+        limits = limits[np.isfinite(limits)]
+        if limits.size:
+            ax.set_ylim(limits.min() / 20, limits.max() * 20)
 
 
 def separated(rows):
@@ -257,7 +258,7 @@ def draw_over(found, sheet=PAGE):
 def class_legend(found):
     """Returns handles and labels of algorithms, lines and classes."""
     entries = [(Line2D([], [], **look_of(name)), law_name(name)) for name in found.algorithms]
-    entries += [(Line2D([], [], **own), label) for label, _, own in found.lines(found.rows)]
+    entries += [(Line2D([], [], **style), label) for label, _, style in found.lines(found.rows)]
     if np.isfinite(alternating(found.rows)).any():
         hollow = Line2D([], [], color=BLACK, marker="o", ms=4.5, **HOLLOW)
         entries.append((hollow, ALTERNATING_LABEL))

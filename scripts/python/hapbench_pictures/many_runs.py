@@ -28,12 +28,12 @@ from hapbench_style import Sheet
 
 from .bands import draw_bands
 from .drawing import SCENE_SIZE, SIZE, drawing, on_both_grounds, pareto_section
-from .panels import AXIS_COLUMNS, PATH_COLUMNS, SAID, RunLook, draw_section, surface_text
+from .panels import AXIS_COLUMNS, PATH_COLUMNS, PATH_MARKS, RunLook, draw_section, surface_text
 from .quantities import SHORT, TRAJECTORY, USUAL, Samples, tables_of
 from .ranking_plot import failures_text, ranking_figure
+from .ranking_values import RESOLUTION, has_repetitions, value_of
 from .run_plot import profile_of
 from .sections import FIRST, diagnosed, first_table, metric_names, plugin_option, scenario_section
-from .standings import RESOLUTION, has_repetitions, value_of
 
 MANY_LAWS = 8  # number of laws that counts as many if there are several scenes
 ON_PAGE = Sheet(10.0, 3)  # [inch]
@@ -121,26 +121,26 @@ def extent(scenes, runs):
     seeds = max(len(law.runs) for scene in scenes for law in scene.laws)
     failures = sum(len(law.failures) for scene in scenes for law in scene.laws)
     counts = ((len(runs), "run"), (len(scenes), "scene"), (len(laws), "law"), (seeds, "seed"))
-    said = ", ".join(f"{count} {what}{'s' if count != 1 else ''}" for count, what in counts)
-    return f"{said}. " + (
+    counted = ", ".join(f"{count} {what}{'s' if count != 1 else ''}" for count, what in counts)
+    return f"{counted}. " + (
         f"<b class=bad>{failures} of the runs failed.</b>" if failures else "No run failed."
     )
 
 
 def law_table(scene, shown):
     """Returns a table with a row for each law. The law with the best first metric is on top."""
-    standings = {name: scene.standings(name) for name in shown}
+    entries = {name: scene.entries(name) for name in shown}
     ranks = {name: scene.ranks(name) for name in shown}
     heads = {
         name: column(name, [of.mean for of in found.values() if of.mean is not None])
-        for name, found in standings.items()
+        for name, found in entries.items()
     }
     rows = [
         [
             cell(in_colour(look(law.algorithm), text(law.label)), law.label, "name"),
             failures_cell(law),
             *(
-                mean_cell(standings[name][law.label], ranks[name][law.label], heads[name][2])
+                mean_cell(entries[name][law.label], ranks[name][law.label], heads[name][2])
                 for name in shown
             ),
         ]
@@ -196,14 +196,14 @@ def seeds_section(scenes):
     """Returns for each metric the comparison of the law with the smallest mean with every other law."""
     parts = []
     for scene in scenes:
-        said = [
+        items = [
             f"<li><code>{name}</code>: {text(sentence)}</li>"
             for name in FIRST
             for sentence in between(scene, name)
         ]
-        if said:
-            title = f"{named(scene.name)}: {len(said)} pairs of laws and metrics"
-            parts.append(folded(title, f"<ul>{''.join(said)}</ul>"))
+        if items:
+            title = f"{named(scene.name)}: {len(items)} pairs of laws and metrics"
+            parts.append(folded(title, f"<ul>{''.join(items)}</ul>"))
     return "".join(parts) and (
         "<p>Paired differences: with one seed all algorithms have the same start. ±: 95 % confidence "
         f"interval of the mean difference.</p>{''.join(parts)}"
@@ -214,24 +214,24 @@ def between(scene, metric):
     """Returns a sentence for each law beside the law with the smallest mean, over the seeds in which both laws have the
     metric."""
     laws = {law.label: law.values(metric) for law in scene.laws if len(law.values(metric)) > 1}
-    least = min(laws, key=lambda label: np.mean(list(laws[label].values())), default=None)
-    errors = {label: of.error for label, of in scene.standings(metric).items()}
+    best = min(laws, key=lambda label: np.mean(list(laws[label].values())), default=None)
+    errors = {label: of.error for label, of in scene.entries(metric).items()}
     for label, values in laws.items():
-        shared = [seed for seed in values if seed in laws[least]]
-        if label == least or len(shared) < 2:
+        shared = [seed for seed in values if seed in laws[best]]
+        if label == best or len(shared) < 2:
             continue
-        more = np.array([values[seed] - laws[least][seed] for seed in shared])
+        more = np.array([values[seed] - laws[best][seed] for seed in shared])
         mean, within = more.mean(), stats.t.ppf(0.975, len(more) - 1) * stats.sem(more)
-        error, size = errors[label] + errors[least], max(map(abs, laws[least].values()))
+        error, size = errors[label] + errors[best], max(map(abs, laws[best].values()))
         if abs(mean) <= max(error, RESOLUTION * size):
             why = f"the errors of both numbers, {number(error, 2)}" if error else "0.1 %"
-            yield f"{label} and {least} cannot be told apart: they differ by less than {why}"
+            yield f"{label} and {best} cannot be told apart: they differ by less than {why}"
             continue
         if within <= RESOLUTION * mean:
-            yield f"{label} is {number(mean, 3)} above {least} over {len(more)} seeds, which agree: significant"
+            yield f"{label} is {number(mean, 3)} above {best} over {len(more)} seeds, which agree: significant"
             continue
         yield (
-            f"{label} is {number(mean, 3)} ± {number(within, 2)} above {least} over {len(more)} seeds: "
+            f"{label} is {number(mean, 3)} ± {number(within, 2)} above {best} over {len(more)} seeds: "
             + ("significant" if mean > within else "not significant (may be chance)")
         )
 
@@ -245,11 +245,11 @@ def grouped(scenes, of_run):
                 for words in dict.fromkeys(of_run(run)):
                     alike = groups.setdefault(NUMBER.sub("#", words), {})
                     alike.setdefault((scene.name, law.label), []).append(words)
-    said = "".join(
+    items = "".join(
         f"<li>{group_text(alike, len(scenes) > 1)}</li>"
         for alike in sorted(groups.values(), key=lambda of: -sum(map(len, of.values())))
     )
-    return said and f"<ul>{said}</ul>"
+    return items and f"<ul>{items}</ul>"
 
 
 def group_text(alike, names_scene):
@@ -275,9 +275,9 @@ def curves(scene, is_titled):
         runs = [run for seed, run in law.runs.items() if seed not in law.failures]
         runs = [run for run in runs if TRAJECTORY in tables_of(run)]
         if runs:
-            own = look(law.algorithm)
+            law_look = look(law.algorithm)
             laws.append(law)
-            light.append(RunLook(law.label, own.colour, own.dark, own.dash))
+            light.append(RunLook(law.label, law_look.colour, law_look.dark, law_look.dash))
             samples.append(
                 [Samples(run, quantities, (*PATH_COLUMNS, *AXIS_COLUMNS)) for run in runs]
             )
@@ -291,7 +291,7 @@ def curves(scene, is_titled):
             lambda ax, shown, paper: draw_section(ax, first, shown, profile, surface, paper),
             light,
             "The scene, first run of each law",
-            "; ".join([SAID, *surface_text(surface)]),
+            "; ".join([PATH_MARKS, *surface_text(surface)]),
         )
     ]
     figures += [
@@ -310,7 +310,7 @@ def curves(scene, is_titled):
     title = scene_title(scene) if is_titled else ""
     return (
         f"{title}<p>{names} Lines: mean over the seeds. Bands: smallest to largest value. Failed runs are left "
-        f"out. {SAID.capitalize()}.</p><div class=curves>{''.join(figures)}</div>"
+        f"out. {PATH_MARKS.capitalize()}.</p><div class=curves>{''.join(figures)}</div>"
     )
 
 
@@ -342,7 +342,7 @@ def metrics_table(scene):
     rows = []
     for section, name in metric_names(runs):
         key = name if section == "metrics" else f"{section}.{name}"
-        found = scene.standings(key)
+        found = scene.entries(key)
         if any(of.mean is not None for of in found.values()):
             cells = (mean_cell(of, None) for of in found.values())
             rows.append([cell(text(section)), cell(f"<code>{text(name)}</code>"), *cells])

@@ -7,7 +7,7 @@ import numpy as np
 from hapbench_looks import look, look_of_class
 from hapbench_style import PETROL, equal_curves, number_ticks, striped
 
-MOST_TICKS = 12
+MAX_TICKS = 12
 
 
 @dataclass
@@ -60,14 +60,16 @@ def over_axes(ax, x, y, series=(), runs=()):
             hatch=hatch,
             label=title,
         )
-    for (label, xs, ys, own), (place, count) in zip(
+    for (label, xs, ys, style), (index, count) in zip(
         series, equal_curves([(xs, ys) for _, xs, ys, _ in series])
     ):
         if count > 1 and len(xs) > 1:
-            own = {**own, "markevery": (place % len(xs), count)} | (
-                {"ls": striped(own["ls"], place, count)} if own.get("ls", "none") != "none" else {}
+            style = {**style, "markevery": (index % len(xs), count)} | (
+                {"ls": striped(style["ls"], index, count)}
+                if style.get("ls", "none") != "none"
+                else {}
             )
-        ax.plot(xs, ys, label=label, **own)
+        ax.plot(xs, ys, label=label, **style)
     for along, of, set_scale in ((ax.xaxis, x, ax.set_xscale), (ax.yaxis, y, ax.set_yscale)):
         along.set_label_text(of.label)
         if of.names:
@@ -83,7 +85,7 @@ def integer_ticks(along, values):
     """Sets ticks at the values of an integer field."""
     values = np.unique(values[np.isfinite(values)])
     if (
-        1 < len(values) <= MOST_TICKS
+        1 < len(values) <= MAX_TICKS
         and (values == values.round()).all()
         and not spread_logarithmically(values)
     ):
@@ -91,8 +93,15 @@ def integer_ticks(along, values):
 
 
 def look_of(algorithm, **more):
-    own = look(algorithm)
-    return {"color": own.colour, "ls": own.line, "marker": own.marker, "lw": 1.0, "ms": 4.5, **more}
+    appearance = look(algorithm)
+    return {
+        "color": appearance.colour,
+        "ls": appearance.line,
+        "marker": appearance.marker,
+        "lw": 1.0,
+        "ms": 4.5,
+        **more,
+    }
 
 
 def with_room(low, high, above=1.0):
@@ -104,9 +113,9 @@ def with_room(low, high, above=1.0):
 def pareto(points):
     """Returns the points that no other point dominates in both coordinates, sorted by the first coordinate."""
     points = points[np.all(np.isfinite(points), axis=1)]
-    front, least = [], np.inf
+    front, smallest = [], np.inf
     for point in points[np.lexsort((points[:, 1], points[:, 0]))]:
-        if point[1] < least:
+        if point[1] < smallest:
             front.append(point)
-            least = point[1]
+            smallest = point[1]
     return np.array(front).reshape(-1, 2)

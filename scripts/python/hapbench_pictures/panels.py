@@ -24,16 +24,16 @@ THROWN_RATIO, FAILED_RATIO = 100, 5
 ROUNDING = (
     1e-9  # fraction of a value that an axis must span; a smaller span shows rounding errors only
 )
-MOST_THROWN = 3  # largest number of runs whose largest value is printed in a panel
+MAX_THROWN = 3  # largest number of runs whose largest value is printed in a panel
 PANEL = 1.1  # usual height of a panel without its tick labels [inch]
 GRID = 400  # number of cells along each side of a section
 PATH_COLUMNS, AXIS_COLUMNS = ("px_m", "py_m", "pz_m"), ("axis_x", "axis_y", "axis_z")
 SNAPSHOTS = (0.35, 0.5, 0.7, 0.95)  # opacity of the tool at these equally spaced times
-SAID = "circle: start; square: end; triangle: first touch"
-TOOL_SAID = "outlines: the tool at four times"
+PATH_MARKS = "circle: start; square: end; triangle: first touch"
+TOOL_OUTLINES = "outlines: the tool at four times"
 # Smallest component of the tool's axis in the plane for which its outline is drawn; the axis is then at most 30 degrees
 # out of the plane.
-LEAST_IN_PLANE = 0.85
+MIN_IN_PLANE = 0.85
 
 
 @dataclass(frozen=True)
@@ -54,14 +54,14 @@ def looks(runs, labels, groups=()):
     width = RunLook.width if len(distinct) == len(runs) else THIN
     found = []
     for run, label, group in zip(runs, labels, groups):
-        own, of_series = look(run.algorithm), SERIES[nth[group] % len(SERIES)]
-        colours = of_series if alike and not one_each else own
+        of_law, of_series = look(run.algorithm), SERIES[nth[group] % len(SERIES)]
+        colours = of_series if alike and not one_each else of_law
         found.append(
             RunLook(
                 label,
                 colours.colour,
                 colours.dark,
-                own.dash if one_each else of_series.dash,
+                of_law.dash if one_each else of_series.dash,
                 width=width,
                 group=group,
             )
@@ -103,12 +103,12 @@ def draw_over_time(ax, quantity, samples, looks):
         else:
             time, low, high = reduced(time, low, high, SPANS)
             ax.fill_between(time, low, high, color=one.colour, alpha=0.2, lw=0)
-            for edge in (low, high):
+            for bound in (low, high):
                 ax.plot(
                     time,
-                    edge,
+                    bound,
                     lw=min(0.8, one.width),
-                    label=one.label if edge is low else None,
+                    label=one.label if bound is low else None,
                     **line,
                 )
         mark_first_touch(ax, s, one)
@@ -128,9 +128,9 @@ def leave_out_rounding(ax):
 def without_thrown(drawn):
     """Returns the curves that determine the axis, and the curves of unstable runs that would flatten all others."""
     peaks = [peak_of(of[2]) for _, _, of in drawn]
-    most = largest_shown(peaks, [s.failed for s, _, _ in drawn])
+    largest = largest_shown(peaks, [s.failed for s, _, _ in drawn])
     of = list(zip(peaks, drawn))
-    return [one for peak, one in of if peak <= most], [one for peak, one in of if peak > most]
+    return [one for peak, one in of if peak <= largest], [one for peak, one in of if peak > largest]
 
 
 def largest_shown(peaks, failed):
@@ -138,7 +138,7 @@ def largest_shown(peaks, failed):
     below the gap, and for failed runs at most FAILED_RATIO times the peaks of the other runs. Infinite if all runs
     determine the axis."""
     found = sorted(peak for peak in peaks if peak > 0)
-    most = next(
+    largest = next(
         (
             low
             for count, (low, high) in enumerate(zip(found, found[1:]), 1)
@@ -146,10 +146,10 @@ def largest_shown(peaks, failed):
         ),
         np.inf,
     )
-    succeeding = [peak for peak, fails in zip(peaks, failed) if not fails and 0 < peak <= most]
+    succeeding = [peak for peak, fails in zip(peaks, failed) if not fails and 0 < peak <= largest]
     if succeeding and any(failed):
-        most = min(most, FAILED_RATIO * max(succeeding))
-    return most
+        largest = min(largest, FAILED_RATIO * max(succeeding))
+    return largest
 
 
 def peak_of(heights):
@@ -167,12 +167,12 @@ def mark_thrown(ax, quantity, thrown):
         at, above = time[beyond[0]], bool(high[beyond[0]] > top)
         mark = {"marker": "^" if above else "v", "ms": 4, "ls": "none", "clip_on": False}
         ax.plot(at, float(above), **mark, color=one.colour, transform=ax.get_xaxis_transform())
-        if line >= MOST_THROWN:
+        if line >= MAX_THROWN:
             continue
         peak = max(high.max(), low.min(), key=abs) if len(high) else 0.0
         text = f"{one.label}: to {shown(float(f'{peak:.2g}'))} {quantity.unit}".strip()
-        if line == MOST_THROWN - 1 and len(thrown) > MOST_THROWN:
-            text += f", and {len(thrown) - MOST_THROWN} more"
+        if line == MAX_THROWN - 1 and len(thrown) > MAX_THROWN:
+            text += f", and {len(thrown) - MAX_THROWN} more"
         note(ax, 0.98, 0.96 - line * LINE / PANEL, text, one.colour, ha="right")
 
 
@@ -194,19 +194,19 @@ def cut_off_peaks(ax, quantity, drawn, is_fixed=False):
     span = settled_range([(s.settled[quantity.file], low, high) for s, _, (_, low, high) in drawn])
     if span is None:
         if is_fixed:
-            least = min(float(np.nanmin(low)) for _, _, (_, low, _) in drawn)
-            most = max(float(np.nanmax(high)) for _, _, (_, _, high) in drawn)
-            room = 0.08 * (most - least) or 1.0
-            ax.set_ylim(least - room, most + room)
+            lowest = min(float(np.nanmin(low)) for _, _, (_, low, _) in drawn)
+            highest = max(float(np.nanmax(high)) for _, _, (_, _, high) in drawn)
+            room = 0.08 * (highest - lowest) or 1.0
+            ax.set_ylim(lowest - room, highest + room)
         return
     ax.set_ylim(*span)
     at, value, colour = max(
         (
-            (time[row], edge[row], one.colour)
-            for _, one, (time, *edges) in drawn
-            for edge in edges
-            if np.isfinite(edge).any()
-            for row in [np.nanargmax(np.abs(edge))]
+            (time[row], bound[row], one.colour)
+            for _, one, (time, *bounds) in drawn
+            for bound in bounds
+            if np.isfinite(bound).any()
+            for row in [np.nanargmax(np.abs(bound))]
         ),
         key=lambda peak: abs(peak[1]),
     )
@@ -267,8 +267,8 @@ def plane_of(samples):
     along which the paths are longer."""
     if all(np.all(s.trajectory["pz_m"] == 0) for s in samples):
         return (0, 1)
-    ways = np.vstack([tip_of(s)[framed(s)] for s in samples])
-    return (int(np.ptp(ways[:, 1]) > np.ptp(ways[:, 0])), 2)
+    tips = np.vstack([tip_of(s)[framed(s)] for s in samples])
+    return (int(np.ptp(tips[:, 1]) > np.ptp(tips[:, 0])), 2)
 
 
 def draw_section(ax, samples, looks, profile=None, surface=None, paper=LIGHT):
@@ -276,11 +276,11 @@ def draw_section(ax, samples, looks, profile=None, surface=None, paper=LIGHT):
     and the tool of the first run at four times. `profile`: profile of the tool [m]; `surface`:
     hapbench_report.replay.Surface."""
     plane, radius = plane_of(samples), max((radius for _, radius in profile or ()), default=0.0)
-    ways = np.vstack([tip_of(s)[framed(s)][:, plane] for s in samples])
-    low, high = ways.min(0) - 1.3 * radius, ways.max(0) + 0.7 * radius
+    tips = np.vstack([tip_of(s)[framed(s)][:, plane] for s in samples])
+    low, high = tips.min(0) - 1.3 * radius, tips.max(0) + 0.7 * radius
     # A path shorter than 10 µm is numerical noise and should not fill the picture.
     middle, half = (low + high) / 2, np.maximum(0.53 * (high - low), 6e-6)
-    all_ways = [1e3 * tip_of(s)[:, plane] for s in samples]
+    paths = [1e3 * tip_of(s)[:, plane] for s in samples]
     if surface is not None:
         draw_surface(
             ax,
@@ -292,19 +292,19 @@ def draw_section(ax, samples, looks, profile=None, surface=None, paper=LIGHT):
         )
     if profile:
         draw_tool(ax, plane, samples[0], profile, looks[0].colour)
-    for s, way, one, equal in zip(
-        samples, all_ways, looks, equal_curves([(way,) for way in all_ways])
+    for s, path, one, equal in zip(
+        samples, paths, looks, equal_curves([(path,) for path in paths])
     ):
         rows = corners(s.trajectory)
-        ax.plot(*way[rows].T, color=one.colour, ls=striped(one.line, *equal), lw=min(1, one.width))
+        ax.plot(*path[rows].T, color=one.colour, ls=striped(one.line, *equal), lw=min(1, one.width))
         # White edges separate the marks from the path and the outlines of the tool.
-        edge = {"ls": "none", "color": one.colour, "mec": paper[1], "mew": 0.8, "zorder": 3}
-        ax.plot(*way[-1], **edge, marker="s", ms=6)
+        mark = {"ls": "none", "color": one.colour, "mec": paper[1], "mew": 0.8, "zorder": 3}
+        ax.plot(*path[-1], **mark, marker="s", ms=6)
         touching = np.flatnonzero(s.trajectory["colliding"] > 0)
         if touching.size:
-            ax.plot(*way[touching[0]], **edge, marker="v", ms=6.5)
-        start = {**edge, "mfc": paper[1], "mec": one.colour, "mew": 1.8, "zorder": 4}
-        ax.plot(*way[0], **start, marker="o", ms=7)
+            ax.plot(*path[touching[0]], **mark, marker="v", ms=6.5)
+        start = {**mark, "mfc": paper[1], "mec": one.colour, "mew": 1.8, "zorder": 4}
+        ax.plot(*path[0], **start, marker="o", ms=7)
     low, high = 1e3 * (middle - half), 1e3 * (middle + half)
     # The equal aspect widens one of the two intervals. With fixed limits, matplotlib 3.10 would print a warning.
     ax.set_xlim(low[0], high[0], auto=True)
@@ -315,7 +315,7 @@ def draw_section(ax, samples, looks, profile=None, surface=None, paper=LIGHT):
     )
     ax.set_aspect("equal", adjustable="datalim")
     ax.grid(False)
-    if any((np.abs(way - (low + high) / 2) > (high - low) / 2).any() for way in all_ways):
+    if any((np.abs(path - (low + high) / 2) > (high - low) / 2).any() for path in paths):
         ax.set_title("path continues outside", loc="right")
 
 
@@ -351,11 +351,11 @@ def draw_surface(ax, plane, middle, surface, reach, paper):
     ax.plot(*(1e3 * at).T, ".", color=paper[4], ms=1.8, zorder=0.5, rasterized=True)
 
 
-def spacing_of(places):
+def spacing_of(points):
     """Returns the median distance of a point to the nearest point at another position."""
     squares = [
-        ((places - one) ** 2).sum(axis=1)
-        for one in places[np.linspace(0, len(places) - 1, min(len(places), 60)).astype(int)]
+        ((points - one) ** 2).sum(axis=1)
+        for one in points[np.linspace(0, len(points) - 1, min(len(points), 60)).astype(int)]
     ]
     return float(np.sqrt(np.median([square[square > 0].min(initial=np.inf) for square in squares])))
 
@@ -374,7 +374,7 @@ def draw_tool(ax, plane, samples, profile, colour):
     """Draws the tool's outline at four times, from faint to strong."""
     tip, axis = (tip_of(samples, columns)[:, plane] for columns in (PATH_COLUMNS, AXIS_COLUMNS))
     rows = np.sort(framed(samples))
-    rows = rows[np.linalg.norm(axis[rows], axis=1) >= LEAST_IN_PLANE]
+    rows = rows[np.linalg.norm(axis[rows], axis=1) >= MIN_IN_PLANE]
     if not rows.size:
         return
     for row, alpha in zip(

@@ -17,7 +17,7 @@ from .study_plot import PICTURES, draw_study, kind_of
 from .sweep_plot import Sweep, draw_sweep, sensitivity_table
 
 KINDS = (".svg", ".png", ".pdf")
-LEAST_DPI, MOST_DPI = 50, 1200
+MIN_DPI, MAX_DPI = 50, 1200
 
 
 def plot(options):
@@ -35,8 +35,8 @@ def dpi_of(options, file):
         return DPI
     if file.suffix == ".svg":
         raise InputError("--dpi: an .svg has no pixels; allowed for --out FILE.png, or .pdf")
-    if not is_number(options.dpi) or not LEAST_DPI <= float(options.dpi) <= MOST_DPI:
-        raise InputError(f'--dpi: got "{options.dpi}"; allowed: {LEAST_DPI} to {MOST_DPI}')
+    if not is_number(options.dpi) or not MIN_DPI <= float(options.dpi) <= MAX_DPI:
+        raise InputError(f'--dpi: got "{options.dpi}"; allowed: {MIN_DPI} to {MAX_DPI}')
     return float(options.dpi)
 
 
@@ -96,7 +96,8 @@ def window_of(options):
 
 
 def of_runs(options, sheet, window):
-    """Draws runs over time. With --metric, or if the folder has a ranking, draws the metrics of a comparison by law."""
+    """Draws runs over time. With --metric, or if the folder has a ranking and none of --y, --from and --to is given,
+    draws the metrics of a comparison, one group for each force law."""
     over_time = bool(options.y or options.start or options.end)
     if options.where:
         raise InputError("--where: is for a sweep's folder; allowed for runs: --y, --metric")

@@ -12,7 +12,7 @@ from hapbench_command import SCHEMA, nearest
 from hapbench_report.markup import column
 from hapbench_report.recording import settled_rows
 
-from .standings import failed
+from .ranking_values import failed
 
 TRAJECTORY = "trajectory.csv"
 REFERENCE = "force_reference.csv"
@@ -43,7 +43,7 @@ class Quantity:
         return f"{title} [{self.unit or 1}]"
 
     def of(self, table):
-        """Returns lower and upper edge at every row; for a curve, both are the same array."""
+        """Returns lower and upper bound at every row; for a curve, both are the same array."""
         parts = [table[name] * self.factor for name in self.columns]
         if self.kind == "norm":
             parts = [np.sqrt(sum(part * part for part in parts))]
@@ -186,24 +186,24 @@ class Samples:
         return self.tables[TRAJECTORY]
 
     def of(self, q):
-        """Returns time, lower and upper edge; None if this run did not record the quantity."""
+        """Returns time, lower and upper bound; None if this run did not record the quantity."""
         table = self.tables.get(q.file, {})
         return (table["time_s"], *q.of(table)) if set(q.columns) <= set(table) else None
 
 
 def settled_range(curves):
     """Returns the range of the bulk of settled contact with a margin; None if all values are to be shown. Each curve:
-    True for settled rows, and the lower and upper edge of every row."""
+    True for settled rows, and the lower and upper bound of every row."""
     ends = [
-        (np.nanpercentile(low[calm], BULK[0]), np.nanpercentile(high[calm], BULK[1]))
-        for calm, low, high in curves
-        if np.isfinite(low[calm]).any() and np.isfinite(high[calm]).any()
+        (np.nanpercentile(low[settled], BULK[0]), np.nanpercentile(high[settled], BULK[1]))
+        for settled, low, high in curves
+        if np.isfinite(low[settled]).any() and np.isfinite(high[settled]).any()
     ]
     if not ends:
         return None
     low, high = min(a for a, _ in ends), max(b for _, b in ends)
     size = max(abs(low), abs(high))
-    peak = max(np.nanmax(np.abs(edge), initial=0.0) for _, *edges in curves for edge in edges)
+    peak = max(np.nanmax(np.abs(bound), initial=0.0) for _, *bounds in curves for bound in bounds)
     if not peak > CUT_OFF * size > 0:
         return None
     air = max(0.25 * (high - low), 0.05 * size)

@@ -22,7 +22,7 @@ from hapbench_style import (
 )
 
 from .over_axes import spread_logarithmically
-from .standings import RANKING, USUAL, has_repetitions, scenes_of
+from .ranking_values import RANKING, USUAL, has_repetitions, scenes_of
 
 MEAN = {"marker": "o", "ms": 6, "ls": "none", "mew": 0.6, "zorder": 3}
 SINGLE = {
@@ -33,11 +33,11 @@ SINGLE = {
     "alpha": 0.6,
 }  # drawn below the mean, which would otherwise be hidden
 # Height of a law, height of a law with a second line, and smallest height with one line [inch].
-ROW, FAILED_ROW, LEAST_ROW = 0.2, 0.3, 0.14
+ROW, FAILED_ROW, MIN_ROW = 0.2, 0.3, 0.14
 AROUND = 0.75  # height of a panel without its rows [inch]
 TOLERANCE = "#D9D9D9"
 BOUND = {"marker": "<", "ms": 5, "mfc": "none", "mew": 1.1, "ls": "none", "zorder": 3}
-EDGE = 0.93  # position of a bound beyond the axis, as a fraction of the panel's width
+BOUND_POSITION = 0.93  # position of a bound beyond the axis, as a fraction of the panel's width
 FAILED = {"color": RED, "marker": "x", "ls": "none", "ms": 5, "mew": 1.4}
 
 
@@ -90,7 +90,7 @@ def ranking_figure(scenes, metrics, sheet):
     laws = max(len(scene.laws) for scene in scenes)
     fails = any(law.failures for scene in scenes for law in scene.laws)
     wanted = AROUND + (FAILED_ROW if fails else ROW) * laws
-    panel = max(sheet.panel(wanted), min(wanted, AROUND + LEAST_ROW * laws))
+    panel = max(sheet.panel(wanted), min(wanted, AROUND + MIN_ROW * laws))
     entries = legend_of(scenes, metrics)
     height = rows * panel + legend_height([label for _, label in entries], sheet.width)
     figure, axes = sheet.panels(rows, columns, height)
@@ -109,16 +109,23 @@ def ranking_figure(scenes, metrics, sheet):
 def draw_panel(ax, scene, metric, is_compact=False):
     """Draws one metric of one scene: a row for each law, the best law on top. `is_compact`: each row has one line of
     text."""
-    standings, laws = scene.standings(metric), scene.sorted_laws(metric)
+    entries, laws = scene.entries(metric), scene.sorted_laws(metric)
     # A law whose runs all failed has no mean, and is not a number that could determine the axis.
-    known = [of for of in standings.values() if of.mean is not None and not of.is_unknown]
-    values = [v for of in known or standings.values() for v in of.values.values()]
+    known = [of for of in entries.values() if of.mean is not None and not of.is_unknown]
+    values = [v for of in known or entries.values() for v in of.values.values()]
     title, unit, factor = column(metric, values)
     is_dark = ax.xaxis.label.get_color() == "#e7e9ea"
     for row, law in enumerate(laws):
-        own, of = look(law.algorithm), standings[law.label]
+        appearance, of = look(law.algorithm), entries[law.label]
         if of.mean is not None and not of.is_unknown:
-            draw_law(ax, row, of, factor, own.dark if is_dark else own.colour, min(values) >= 0)
+            draw_law(
+                ax,
+                row,
+                of,
+                factor,
+                appearance.dark if is_dark else appearance.colour,
+                min(values) >= 0,
+            )
         if law.failures:
             ax.plot(1, row, **FAILED, transform=ax.get_yaxis_transform(), clip_on=False, zorder=5)
     ax.use_sticky_edges = False  # otherwise the grey bars would remove the margins
@@ -127,9 +134,9 @@ def draw_panel(ax, scene, metric, is_compact=False):
         ax.set_xscale("log")
         number_ticks(ax.xaxis)
     bounds = {
-        row: (factor * standings[law.label].bound, look(law.algorithm))
+        row: (factor * entries[law.label].bound, look(law.algorithm))
         for row, law in enumerate(laws)
-        if standings[law.label].is_unknown
+        if entries[law.label].is_unknown
     }
     draw_bounds(ax, bounds, bool(known), is_dark)
     label_rows(ax, scene, metric, is_compact)
@@ -160,10 +167,10 @@ def draw_bounds(ax, bounds, has_numbers, is_dark):
     if not has_numbers:
         ax.set_xlim(0.0, 1.1 * max(bound for bound, _ in bounds.values()))
     ax.set_xlim(ax.get_xlim())
-    for row, (bound, own) in bounds.items():
-        colour = own.dark if is_dark else own.colour
+    for row, (bound, appearance) in bounds.items():
+        colour = appearance.dark if is_dark else appearance.colour
         at = ax.transAxes.inverted().transform(ax.transData.transform((bound, row)))[0]
-        at = min(at, EDGE) if bound > 0 else 0.0
+        at = min(at, BOUND_POSITION) if bound > 0 else 0.0
         ax.plot(at, row, **BOUND, color=colour, transform=ax.get_yaxis_transform())
         ax.annotate(
             f"\u2264 {rounded_up(bound):.1g}",
@@ -206,10 +213,7 @@ def failures_text(law):
 def legend_of(scenes, metrics):
     """Returns handles and labels of the marks that are drawn."""
     of = [
-        standing
-        for scene in scenes
-        for metric in metrics
-        for standing in scene.standings(metric).values()
+        entry for scene in scenes for metric in metrics for entry in scene.entries(metric).values()
     ]
     laws = [law for scene in scenes for law in scene.laws]
     entries = [(Line2D([], [], color=BLACK, **MEAN), "mean")]

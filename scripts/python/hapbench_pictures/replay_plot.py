@@ -91,11 +91,14 @@ def figure_of(logs, sheet):
         height = 0.4 + sheet.panel(2.0) * count + legend_height([*names, ""], sheet.width)
         figure, axes = sheet.panels(count, 1, height, sharex=True)
         above = axes[0, 0]
-        for log, own in zip(logs, SERIES):
+        for log, series in zip(logs, SERIES):
             shown = log.applied if is_force else log.applied - log.applied[0]
             norm = np.linalg.norm(shown, axis=1)
             above.plot(
-                *curve(log.time, norm, norm, SPANS), color=own.colour, ls=own.line, label=log.name
+                *curve(log.time, norm, norm, SPANS),
+                color=series.colour,
+                ls=series.line,
+                label=log.name,
             )
         above.set_ylabel(f"|{title.replace(' [', '| [')}")
         late = np.unique(np.concatenate([log.time[log.late] for log in logs]))
@@ -117,10 +120,10 @@ def draw_difference(ax, logs):
     calls, first, second = np.intersect1d(logs[0].call, logs[1].call, return_indices=True)
     if not calls.size:
         raise InputError("the logs have no call in common")
-    apart = np.linalg.norm(logs[0].applied[first] - logs[1].applied[second], axis=1)
+    difference = np.linalg.norm(logs[0].applied[first] - logs[1].applied[second], axis=1)
     time = logs[0].time[first]
-    ax.plot(*curve(time, apart, apart, SPANS), color=SERIES[0].colour)
+    ax.plot(*curve(time, difference, difference, SPANS), color=SERIES[0].colour)
     ax.set_ylabel(f"|difference| {logs[0].title[logs[0].title.index('['):]}")
-    if not apart.any():
+    if not difference.any():
         ax.set_title(f"the {calls.size} calls that both logs have are equal", fontsize=7.5)
         ax.set_ylim(-0.05, 1.0)

@@ -19,23 +19,23 @@ from .many_runs import are_many, many_sections
 from .panels import (
     AXIS_COLUMNS,
     PATH_COLUMNS,
-    SAID,
+    PATH_MARKS,
     draw_over_time,
     draw_section,
     looks,
     surface_text,
 )
 from .quantities import SHORT, TRAJECTORY, USUAL, Samples, switch_of, tables_of
+from .ranking_values import scenes_of
 from .run_plot import profile_of
 from .sections import (
     commands_section,
     diagnosed,
     metrics_section,
-    said_section,
     scenario_section,
     summary_section,
+    texts_section,
 )
-from .standings import scenes_of
 
 STYLE = Path(__file__).parent / "page.css"
 
@@ -105,13 +105,13 @@ def sections(runs, names, words):
             "warnings",
             "Warnings",
             "Warnings",
-            said_section(runs, names, lambda run: map(text, run.warnings)),
+            texts_section(runs, names, lambda run: map(text, run.warnings)),
         ),
         (
             "diagnosis",
             "Diagnosis",
             "Problems found, and what to try",
-            said_section(runs, names, diagnosed),
+            texts_section(runs, names, diagnosed),
         ),
         ("replay", "Replay", "Replay", drawn and player(replays(*zip(*drawn)))),
         ("curves", "Curves", "Curves", drawn and curves_section(*zip(*drawn))),
@@ -140,7 +140,7 @@ def curves_section(runs, labels):
             ),
             light,
             "The scene",
-            "; ".join([SAID, "outlines: the tool of the first run", *surface_text(surface)]),
+            "; ".join([PATH_MARKS, "outlines: the tool of the first run", *surface_text(surface)]),
         )
     ]
     figures += [

@@ -14,8 +14,8 @@ from .given import named
 from .panels import (
     AXIS_COLUMNS,
     PATH_COLUMNS,
-    SAID,
-    TOOL_SAID,
+    PATH_MARKS,
+    TOOL_OUTLINES,
     draw_over_time,
     draw_section,
     framed,
@@ -144,10 +144,10 @@ def texts_of(groups, runs, surfaces):
     """Returns the meaning of the marks in each section."""
     texts = []
     for group, surface in zip(groups, surfaces):
-        said = [SAID, *surface_text(surface)]
+        phrases = [PATH_MARKS, *surface_text(surface)]
         if profile_of(runs[group[0]]):
-            said.append(TOOL_SAID + (", first run" if len(group) > 1 else ""))
-        texts.append("; ".join(said))
+            phrases.append(TOOL_OUTLINES + (", first run" if len(group) > 1 else ""))
+        texts.append("; ".join(phrases))
     return texts
 
 

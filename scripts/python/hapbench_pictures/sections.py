@@ -45,9 +45,9 @@ def first_table(runs, labels):
             cell(named(label), classes="name"),
             outcome_cell(run),
             cell(contact_text(run), run.metric("contact_share") or 0, "number"),
-            *own,
+            *values,
         ]
-        for run, label, own in zip(runs, labels, cells)
+        for run, label, values in zip(runs, labels, cells)
     ]
     return table(
         [heading_cell("Run"), heading_cell("Outcome"), heading_cell("In contact", True), *headings],
@@ -79,14 +79,14 @@ def contact_text(run):
     )
 
 
-def said_section(runs, labels, of_run):
+def texts_section(runs, labels, of_run):
     """Returns the texts about each run by label: warnings, or the diagnosis by the rules of the program with advice."""
-    said = "".join(
+    items = "".join(
         f"<li><b>{text(label)}:</b> {words}</li>"
         for run, label in zip(runs, labels)
         for words in of_run(run)
     )
-    return said and f"<ul>{said}</ul>"
+    return items and f"<ul>{items}</ul>"
 
 
 def diagnosed(run):

@@ -11,7 +11,7 @@ from scipy.stats import spearmanr
 from hapbench.columns import is_number, read_records
 from hapbench.errors import InputError
 from hapbench.results import at, read_object
-from hapbench_command import asked_of_program, nearest, table_text
+from hapbench_command import nearest, output_of_program, table_text
 from hapbench_looks import by_class, look_of_class
 from hapbench_style import PETROL, SETTINGS, SHEET, legend_above, plt
 
@@ -23,9 +23,9 @@ FAILURES = ("diverges", "error")
 # Look of cells without a number.
 NO_VALUE = {"facecolor": "#F4F4F4", "edgecolor": "#C8C8C8", "lw": 0.5}
 WIDTH = 100  # width of the text [characters]
-MOST_COSINES, ROWS_PER_COSINE = 6, 10
+MAX_COSINES, ROWS_PER_COSINE = 6, 10
 # Smallest number of rows of a sample for which the influence of a field is computed.
-LEAST_ROWS = 20
+MIN_ROWS = 20
 # If the ratio of the largest to the smallest positive value is larger, the Sobol index of the logarithm is also
 # computed.
 DECADE = 10.0
@@ -34,8 +34,8 @@ DECADE = 10.0
 def runs_that_meet(folder, conditions):
     """Returns the numbers, as texts, of the runs of a sweep that meet all conditions, such as "inside_max_m<3e-4". The
     program evaluates the conditions by the grammar of `hapbench sweep --where`."""
-    said = asked_of_program("evaluates --where", "plot", "--runs-where", folder, *conditions)
-    return set(said.split())
+    output = output_of_program("evaluates --where", "plot", "--runs-where", folder, *conditions)
+    return set(output.split())
 
 
 class Sweep:
@@ -116,13 +116,13 @@ class Sweep:
                 if isinstance(column, list)
                 else column[ok]
             )
-            place = None
+            coordinate = None
             if ("range" in entry or self.of_file and isinstance(column, np.ndarray)) and len(
                 column
             ):
-                place = np.log(column) if self.is_logarithmic(i) else column
-                place = (place - place.min()) / (np.ptp(place) or 1.0)
-            found.append(sensitivity(column, place, self.values[ok]))
+                coordinate = np.log(column) if self.is_logarithmic(i) else column
+                coordinate = (coordinate - coordinate.min()) / (np.ptp(coordinate) or 1.0)
+            found.append(sensitivity(column, coordinate, self.values[ok]))
         return found
 
     @property
@@ -309,14 +309,14 @@ def sensitivity_table(sweep):
     if not any(found):
         return [
             f"too few runs for a sensitivity analysis: {runs} runs have this metric{without}; "
-            f"needed: {LEAST_ROWS} runs with several values of the metric"
+            f"needed: {MIN_ROWS} runs with several values of the metric"
         ]
     logarithm = sweep.spans_decades
     heads = ["sensitivity to field", "rank correlation", "first order", "+-"]
     heads += ["of the logarithm", "+- "] if logarithm else []
     rows = [
         [field, *(numbers_of(of, logarithm) if of else ["-"] * (len(heads) - 1))]
-        for field, of in sorted(zip(sweep.fields, found), key=lambda pair: -most_telling(pair[1]))
+        for field, of in sorted(zip(sweep.fields, found), key=lambda pair: -main_index(pair[1]))
     ]
     together = hundredths(sum(of.first_order for of in found if of))
     of_logarithm = ""
@@ -332,7 +332,7 @@ def sensitivity_table(sweep):
             "rank correlation: Spearman's coefficient. First order: Sobol's index, the fraction of the "
             f"variance of {sweep.metric} that the field alone explains; the sum is {together}, and "
             f"the rest is due to interactions of fields or to no field. {of_logarithm}Estimated by regression on "
-            f"at most {MOST_COSINES} cosines of the field's position in its range, or on the values "
+            f"at most {MAX_COSINES} cosines of the field's position in its range, or on the values "
             f"of a list, over {runs} runs{without}. +-: standard error, by jackknife",
             WIDTH,
         ),
@@ -346,7 +346,7 @@ def numbers_of(found, logarithm):
     return ["-" if number is None else hundredths(number) for number in numbers]
 
 
-def most_telling(found):
+def main_index(found):
     """Returns the index that orders the fields: the index of the logarithm, if there is one."""
     if found is None:
         return -1
@@ -381,19 +381,19 @@ class Sensitivity:
     error_of_logarithm: float | None = None
 
 
-def sensitivity(column, place, y):
-    """Returns the Sensitivity of y to a field. `column`: values of the field; `place`: their relative positions in the
-    range (0 ... 1), None for listed values. Returns None if there are too few rows, or if y or the field is constant.
-    """
-    if len(y) < LEAST_ROWS or np.ptp(y) == 0 or len(set(column)) < 2:
+def sensitivity(column, coordinate, y):
+    """Returns the Sensitivity of y to a field. `column`: values of the field; `coordinate`: their relative positions in
+    the range (0 ... 1), None for listed values. Returns None if there are too few rows, or if y or the field is
+    constant."""
+    if len(y) < MIN_ROWS or np.ptp(y) == 0 or len(set(column)) < 2:
         return None
-    if place is None:
+    if coordinate is None:
         values = sorted(set(column))
         functions = np.array([[float(value == other) for other in values] for value in column])
     else:
-        count = min(MOST_COSINES, len(y) // ROWS_PER_COSINE)
+        count = min(MAX_COSINES, len(y) // ROWS_PER_COSINE)
         functions = np.column_stack(
-            [np.ones(len(y)), np.cos(np.pi * np.outer(place, np.arange(1, count + 1)))]
+            [np.ones(len(y)), np.cos(np.pi * np.outer(coordinate, np.arange(1, count + 1)))]
         )
     rank = None if isinstance(column, list) else float(spearmanr(column, y).statistic)
     of_logarithm = adjusted_share(functions, np.log(y)) if spans_decades(y) else (None, None)

@@ -6,7 +6,7 @@ from matplotlib.lines import Line2D
 
 from hapbench.columns import numbers
 from hapbench.errors import InputError
-from hapbench_looks import law_name, tell_apart
+from hapbench_looks import distinguish, law_name
 from hapbench_style import BLACK, GREY, RED, SHEET, legend_above, number_ticks
 
 from .given import axis
@@ -52,7 +52,7 @@ def draw_tune(files, sheet=SHEET):
     """
     trials, laws = files.records(TRIALS), files.records(LAWS)
     drawn = [Trials(law, trials) for law in laws]
-    tell_apart(of.name for of in drawn)
+    distinguish(of.name for of in drawn)
     shown, bounds = np.vstack([of.values for of in drawn]), bounds_of(laws)
     if not shown.size:
         raise InputError(
@@ -78,16 +78,16 @@ def bounds_of(laws):
 def draw_panel(ax, x, y, drawn, shown, bounds):
     series = []
     for of in drawn:
-        own = look_of(of.name, ls="none", ms=4)
+        appearance = look_of(of.name, ls="none", ms=4)
         for which, more in (
             (~of.feasible, {"mfc": "white"}),
             (of.feasible, {}),
             (of.chosen, CHOICE),
         ):
-            series.append((None, of.values[which, x], of.values[which, y], own | more))
+            series.append((None, of.values[which, x], of.values[which, y], appearance | more))
         if (x, y) == (1, 2):
             front = pareto(of.values[of.feasible][:, 1:])
-            look_of_front = {"color": own["color"], "lw": 1.0, "ls": "-", "zorder": 1}
+            look_of_front = {"color": appearance["color"], "lw": 1.0, "ls": "-", "zorder": 1}
             series.append((None, front[:, 0], front[:, 1], look_of_front))
     titles = [title for title, _ in QUANTITIES.values()]
     values = [np.append(shown[:, i], bounds[i]) for i in range(len(QUANTITIES))]

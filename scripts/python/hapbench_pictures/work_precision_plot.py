@@ -7,7 +7,7 @@ from matplotlib.lines import Line2D
 
 from hapbench.columns import numbers
 from hapbench.errors import InputError
-from hapbench_looks import SERIES, law_name, tell_apart
+from hapbench_looks import SERIES, distinguish, law_name
 from hapbench_style import GREY, PLATE, SHEET, legend_above, note, number_ticks
 from hapbench_style import look as style_look
 
@@ -20,10 +20,10 @@ FRONT = {
     "ls": "-",
     "zorder": 1,
 }  # settings that no other setting beats in both error and time
-MOST_STEPS = 5  # largest number of labels of a panel
+MAX_LABELS = 5  # largest number of labels of a panel
 ROOM = np.array([0.2, 0.13])  # size of a label, as fractions of the panel's width and height
 KNEE = {"marker": "o", "ms": 10, "mfc": "none", "mec": GREY, "ls": "none"}
-ASKED = {"color": GREY, "lw": 0.8, "ls": ":"}
+REQUESTED = {"color": GREY, "lw": 0.8, "ls": ":"}
 SPEED = {"color": GREY, "lw": 0.8, "ls": "--"}
 # Processor time per simulated second at which the simulation runs in real time [ms].
 REAL_TIME = 1000.0
@@ -40,10 +40,10 @@ def draw_model_errors(files, sheet=SHEET):
     not joined, because laws have no order. Laws whose runs failed have no error and are left out.
     """
     errors, times = files.records(MODEL_ERRORS), files.records(MODEL_TIMES)
-    median, late = (1e6 * numbers(times, name) for name in ("step_median_s", "step_p99_9_s"))
+    median, p99_9 = (1e6 * numbers(times, name) for name in ("step_median_s", "step_p99_9_s"))
     deadline = 1e6 * float(times[0]["deadline_s"])
     shared = is_true(errors, "shares_reference")
-    tell_apart(row["problem"] for row in errors)
+    distinguish(row["problem"] for row in errors)
     quantities = (
         (
             "mean error of the direction [°]",
@@ -63,7 +63,7 @@ def draw_model_errors(files, sheet=SHEET):
         for i in drawn:
             row = errors[i]
             look = style_look(row["problem"])
-            ax.plot([median[i], late[i]], [values[i]] * 2, color=look.colour, lw=0.8)
+            ax.plot([median[i], p99_9[i]], [values[i]] * 2, color=look.colour, lw=0.8)
             ax.plot(
                 median[i],
                 values[i],
@@ -105,7 +105,7 @@ def draw_work_precision(files, sheet=SHEET):
     integrators = list(dict.fromkeys(row["integrator"] for row in errors))
     looks = dict(zip(integrators, cycle(SERIES)))
     is_knee = is_true(times, "knee")
-    asked = 1e6 * float(errors[0]["asked_error_m"])
+    requested = 1e6 * float(errors[0]["asked_error_m"])
     rows, columns = sheet.grid(len(problems))
     figure, axes = sheet.panels(
         rows, columns, 0.5 + sheet.panel(2.4) * rows, sharex=True, sharey=True
@@ -128,7 +128,7 @@ def draw_work_precision(files, sheet=SHEET):
         over_axes(
             ax, across, Axis("rms error of the\ntip's position [µm]", error, log=True), series
         )
-        ax.axhline(asked, zorder=1, **ASKED)
+        ax.axhline(requested, zorder=1, **REQUESTED)
         if cost.max() > 0.1 * REAL_TIME:
             ax.axvline(REAL_TIME, zorder=1, **SPEED)
         for at in np.flatnonzero(of_problem & is_knee):
@@ -142,14 +142,16 @@ def draw_work_precision(files, sheet=SHEET):
     for ax in list(axes.flat)[len(problems) :]:
         ax.set_visible(False)
     unresolved = (np.isfinite(error) & (error > 0) & ~is_true(errors, "resolved")).any()
-    marks, names = legend_of(looks, asked, is_knee.any(), unresolved, cost.max() > 0.1 * REAL_TIME)
+    marks, names = legend_of(
+        looks, requested, is_knee.any(), unresolved, cost.max() > 0.1 * REAL_TIME
+    )
     legend_above(figure, marks, names, columns=None)
     return figure
 
 
-def legend_of(looks, asked, has_knee, has_unresolved, has_real_time):
-    """Returns handles and labels of the elements that are drawn. `looks`: look of each integrator; `asked`: requested
-    error [µm]."""
+def legend_of(looks, requested, has_knee, has_unresolved, has_real_time):
+    """Returns handles and labels of the elements that are drawn. `looks`: look of each integrator; `requested`:
+    requested error [µm]."""
     integrators = list(looks)
     marks = [
         Line2D([], [], marker=looks[name].marker, color=looks[name].colour, ls=looks[name].line)
@@ -164,8 +166,8 @@ def legend_of(looks, asked, has_knee, has_unresolved, has_real_time):
     if has_unresolved:
         marks.append(Line2D([], [], marker="s", color=GREY, mfc="white", ls="none"))
         names.append("not resolved by the reference")
-    marks.append(Line2D([], [], **ASKED))
-    names.append(f"error that is asked for: {asked:g} µm")
+    marks.append(Line2D([], [], **REQUESTED))
+    names.append(f"error that is asked for: {requested:g} µm")
     if has_real_time:
         marks.append(Line2D([], [], **SPEED))
         names.append("real time")
@@ -179,14 +181,14 @@ def draw_front(ax, errors, cost, error, chosen, is_knee):
     rows = rows[np.argsort(cost[rows])]
     ax.plot(cost[rows], error[rows], **FRONT)
     shown = np.isfinite(error) & (error > 0)
-    place = np.array(
+    position = np.array(
         [np.log(of) / (np.ptp(np.log(of[shown])) or 1.0) for of in (cost, error)]
     )  # in units of the panel's width and height
     first = [row for row in rows if is_knee[row]] + list(rows[[0, -1]] if rows.size else ())
     labelled = []
     for row in dict.fromkeys([*first, *rows]):
-        apart = [np.abs(place[:, row] - place[:, other]) / ROOM for other in labelled]
-        if len(labelled) < MOST_STEPS and all(away.max() >= 1 for away in apart):
+        distances = [np.abs(position[:, row] - position[:, other]) / ROOM for other in labelled]
+        if len(labelled) < MAX_LABELS and all(away.max() >= 1 for away in distances):
             labelled.append(row)
             ax.annotate(
                 f"{1e3 * float(errors[row]['step_s']):.3g}",
@@ -206,12 +208,12 @@ def is_true(rows, column):
     return np.array([row[column] == "true" for row in rows])
 
 
-def curves(name, own, chosen, errors, cost, error):
+def curves(name, series, chosen, errors, cost, error):
     """Draws the curve of an integrator, and its unresolved errors as hollow marks."""
     resolved = is_true(errors, "resolved")
-    look = {"color": own.colour, "marker": own.marker}
+    look = {"color": series.colour, "marker": series.marker}
     shown = chosen & np.isfinite(error) & (error > 0)
-    yield name, cost[shown], np.where(resolved, error, np.nan)[shown], look | {"ls": own.line}
+    yield name, cost[shown], np.where(resolved, error, np.nan)[shown], look | {"ls": series.line}
     hollow = shown & ~resolved
     if hollow.any():
         yield None, cost[hollow], error[hollow], look | {"ls": "none", "mfc": "white"}

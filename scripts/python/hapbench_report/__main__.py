@@ -99,9 +99,9 @@ def record(program, directory):
             except OSError as error:
                 raise InputError(f"{program}: {error}") from error
             if done.returncode not in (SUCCESS, DIFFERENT):
-                said = done.stderr.strip().splitlines() or ["no message"]
+                lines = done.stderr.strip().splitlines() or ["no message"]
                 raise InputError(
-                    f"{program} run {scenario}: exit status {done.returncode}: {said[-1]}"
+                    f"{program} run {scenario}: exit status {done.returncode}: {lines[-1]}"
                 )
 
 
@@ -134,5 +134,5 @@ def run(options):
 
 
 if __name__ == "__main__":
-    asked_for = arguments(sys.argv[1:])
-    leave(exit_status("report", "writing the report", lambda: run(asked_for)))
+    requested = arguments(sys.argv[1:])
+    leave(exit_status("report", "writing the report", lambda: run(requested)))

@@ -57,18 +57,18 @@ def load_figures(directory: Path):
 
 
 def figure(entry, i, file):
-    place = f"/figures/{i}"
+    pointer = f"/figures/{i}"
     id_, title, caption = (
-        member(entry, key, str, file, place, "") for key in ("id", "title", "caption")
+        member(entry, key, str, file, pointer, "") for key in ("id", "title", "caption")
     )
-    sources, files = (member(entry, key, list, file, place, []) for key in ("sources", "files"))
+    sources, files = (member(entry, key, list, file, pointer, []) for key in ("sources", "files"))
     # Use only the name, because a figure is in the folder of its list.
     drawing = next(
         (file.parent / Path(str(name)).name for name in files if str(name).endswith(".svg")), None
     )
     if drawing is None or not drawing.is_file():
         raise InputError(
-            f"{file}: {place}/files: got {shown(files)}; allowed: an SVG file beside it"
+            f"{file}: {pointer}/files: got {shown(files)}; allowed: an SVG file beside it"
         )
     return Figure(
         id_ or f"figure-{i + 1}",

@@ -71,14 +71,14 @@ def cell(value, sort_key=None, classes=""):
     return f"<td{attributes}>{value}</td>"
 
 
-def known_number(value, tolerance, most=3):
-    """Formats a number with the digits that are significant at its tolerance, at most `most`. If the tolerance is not
-    smaller than the number, returns a bound: "≤ 0.4"."""
+def known_number(value, tolerance, max_digits=3):
+    """Formats a number with the digits that are significant at its tolerance, at most `max_digits`. If the tolerance is
+    not smaller than the number, returns a bound: "≤ 0.4"."""
     value = number_or_none(value)
     if value is not None and tolerance and tolerance >= abs(value):
         sign = "≤ " if value >= 0 else "0 ± "
         return sign + number(rounded_up(abs(value) + tolerance), 1)
-    return number(value, deserved_digits(value, tolerance, most))
+    return number(value, deserved_digits(value, tolerance, max_digits))
 
 
 def rounded_up(value):
@@ -173,12 +173,13 @@ def column(name, values=()):
     )
 
 
-def deserved_digits(value, tolerance, most):
-    """Returns the number of significant digits at a tolerance, from 1 to `most`."""
+def deserved_digits(value, tolerance, max_digits):
+    """Returns the number of significant digits at a tolerance, from 1 to `max_digits`."""
     if not value or not tolerance:
-        return most
+        return max_digits
     return max(
-        1, min(most, math.floor(math.log10(abs(value))) - math.floor(math.log10(tolerance)) + 1)
+        1,
+        min(max_digits, math.floor(math.log10(abs(value))) - math.floor(math.log10(tolerance)) + 1),
     )
 
 

@@ -47,7 +47,7 @@ SETTLING_S = 0.05
 CUTOFF_HZ = 30.0
 # Largest number of rows of a sound: two minutes at 2 kHz, half a megabyte in the page.
 LONGEST = 1 << 18
-LEAST_SETTLED_S = (
+MIN_SETTLED_S = (
     1 / 30
 )  # with fewer settled rows, the run bounces and has no metrics of settled contact
 
@@ -143,7 +143,7 @@ def worst_moments(columns, scenario):
     that hardly settles, uses the force of all rows."""
     times, step, depth = columns["time_s"], force_steps(columns), columns["depth_max_m"]
     rows = np.flatnonzero(settled_rows(columns, scenario))
-    is_settled = len(times) > 1 and len(rows) * (times[1] - times[0]) >= LEAST_SETTLED_S
+    is_settled = len(times) > 1 and len(rows) * (times[1] - times[0]) >= MIN_SETTLED_S
     rows = rows if is_settled else np.arange(len(times))
     jump, deepest = rows[step[rows].argmax()], depth.argmax()
     return [
@@ -231,17 +231,17 @@ def sound(columns):
     filtered = np.array([high_passed(columns[f"f{axis}_N"][:LONGEST], rate) for axis in "xyz"])
     if not (np.abs(filtered) < 1e30).all():
         return None
-    heard = strongest(filtered) @ filtered
-    peak = np.abs(heard).max()
+    sound = strongest(filtered) @ filtered
+    peak = np.abs(sound).max()
     if peak == 0:
         return None
-    touching = heard[columns["colliding"][:LONGEST] > 0]
+    touching = sound[columns["colliding"][:LONGEST] > 0]
     return {
         "rate": rate,
         "scale": peak / 32767,
         "start": times[0],
         "rms": math.sqrt(np.mean(touching**2)) if touching.size else 0.0,
-        "samples": base64_of("h", map(round, (heard / peak * 32767).tolist())),
+        "samples": base64_of("h", map(round, (sound / peak * 32767).tolist())),
     }
 
 

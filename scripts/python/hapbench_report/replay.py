@@ -60,26 +60,26 @@ def replays(runs, labels):
 
 def scene(i, runs, labels):
     recordings = [Recording(run) for run in runs]
-    shell, said = points_of(runs[0], recordings)
+    shell, note = points_of(runs[0], recordings)
     longest = max(recording.columns["time_s"][-1] for recording in recordings)
     if any(len(recording.columns["time_s"]) > LONGEST for recording in recordings):
-        said = f"{said} The sound plays the first {LONGEST} recorded steps of each run.".strip()
-    thinned_out = [
+        note = f"{note} The sound plays the first {LONGEST} recorded steps of each run.".strip()
+    subsampled = [
         recording
         for recording in recordings
         if len(recording.shown) < len(recording.columns["time_s"])
     ]
-    if thinned_out:
+    if subsampled:
         drawn, every = (
-            sum(map(len, of)) for of in zip(*((r.shown, r.columns["time_s"]) for r in thinned_out))
+            sum(map(len, of)) for of in zip(*((r.shown, r.columns["time_s"]) for r in subsampled))
         )
-        said = f"{said} {drawn} of {every} recorded steps are drawn, including every peak.".strip()
+        note = f"{note} {drawn} of {every} recorded steps are drawn, including every peak.".strip()
     names = list(dict.fromkeys(run.name for run in runs))
     about = {
         "id": names[0] if i == 0 else f"{names[0]}-{i + 1}",
         "title": ", ".join(names),
         "scenario": names[0],
-        "note": said,
+        "note": note,
         "speed": min(SPEEDS, key=lambda speed: abs(np.log(speed / max(longest / WATCHED_S, 1e-9)))),
     }
     try:
@@ -121,14 +121,14 @@ def packed_recording(recording, label):
     flat = [contact for of_row in recording.contacts for contact in of_row]
     width = len(CONTACT_COLUMNS)
     scales = [max((abs(c[i]) for c in flat), default=0.0) / 32767 or 1.0 for i in range(width)]
-    own = look(recording.run.algorithm)
+    appearance = look(recording.run.algorithm)
     colliding = recording.columns["colliding"]
     return {
         "algorithm": recording.run.algorithm,
         "label": label,
-        "colour": own.colour,
-        "dark": own.dark,
-        "dash": own.dash,
+        "colour": appearance.colour,
+        "dark": appearance.dark,
+        "dash": appearance.dash,
         "outcome": recording.run.outcome,
         "end_s": at(recording.run.summary, "/duration_s"),
         "rowColumns": MEASURED_COLUMNS + (TENSOR_COLUMNS if recording.tensors else ()),
@@ -162,29 +162,31 @@ def points_of(run, recordings):
             for of_row in r.contacts
             for contact in of_row
         }
-        every = np.array([[*place, *normal] for place, normal in touched.items()]).reshape(-1, 6)
+        every = np.array([[*position, *normal] for position, normal in touched.items()]).reshape(
+            -1, 6
+        )
     radius = max((r for _, r in recordings[0].tool or ()), default=0.0)
-    drawn = thinned(every, touched_box(recordings), MARGIN * radius)
+    drawn = subset(every, touched_box(recordings), MARGIN * radius)
     count = f"{len(drawn)} of {len(every)} points of the surface are drawn, including all points near contacts."
-    said = [failure] if failure else []
+    notes = [failure] if failure else []
     if at(run.scenario, "/tool/type") == "mesh":
-        said.append(
+        notes.append(
             "The tool is a mesh: its silhouette is drawn as a solid of revolution. Points inside the tool are marked "
             "if contacts were recorded."
         )
-    return drawn, " ".join(said + ([count] if len(drawn) < len(every) else []))
+    return drawn, " ".join(notes + ([count] if len(drawn) < len(every) else []))
 
 
 def touched_box(recordings):
     """Returns the corners of the bounding box of the contacts and of the tips of rows in contact; if nothing touches,
     of all tips."""
-    places = [contact[:3] for r in recordings for of_row in r.contacts for contact in of_row]
-    places += [tip for r in recordings for tip in r.tips(touching=True)]
-    places = places or [tip for r in recordings for tip in r.tips(touching=False)]
-    return [[bound(p[i] for p in places) for i in range(3)] for bound in (min, max)]
+    positions = [contact[:3] for r in recordings for of_row in r.contacts for contact in of_row]
+    positions += [tip for r in recordings for tip in r.tips(touching=True)]
+    positions = positions or [tip for r in recordings for tip in r.tips(touching=False)]
+    return [[bound(p[i] for p in positions) for i in range(3)] for bound in (min, max)]
 
 
-def thinned(points, box, margin):
+def subset(points, box, margin):
     """Returns a subset of the points. Points near the box are preferred: `margin` is the distance from the box along
     any axis."""
     low, high = np.array(box)
@@ -193,11 +195,11 @@ def thinned(points, box, margin):
     return np.concatenate([kept, some(points[~near], ALL - len(kept))])
 
 
-def some(points, most):
-    """Returns at most `most` points, chosen at random: every n-th point of a grid would form stripes."""
-    if len(points) <= most:
+def some(points, max_count):
+    """Returns at most `max_count` points, chosen at random: every n-th point of a grid would form stripes."""
+    if len(points) <= max_count:
         return points
-    return points[np.sort(np.random.default_rng(1).choice(len(points), most, replace=False))]
+    return points[np.sort(np.random.default_rng(1).choice(len(points), max_count, replace=False))]
 
 
 def surface_of(runs):
@@ -236,8 +238,8 @@ def shell_of(scenario):
         except (OSError, subprocess.TimeoutExpired) as error:
             return None, f"The surface is not drawn: {error}."
         if done.returncode:
-            said = (done.stderr.strip().splitlines() or ["no message"])[-1]
-            return None, f"Only points that were in contact are drawn: {said}."
+            message = (done.stderr.strip().splitlines() or ["no message"])[-1]
+            return None, f"Only points that were in contact are drawn: {message}."
         columns = read_columns(file, SHELL_COLUMNS)
         points = np.column_stack([columns[name] for name in SHELL_COLUMNS])
         closed = at(json.loads(done.stdout), "/0/environment/closed")

@@ -26,8 +26,8 @@ def failed(run):
 
 
 def value_of(run, metric):
-    """Returns a metric of the section metrics, or SECTION.NAME of another section; None if it is not a finite
-    number."""
+    """Returns a metric of the section "metrics", or of another section if `metric` is SECTION.NAME; None if it is not
+    a finite number."""
     section, _, name = metric.rpartition(".")
     values = run.summary.get(section or "metrics")
     return number_or_none(values.get(name)) if isinstance(values, dict) else None
@@ -39,7 +39,7 @@ def tolerance_of(run, metric):
 
 
 @dataclass
-class Standing:
+class Entry:
     """One law in one scene for one metric."""
 
     values: dict  # value by repetition, without failed runs
@@ -125,28 +125,28 @@ class Scene:
     def depends_on_seed(self):
         return any(len({run.state_hash for run in law.runs.values()}) > 1 for law in self.laws)
 
-    def standings(self, metric):
-        """Returns the standing by label of a law, in the order of the laws."""
-        found = {law.label: self.standing(law, metric) for law in self.laws}
+    def entries(self, metric):
+        """Returns the entry by label of a law, in the order of the laws."""
+        found = {law.label: self.entry(law, metric) for law in self.laws}
         direction = self.better.get(metric)
         if direction and any(of.mean is not None for of in found.values()):
-            places = [(len(law.failures), found[law.label]) for law in self.laws]
-            for own in places:
-                own[1].rank = 1 + sum(is_better(*other, *own, direction) for other in places)
-            for failures, own in places:
-                if own.is_unknown and not failures:
-                    own.rank = None
-            if len({own.rank for _, own in places} - {None}) < 2:
-                for _, own in places:
-                    own.rank = None
+            ranked = [(len(law.failures), found[law.label]) for law in self.laws]
+            for pair in ranked:
+                pair[1].rank = 1 + sum(is_better(*other, *pair, direction) for other in ranked)
+            for failures, entry in ranked:
+                if entry.is_unknown and not failures:
+                    entry.rank = None
+            if len({entry.rank for _, entry in ranked} - {None}) < 2:
+                for _, entry in ranked:
+                    entry.rank = None
         return found
 
     def ranks(self, metric):
         """Returns the rank by label of a law. The rank is None if the metric has no better direction, if only a bound
         of the number is known, and for all laws if their ranks would be equal."""
-        return {label: of.rank for label, of in self.standings(metric).items()}
+        return {label: of.rank for label, of in self.entries(metric).items()}
 
-    def standing(self, law, metric):
+    def entry(self, law, metric):
         values = law.values(metric)
         common = [value for seed, value in values.items() if seed in self.seeds]
         errors = [
@@ -156,7 +156,7 @@ class Scene:
             for tolerance in [tolerance_of(run, metric)]
             if tolerance is not None
         ]
-        return Standing(
+        return Entry(
             values,
             float(np.mean(common)) if common else None,
             float(np.std(common, ddof=1)) if len(common) > 1 and self.depends_on_seed else None,
@@ -165,7 +165,7 @@ class Scene:
 
     def sorted_laws(self, metric):
         """Returns the laws, best first: by failures, then by the mean; laws without a mean come last."""
-        found, sign = self.standings(metric), -1 if self.better.get(metric) == "more" else 1
+        found, sign = self.entries(metric), -1 if self.better.get(metric) == "more" else 1
 
         def key(law):
             mean = found[law.label].mean
@@ -174,18 +174,18 @@ class Scene:
         return sorted(self.laws, key=key)
 
 
-def is_better(failures, own, other_failures, other, direction):
+def is_better(failures, entry, other_failures, other, direction):
     """Returns True if the first law ranks before the other law."""
     if failures != other_failures:
         return failures < other_failures
-    if failures or own.mean is None:
+    if failures or entry.mean is None:
         return False
     if other.mean is None:
         return True
     sign = -1 if direction == "more" else 1
-    more = sign * (other.mean - own.mean)
-    return more > own.error + other.error and more > RESOLUTION * max(
-        abs(own.mean), abs(other.mean)
+    more = sign * (other.mean - entry.mean)
+    return more > entry.error + other.error and more > RESOLUTION * max(
+        abs(entry.mean), abs(other.mean)
     )
 
 
