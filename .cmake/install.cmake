@@ -1,9 +1,9 @@
-# Rules of `cmake --install`: libraries and headers for find_package(hapbench), the files that come with them, the program.
+# Rules of `cmake --install`: libraries and headers for find_package(hapbench), their shared files, and the program.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 set(config_folder ${CMAKE_INSTALL_LIBDIR}/cmake/hapbench)
 
-# The commands are our program's own.
+# Omit the library of the program's commands, which other projects do not need.
 get_property(libraries GLOBAL PROPERTY HAPBENCH_LIBRARIES)
 list(REMOVE_ITEM libraries hapbench_scenarios_program hapbench_scenarios_program_headers)
 get_property(folders GLOBAL PROPERTY HAPBENCH_FOLDERS)
@@ -26,8 +26,8 @@ foreach(folder ${folders})
     FILES_MATCHING PATTERN "*.hpp" PATTERN "*.h")
 endforeach()
 
-# The files that come with program and libraries. bin and share stay side by side, which is how the program finds them.
-# The component "program" is what scripts/python/setup.py packs: the program, these files and the Python package.
+# Files that the program and the libraries read. The program finds them in share/, which must stay beside bin/.
+# scripts/python/setup.py packs the component "program": the program, these files and the Python package.
 set(share share/hapbench)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/scenarios/library DESTINATION ${share}/scenarios COMPONENT program)
 install(FILES ${PROJECT_SOURCE_DIR}/scenarios/GLOSSARY.md DESTINATION ${share}/scenarios COMPONENT program)
@@ -48,7 +48,7 @@ if(HAPBENCH_BUILD_PROGRAM)
   ]] COMPONENT program)
 endif()
 
-# The renderer: a package of its own, for find_package(hapbench_renderer) in projects without C++, and for pkg-config.
+# The renderer is a separate package, for find_package(hapbench_renderer) in projects without C++, and for pkg-config.
 if(TARGET hapbench_renderer)
   install(TARGETS hapbench_renderer EXPORT hapbench_renderer-targets LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
   set(renderer_config ${CMAKE_INSTALL_LIBDIR}/cmake/hapbench_renderer)
@@ -62,10 +62,10 @@ if(TARGET hapbench_renderer)
     ${PROJECT_SOURCE_DIR}/device_model/live/hapbench_renderer.hpp DESTINATION include)
 endif()
 
-# The interface of force laws and sources of contacts in C.
+# The C interface of modules, which define force laws and contact sources.
 install(FILES ${PROJECT_SOURCE_DIR}/algorithms/module/hapbench_module.h DESTINATION include)
 
-# The manuals, and the examples that they link, in the folders in which they do.
+# Manuals, and the examples that they link, in the same folders as in the source tree, so that the links work.
 file(GLOB_RECURSE manuals RELATIVE ${PROJECT_SOURCE_DIR} CONFIGURE_DEPENDS
   algorithms/module/examples/* algorithms/module/hapbench_module.h algorithms/module/law_module.hpp algorithms/laws/equal_weights.cpp
   device_model/live/examples/* device_model/live/hapbench_renderer.h device_model/live/hapbench_renderer.hpp
@@ -82,7 +82,7 @@ install(DIRECTORY ${PROJECT_SOURCE_DIR}/results/reference/figures ${PROJECT_SOUR
 if(NOT PROJECT_IS_TOP_LEVEL)
   return()
 endif()
-# The Debian package: cpack in the folder of a build, the preset "package" for any processor.
+# The Debian package: run cpack in the folder of a build. The preset "package" compiles for any processor.
 file(STRINGS ${PROJECT_SOURCE_DIR}/CITATION.cff maintainer REGEX "^  - name: " LIMIT_COUNT 1)
 string(REGEX REPLACE "^  - name: *" "" maintainer "${maintainer}")
 set(CPACK_GENERATOR DEB)
@@ -102,12 +102,12 @@ with their headers, scenarios, examples and manuals.")
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_DEPENDS python3)
 if(TARGET _hapbench)
-  # A module serves the one Python it was compiled for.
+  # The compiled module works only with the minor version of Python that it was compiled for.
   math(EXPR next_minor "${Python_VERSION_MINOR} + 1")
   string(APPEND CPACK_DEBIAN_PACKAGE_DEPENDS
     " (>= ${Python_VERSION_MAJOR}.${Python_VERSION_MINOR}), python3 (<< ${Python_VERSION_MAJOR}.${next_minor})")
 endif()
-# To draw; to compile against the libraries.
+# Recommended packages draw figures; suggested packages compile programs that use the libraries.
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "python3-matplotlib, python3-numpy, python3-scipy")
 set(CPACK_DEBIAN_PACKAGE_SUGGESTS
   "cmake, g++, libeigen3-dev, nlohmann-json3-dev, libfmt-dev, libopenmesh-dev, libtbb-dev")

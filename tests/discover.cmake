@@ -1,5 +1,5 @@
-# Lists the tests of a GoogleTest executable for ctest, after it is built. One test of ctest is one suite, with all its cases and
-# parameters in one process: a process for each of 2 500 cases takes longer than the cases themselves.
+# Lists the tests of a GoogleTest executable for ctest, after it is built. Each test of ctest runs one suite, with all
+# its cases and parameters, in one process: a separate process for each of 2500 cases would take longer than the cases.
 #   cmake -D EXECUTABLE=… -D OUTPUT=… -D PREFIX=… -D LABEL=… -D ALL=… -D TIMEOUT=… -P discover.cmake
 cmake_minimum_required(VERSION 3.25)
 execute_process(COMMAND ${EXECUTABLE} --gtest_list_tests OUTPUT_VARIABLE listing COMMAND_ERROR_IS_FATAL ANY)
@@ -10,8 +10,8 @@ foreach(line ${lines})
   string(REGEX REPLACE " *#.*" "" line "${line}")
   if(line MATCHES "^([A-Za-z0-9_/]+)\\.$")
     set(listed ${CMAKE_MATCH_1})
-    string(REGEX REPLACE "/[0-9]+$" "" suite ${listed})  # Suite/0 is a type of a typed suite
-    string(REGEX REPLACE "^.*/" "" suite ${suite})  # Instance/Suite is an instance of a parametrised one
+    string(REGEX REPLACE "/[0-9]+$" "" suite ${listed})  # Suite/0 is one type of a typed suite
+    string(REGEX REPLACE "^.*/" "" suite ${suite})  # Instance/Suite is one instance of a parametrised suite
     list(APPEND suites ${suite})
     list(APPEND filter_${suite} "${listed}.*")
   endif()

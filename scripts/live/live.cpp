@@ -26,9 +26,9 @@
 namespace hapbench {
 namespace {
 
-/// Waypoints of the pointer, which sets the hand's position [m] and the wrist's tilt and azimuth [rad]. Keeps
-/// only the latest waypoints: between them, their profiles have the same values, bit for bit, as profiles of
-/// all waypoints.
+/// Waypoints of the pointer, which sets the hand's target position [m] and the wrist's tilt and azimuth [rad]. Keeps
+/// only the latest waypoints. From the current step on, profiles of these waypoints equal profiles of all waypoints bit
+/// for bit.
 class Pointer {
  public:
   static constexpr std::size_t kLed = 5;
@@ -53,11 +53,11 @@ nlohmann::json list(const Vec3& v) {
   return {v.x(), v.y(), v.z()};
 }
 
-/// Count of numbers for each recorded row: time, five vectors, largest depth, number of contacts. ROW in
-/// page/engine.js has their positions.
+/// Number of values in the row of a step: time, five vectors, largest depth, number of contacts. ROW in page/engine.js
+/// lists their indices.
 constexpr std::size_t kRowNumbers = 1 + 5 * 3 + 2;
 
-/// The run of a page, and its records for the page.
+/// One run of a page, with the values that the page shows.
 class Session final : public Observer {
  public:
   /// Prepares the run. `is_led`: the pointer moves the hand, and aim() must be called before the first step.
@@ -85,7 +85,7 @@ class Session final : public Observer {
     rows_.insert(rows_.end(), {row.force.depth_max, static_cast<double>(row.rendered->size())});
   }
 
-  /// Adds a waypoint, which hand and wrist reach at time t [s]. The first waypoint begins the run.
+  /// Adds a waypoint, which the hand's target and the wrist reach at time t [s]. The first waypoint starts the run.
   void aim(double t, const std::array<double, Pointer::kLed>& values) {
     const std::uint64_t row = simulation_ ? simulation_->next_row() : 0;
     const Scenario& scenario = scene_.scenario();
@@ -99,7 +99,7 @@ class Session final : public Observer {
     if (!simulation_) begin();
   }
 
-  /// Simulates at most this many steps and returns their numbers, step after step, valid until the next call.
+  /// Simulates at most `rows` steps. Returns their rows, kRowNumbers values each, valid until the next call.
   const double* advance(std::uint32_t rows) {
     rows_.clear();
     rows_.reserve(kRowNumbers * rows);
@@ -161,8 +161,8 @@ class Session final : public Observer {
   const PointShell* shell() const { return shell_.get(); }
 
  private:
-  /// Gives hand and wrist to the pointer. Throws InputError if the scenario has another hand or a scripted
-  /// position.
+  /// Lets the pointer control the hand's target and the wrist. Throws InputError if the scenario has another hand or a
+  /// scripted position.
   void attach_pointer() {
     const Scenario& scenario = scene_.scenario();
     if (!std::holds_alternative<ImpedanceHandFields>(scenario.hand))
@@ -208,7 +208,7 @@ std::optional<Session> session;
 // Replacements of engine parts that need an operating system: the folder of an installation, modules and
 // signals.
 
-/// Returns a file of the page, or a bundled scenario of this name. Throws InputError if there is neither.
+/// Returns the path of a file of the page or of a bundled scenario. Throws InputError if neither exists.
 std::filesystem::path find_scenario(const std::string& name, const std::filesystem::path& directory) {
   std::vector<std::filesystem::path> places = {directory / name};
   for (const char* group : kScenarioGroups)
@@ -236,8 +236,8 @@ EXPORTED(allocate) void* page_allocate(std::uint32_t size) {
   return std::malloc(size);
 }
 
-/// Creates the run of a file or bundled scenario. `overrides` has lines like values of --set. `is_led`: the
-/// pointer moves the hand.
+/// Creates the run of a file or bundled scenario. Each line of `overrides` has the form of a value of --set. `is_led`:
+/// 1 if the pointer moves the hand, otherwise 0.
 EXPORTED(load) void page_load(const char* name, const char* overrides, std::uint32_t is_led) {
   std::vector<std::string> given;
   LineReader lines(overrides);
@@ -249,13 +249,13 @@ EXPORTED(scene) const char* page_scene() {
   return session->scene();
 }
 
-/// Moves the pointer from its last waypoint to these values, which it reaches at time t [s, m, rad].
+/// Adds a waypoint: the pointer reaches position x, y, z [m], tilt and azimuth [rad] at time t [s].
 EXPORTED(aim) void page_aim(double t, double x, double y, double z, double tilt, double azimuth) {
   session->aim(t, {x, y, z, tilt, azimuth});
 }
 
-/// Simulates `rows` steps and returns their numbers, step after step. Precondition: they end at least two steps
-/// before the last waypoint.
+/// Simulates at most `rows` steps and returns their rows in sequence. Precondition if the pointer moves the hand: the
+/// steps end at least two steps before the last waypoint.
 EXPORTED(advance) const double* page_advance(std::uint32_t rows) {
   return session->advance(rows);
 }
@@ -268,8 +268,8 @@ EXPORTED(state) const char* page_state() {
   return session->state();
 }
 
-/// Returns a coordinate of all points of the shell: x, y, z for 0 to 2, components of the normals for 3 to 5.
-/// Returns null without a shell.
+/// Returns one coordinate of all points of the point shell: x, y, z [m] for `which` = 0 to 2, components of the normals
+/// for 3 to 5. Returns null without a shell.
 EXPORTED(coordinates) const double* page_coordinates(std::uint32_t which) {
   const PointShell* shell = session->shell();
   if (shell == nullptr) return nullptr;

@@ -1,5 +1,5 @@
 // Adds exceptions and files to the standard library for WebAssembly, which is built without them. An exception
-// ends the engine with its message; the page then creates a new engine.
+// ends the engine with the exception's message; the page then creates a new engine.
 #include <sys/stat.h>
 #include <wasi/api.h>
 
@@ -54,7 +54,7 @@ path __current_path(error_code* error) {
   return "/";
 }
 
-/// Compares the paths as text: there are no links.
+/// Compares the paths as text, because the page's files have no links.
 bool __equivalent(const path& a, const path& b, error_code* error) {
   if (error) error->clear();
   return a.lexically_normal() == b.lexically_normal();

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# scripts/sweep.sbatch on a real Slurm: slurm_test.sh PROGRAM. A cluster of one node with four
-# processors, this machine, with daemons, ports, key and folder of its own. Status 77: there is no
-# Slurm to test with.
+# Tests scripts/sweep.sbatch on a real Slurm: slurm_test.sh PROGRAM. The cluster consists of this machine, as one node
+# with four processors. Its daemons, ports, key and folder exist only during the test. Exits with status 77, "skipped",
+# if Slurm is missing or the user is not root.
 set -euo pipefail
 here=$(cd -- "$(dirname -- "${BASH_SOURCE[0]}")/../.." && pwd)
 export HAPBENCH=$1
@@ -25,11 +25,11 @@ end() {
 trap end EXIT
 fail() { printf 'slurm_test: %s\n' "$1" >&2; tail -n 20 "$folder"/*.log >&2; exit 1; }
 free_port() { python3 -c 'import socket; s = socket.socket(); s.bind(("127.0.0.1", 0)); print(s.getsockname()[1])'; }
-# Each daemon is killed when this script ends, however it ends.
+# Starts a daemon that is killed when this script ends, also if the script is killed.
 start() { setpriv --pdeathsig=KILL "$@" & }
 
 mkdir "$folder"/{munge,state,spool}
-(umask 077; head -c 128 /dev/urandom >"$folder/munge/key")  # jobs run as root: nobody else is to submit any
+(umask 077; head -c 128 /dev/urandom >"$folder/munge/key")  # jobs run as root: no other user may submit a job
 chown -R munge "$folder/munge"
 chmod 755 "$folder" "$folder/munge"
 echo 'CgroupPlugin=cgroup/v1' >"$folder/cgroup.conf"
@@ -70,7 +70,7 @@ for ((attempt = 0; attempt < 1000; ++attempt)); do
 done
 [[ $(sinfo --noheader --format=%T) == idle ]] || fail 'the daemons of Slurm do not answer'
 
-# Runs of some 20 ms.
+# sweep FOLDER prints the arguments of a sweep, one per line. Each of its runs takes about 20 ms.
 sweep() {
   printf '%s\n' single_spring --set record.trajectory=false --set time.steps=100000 \
     --vary "rendering.stiffness_N_per_m=1e3:1e4:$runs:log" --out "$folder/$1"
@@ -83,14 +83,14 @@ wait_for_the_queue() { while [[ -n $(squeue --noheader) ]]; do sleep 0.2; done; 
 shard=$folder/out/sweep.
 is_begun() { [[ -e $shard$1_of_3.csv ]] || (($(sed -n '$=' "$shard$1_of_3.csv.part" 2>/dev/null || true) > 2)); }
 
-# Task 1 is killed, and task 0 stopped and requeued, as preemption does, once both have begun. With
-# more runs, a busy machine leaves time for that.
+# Once tasks 0 and 1 have begun, kill task 1, and stop and requeue task 0, as preemption does. If a task ends before
+# that, try again with four times as many runs.
 for ((runs = 120; ; runs *= 4)); do
   rm -rf "$folder/out"
   array=$(submit)
   until is_begun 0 && is_begun 1; do sleep 0.05; done
   if scancel --full --signal=KILL "${array}_1" && scontrol requeue "${array}_0"; then
-    # It would wait for two minutes. In the second in which it was stopped, Slurm would refuse to start it again.
+    # Restart task 0 after 2 s: Slurm would otherwise wait two minutes, and refuses a restart in the same second.
     scontrol update JobId="${array}_0" StartTime=now+2seconds
     wait_for_the_queue
     [[ -e ${shard}1_of_3.csv ]] || break

@@ -1,11 +1,11 @@
-// The engine in a page: a WebAssembly instance (scripts/live/live.cpp) and the few files that it reads, in memory.
+// Runs the simulation engine in a page: a WebAssembly instance (scripts/live/live.cpp), and its input files in memory.
 
 const SUCCESS = 0, BAD_DESCRIPTOR = 8, NO_ENTRY = 44, NOT_SUPPORTED = 58;
-const ROOT = 3;  // the first descriptor after the standard streams
+const ROOT = 3;  // descriptor of the folder /, the first after the standard streams
 const DIRECTORY = 3, REGULAR_FILE = 4;
 
-/** What an instance asks of its system, as far as one that only reads does (WASI preview 1). `files` maps absolute paths to
- *  bytes. */
+/** System calls (WASI preview 1) of a WebAssembly instance that only reads files. `files` maps absolute
+ *  paths to bytes. */
 class System {
   constructor(files) {
     this.files = files;
@@ -114,10 +114,11 @@ class System {
   }
 }
 
-/** One run of a scenario. Throws Error with the engine's message; the run can then not go on. */
+/** One run of a scenario. Throws Error with the engine's message; the run cannot continue after an error. */
 class Engine {
-  /** `name`: of a file or a bundled scenario; `overrides`: "path=value" each, as for --set. `isLed`: by `aim`, which comes
-   *  first, and not by the scenario's own hand and motion. */
+  /** Loads a scenario. `name`: a file or a bundled scenario; `overrides`: strings "path=value" like values of --set.
+   *  `isLed`: the waypoints of aim() move the tool, and aim() must be called before advance(). Otherwise the scenario's
+   *  hand and motion move the tool. */
   constructor(module, files, name, overrides, isLed = true) {
     this.system = new System(files);
     const {exports} = new WebAssembly.Instance(module, this.system.imports());
@@ -137,10 +138,10 @@ class Engine {
   }
   json(at) { return JSON.parse(this.system.text(at)); }
 
-  /** Where the pointer leads place [m], tilt and azimuth [rad] by time t [s]. */
+  /** Adds a waypoint: the pointer's position `place` [m], tilt and azimuth [rad] at time t [s]. */
   aim(t, place, tilt, azimuth) { this.calls.aim(t, ...place, tilt, azimuth); }
 
-  /** Computes so many rows; returns their numbers, row after row (ROW). */
+  /** Simulates `count` steps, or fewer if the run ends. Returns their numbers, one row (ROW) per step. */
   advance(count) {
     const at = this.calls.advance(count), done = this.calls.advanced();
     this.rows += done;
@@ -150,7 +151,7 @@ class Engine {
 
   get state() { return this.json(this.calls.state()); }
 
-  /** Points and normals of the shell. */
+  /** Returns the points and normals of the point shell: x, y, z, nx, ny, nz of each point. */
   shell() {
     const columns = [0, 1, 2, 3, 4, 5].map((k) =>
       this.scene.points ? new Float64Array(this.system.memory.buffer, this.calls.coordinates(k), this.scene.points) : []);
@@ -158,5 +159,5 @@ class Engine {
   }
 }
 
-/** Places of a row's numbers, as live.cpp writes them; `vibration` is the rendered force above 30 Hz. */
+/** Index of each quantity in a row, which live.cpp writes for each step. `vibration`: rendered force above 30 Hz. */
 const ROW = {time: 0, position: 1, axis: 4, force: 7, spring: 10, vibration: 13, depth: 16, contacts: 17, size: 18};

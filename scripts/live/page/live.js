@@ -1,17 +1,17 @@
-// The page: its runs, its readings, and the conversation with the worker.
+// The live page: starts runs in the worker, shows their values and handles the user's files.
 
 const PACKED = JSON.parse(document.getElementById("packed").textContent);
-/** Bytes of what was compressed by gzip and written as base64. */
+/** Decodes base64 and decompresses gzip. Returns a promise of an ArrayBuffer. */
 function unpressed(base64) {
   const bytes = Uint8Array.from(atob(base64), (c) => c.charCodeAt(0));
   return new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip"))).arrayBuffer();
 }
-/** Of a hand with a mass of about 0.1 kg, three quarters of the critical damping. */
+/** Hand damping [N s/m] for a stiffness [N/m]: 3/4 of the critical damping of a mass of 0.1 kg. */
 const dampingOf = (stiffness) => 1.5 * Math.sqrt(0.1 * stiffness);
-/** Rows for a run that lasts as long as somebody plays. */
+/** Number of steps of a run that must not end before the user stops it. */
 const ENDLESS = 1e9;
 
-/** The worker, asked and answered. */
+/** Sends orders to the worker (worker.js) and resolves a promise for each answer. */
 class Worked {
   constructor(onFailure) {
     this.onFailure = onFailure;
@@ -36,7 +36,7 @@ class Worked {
   }
 }
 
-/** Sets a dotted path of a nested object. Objects of the same type merge, as an override does in the program. */
+/** Replaces the value at a dotted path of a nested object. Creates missing objects on the path. */
 function setPath(json, path, value) {
   const keys = path.split("."), last = keys.pop();
   let at = json;
@@ -67,7 +67,8 @@ class Live {
   }
 
   async begin() {
-    // A page's own thread compiles no large module at once; the worker is sent the compiled one.
+    // Compile asynchronously, because browsers refuse to compile a large module synchronously on the page's main
+    // thread. The worker receives the compiled module.
     this.module = await WebAssembly.compile(await unpressed(PACKED.engine));
     const files = JSON.parse(new TextDecoder().decode(await unpressed(PACKED.files)));
     for (const [name, text] of Object.entries(files)) this.files.set(name, new TextEncoder().encode(text));
@@ -88,7 +89,7 @@ class Live {
   get shownSides() { return this.sides.slice(0, Number(this.find("#views").value)); }
   get handStiffness() { return Math.round(10 ** Number(this.find("#stiffness").value)); }
 
-  /** The overrides of a view's run, in the order in which they hold. */
+  /** Returns the overrides of a view's run. A later override takes precedence over an earlier override. */
   overrides(side) {
     const k = this.handStiffness, device = PACKED.devices[this.find("#device").selectedIndex];
     const hand = {type: "impedance", stiffness_N_per_m: k, damping_N_s_per_m: +dampingOf(k).toPrecision(4), target: {x_m: 0, y_m: 0, z_m: 0}};
@@ -97,7 +98,7 @@ class Live {
       "record={\"trajectory\":false,\"contacts\":false,\"stiffness_tensor\":false,\"energy\":false,\"ratio_iterations\":[],\"ideal_trajectory\":false}"];
   }
 
-  /** Another scene, with its own laws. */
+  /** Opens a scene and selects its force laws. */
   async openScene(index) {
     this.find("#scene").selectedIndex = index;
     const {laws, note} = this.scene;
@@ -106,7 +107,7 @@ class Live {
     await this.restart();
   }
 
-  /** Anything that a run is made of has changed: a new one. */
+  /** Starts new runs, for example after a change of the scene, a force law, the device or the hand. */
   async restart() {
     const shown = this.shownSides;
     this.sides.forEach((side) => { side.hidden = !shown.includes(side); });
@@ -174,7 +175,7 @@ class Live {
     this.find("#azimuth").value = String(this.pointer[4]);
   }
 
-  /** So many rows at once, while the loop stands. */
+  /** Stops continuous simulation, then simulates `rows` steps. */
   async stepRows(rows) {
     if (!this.begun) return;
     if (this.running) await this.toggle(false);
@@ -203,7 +204,7 @@ class Live {
     if (!this.begun || shown.runs.length !== trails.length) return;
     shown.runs.forEach((run, i) => trails[i].add(run.rows, run.state));
     this.shown = shown;
-    // Slowed down it would sound in pieces.
+    // Play sound in real time only: at a slower pace it would have gaps.
     if (this.find("#pace").value === "1") this.sound.play(trails.map((trail) => trail.heard));
     this.draw();
   }
@@ -251,7 +252,7 @@ class Live {
     this.trails.forEach((trail, i) => inColour(this.sides[i].querySelector(".swatch"), trail));
   }
 
-  /** The motion so far as a scenario of its own, of one view's law. */
+  /** Returns the motion so far as a scenario with one view's force law, and the state hash of that view's run. */
   async kept(view = 0) {
     const {waypoints, runs} = await this.worked.ask("keep"), {rows, state_hash} = runs[view];
     const own = this.scene.own, base = own ? JSON.parse(own) : {extends: this.scene.scenario};
@@ -275,7 +276,7 @@ class Live {
     this.say(`Kept as ${name}.json: "hapbench run ${name}.json" has the state ${state_hash}.`);
   }
 
-  // Files of one's own.
+  // Files of the user.
 
   async take(file) {
     const bytes = new Uint8Array(await file.arrayBuffer()), name = file.name;
@@ -286,7 +287,7 @@ class Live {
       time: {step_s: 0.0005, steps: 1}, environment: {type: "mesh", file: name, scale, ...environment}, tool, initial: {position_m: start},
       hand: {type: "impedance", target: {x_m: 0, y_m: 0, z_m: 0}}, rendering: {algorithm: "shaped_stiffness", stiffness_N_per_m: 20000}});
     try {
-      // Its size first.
+      // Load the mesh once to find its size, from which the tool's size and start follow.
       this.files.set("/own/size.json", new TextEncoder().encode(ask({}, {type: "bur", family: "ball", diameter_m: 0.001}, [0, 0, 900])));
       const {scenes: [{box_m: [low, high]}]} = await this.worked.ask("start", {module: this.module, files: this.files, runs: [{name: "/own/size.json", overrides: []}]});
       const size = Math.max(...low.map((x, i) => high[i] - x)), diameter = +(size / 8).toPrecision(2);
@@ -312,7 +313,8 @@ class Live {
     await this.openScene(this.scenes.length - 1);
   }
 
-  /** #scene=ID, or #scenario=JSON as the report links it. */
+  /** Opens the scene that the page's address names: #scene=ID, or #scenario=JSON in links of the report. Otherwise
+   *  opens the first scene. */
   async openAddress() {
     const [key, value] = location.hash.slice(1).split(/=(.*)/s);
     if (key === "scenario") return this.takeScenario("linked.json", decodeURIComponent(value));

@@ -1,4 +1,4 @@
-// What the page's menus, buttons, pointers and keys do.
+// Handles the events of the page's menus, buttons, pointers and keys.
 
 function listenToLive(live) {
   const {find} = live, on = (selector, event, action) => find(selector).addEventListener(event, action);
@@ -52,7 +52,7 @@ function showGain(live) {
   live.find("#gain-said").textContent = `1 N is ${NEWTON_DB + db} dB of full scale`.replaceAll("-", "−");
 }
 
-/** Pointer, wheel and keys in a view. */
+/** Handles pointers, wheel and keys in a view. */
 function listenToHand(live, view) {
   const fingers = new Map();
   view.addEventListener("contextmenu", (e) => e.preventDefault());
@@ -87,7 +87,7 @@ function listenToHand(live, view) {
 
 const isLeading = (event, fingers) => fingers.size === 1 && !event.shiftKey && !(event.buttons & 2);
 
-/** The hand's target under the pointer, as far from the viewer as it was. */
+/** Moves the hand's target under the pointer, parallel to the picture: its distance to the viewer stays. */
 function leadTo(live, view, event) {
   const {left, top} = view.getBoundingClientRect(), {clientWidth: width, clientHeight: height} = view;
   const project = live.camera.projection(width, height), at = project(live.pointer.slice(0, 3));

@@ -1,11 +1,12 @@
-// The force above 30 Hz, heard as it is rendered: a newton is always as loud, so that laws compare by ear. Clicks where
-// contact begins and ends.
+// Plays the rendered force above 30 Hz during the simulation. 1 N always has the same loudness, so that force laws can
+// be compared by ear. Clicks mark where contact begins and ends.
 
-/** Amplitude of full scale for 1 N [dB] at a gain of 0 dB. */
+/** Amplitude of 1 N [dB relative to full scale] at a gain of 0 dB. */
 const NEWTON_DB = -20;
 const DELAY_S = 0.06, LONGEST_S = 0.3;
 
-/** The rendered force of one run above 30 Hz: along the direction in which it is strongest of late, and its rms. */
+/** Rendered force of one run above 30 Hz: its component along a slowly adapting strongest direction, and its rms
+ *  (average with a time constant of 0.5 s). `rate`: samples per second. */
 class Vibration {
   constructor(rate) {
     this.direction = [0.6, 0.6, 0.53];
@@ -13,7 +14,7 @@ class Vibration {
     this.share = 1 - Math.exp(-1 / (0.5 * rate));
   }
 
-  /** The signed size of the next sample along that direction. */
+  /** Returns the component [N] of the next force `high` [N] along the direction, then adapts direction and rms. */
   next(high) {
     const along = high.reduce((sum, h, i) => sum + h * this.direction[i], 0);
     const size2 = high.reduce((sum, h) => sum + h * h, 0);
@@ -28,7 +29,8 @@ class Vibration {
   get rms() { return Math.sqrt(this.power); }
 }
 
-/** Plays samples at the loop's rate, each of two channels in its ear; runs in the audio thread. */
+/** Code of the audio thread: resamples the loop's samples to the rate of the audio device. Plays one run in both ears,
+ *  or one of two runs in each ear. */
 const PLAYER = `
 class Player extends AudioWorkletProcessor {
   constructor({processorOptions: {rate, delay, longest}}) {
@@ -79,7 +81,8 @@ class LiveSound {
     this.gainDb = 0;
   }
 
-  /** From a click or a key: browsers start no sound without one. */
+  /** Call this from a click or a key event, because browsers start sound only after a user's action. `rate`: steps per
+   *  second. */
   async start(rate) {
     if (!this.context) {
       this.context = new AudioContext();
@@ -99,7 +102,7 @@ class LiveSound {
       this.player.connect(this.gain);
       this.rate = rate;
     }
-    // Not awaited: without a device of sound some browsers never answer.
+    // resume() is not awaited: without an audio device its promise never resolves in some browsers.
     this.context.resume();
     this.on = true;
   }
@@ -108,17 +111,18 @@ class LiveSound {
 
   setGain(db) {
     this.gainDb = db;
-    // The limiter reads -1 ... 1, where it is straight up to a quarter.
+    // Full scale is 1/4 at the limiter's input, where tanh(4 x) / 4 compresses it by a quarter. `out` multiplies by 4.
     if (this.gain) this.gain.gain.value = 10 ** ((NEWTON_DB + db) / 20) / 4;
   }
 
-  /** Samples [N] of one run, or of two for the two ears. */
+  /** Plays samples [N]. `channels`: the samples of one run, or of two runs, one run per ear. */
   play(channels) {
     if (this.on && channels[0].length) this.player.port.postMessage(channels);
   }
 }
 
-/** A tick of so many newtons that decays, added where contact begins (bright) or ends (dull). */
+/** Adds a click at sample `at`: a tone of 0.5 N that decays with a time constant of 2 ms. Its pitch is rate / 4 [Hz]
+ *  where contact begins, and rate / 10 where contact ends. */
 function addClick(samples, at, rate, begins) {
   const pitch = begins ? rate / 4 : rate / 10;
   for (let i = 0; i < 0.008 * rate && at + i < samples.length; ++i)

@@ -1,15 +1,15 @@
-// What a view draws besides the replay's parts: the hand's target, the spring force, the proxy.
+// Draws a view of the live page: the parts of the replay, and the hand's target, the spring force and the proxy.
 
-const KEPT_S = 4;            // of the plot
-const EVERY = 6;             // rows for a point of the plot
+const KEPT_S = 4;            // duration of the plot [s]
+const EVERY = 6;             // number of steps per point of the plot
 const LAWS_COLOURS = [["#b04a00", "#ffb06b"], ["#0068a8", "#7cc0ee"]];
-const NEAR = 9;              // half widths of the tool around the contact in which points are drawn
-const MOST_POINTS = 7000;
-const DEEPEST_M = 2e-4;
+const NEAR = 9;              // half extent of the drawn shell around the tool's start, in half widths of the tool
+const MAX_POINTS = 7000;     // largest number of drawn shell points, approximately
+const DEEPEST_M = 2e-4;      // depth [m] of the last colour of the depth scale
 
 TRACKS[2] = {title: "created", unit: "mJ", of: (r, k) => r.value(k, "created_J") * 1e3};
 
-/** The last seconds of a run, as the replay's drawings read a recording. */
+/** Last KEPT_S seconds of a run, with the methods of a recording that the drawing functions of the replay call. */
 class Trail {
   constructor(label, index, step) {
     const [light, dark] = LAWS_COLOURS[index];
@@ -19,7 +19,7 @@ class Trail {
     this.last = null;
   }
 
-  /** Takes new rows, with the state at their end. */
+  /** Appends new rows of numbers (ROW). `state`: the engine's state after the last row. */
   add(rows, state) {
     const rate = 1 / this.step, count = rows.length / ROW.size, heard = new Float32Array(count);
     const clicks = [];
@@ -41,7 +41,8 @@ class Trail {
     if (first > 0) this.points.splice(0, first);
   }
 
-  // What drawScene, drawField and drawTracks ask for. The row after the last of the plot is the present.
+  // Interface for drawScene, drawField and drawTracks. Index k is a point of the plot; k = length is the current step.
+  // axis(), contactsAt() and tensor() always return values of the current step.
   get length() { return this.points.length; }
   get start() { return this.length ? Math.max(0, this.points[this.length - 1].time - KEPT_S) : 0; }
   time(k) { return this.points[k].time - this.start; }
@@ -60,7 +61,7 @@ class Trail {
 
 const vectorAt = (numbers, at) => [numbers[at], numbers[at + 1], numbers[at + 2]];
 
-/** What the replay's drawings ask of a scene, from the engine's. */
+/** Converts the engine's scene to a scene object for the drawing functions of the replay. */
 function viewedScene(engineScene, shell, springs) {
   const {initial_m: start, half_width_m: half, box_m: [low, high], up} = engineScene;
   const near = Math.max(NEAR * half, 1e-4), places = [];
@@ -68,8 +69,8 @@ function viewedScene(engineScene, shell, springs) {
   for (let i = 0; i < shell.length; i += 6) places.push(i);
   const isNear = (i) => [0, 1, 2].every((k) => Math.abs(shell[i + k] - start[k]) < near);
   const shown = planar ? places : places.filter(isNear);
-  // Drawn by lot, as every nth of a grid's points makes stripes.
-  const share = MOST_POINTS / shown.length, lot = (n) => (Math.imul(n + 1, 2654435761) >>> 0) / 2 ** 32;
+  // Choose points pseudo-randomly, because every n-th point of a grid would form stripes.
+  const share = MAX_POINTS / shown.length, lot = (n) => (Math.imul(n + 1, 2654435761) >>> 0) / 2 ** 32;
   const points = shown.filter((i) => lot(i / 6) < share).map((i) => ({at: vectorAt(shell, i), normal: vectorAt(shell, i + 3)}));
   const size = springs.length ? 1e-3 : 4 * half, whole = planar && shell.length > 0;
   return {planar: planar || springs.length > 0, points, springs, deepest: DEEPEST_M, up, lean: engineScene.lean,
@@ -97,7 +98,7 @@ function drawLive(canvas, scene, camera, trail, engineScene, led) {
   drawTarget(context, project(led.slice(0, 3)), project(tip), colours);
 }
 
-/** The outline of a tool as far as it is convex: a proxy has no others. */
+/** Returns the convex hull of the projected tool. The proxy's guarantee holds for convex tools only. */
 function outlineOf(tool, project, tip, axis) {
   const [a, b] = across(axis), ring = [...Array(16).keys()].map((i) => [Math.cos(Math.PI * i / 8), Math.sin(Math.PI * i / 8)]);
   return hull(tool.profile.flatMap(([s, r]) => ring.map(([c, d]) => project(add(add(add(tip, axis, s), a, r * c), b, r * d)))));
@@ -127,7 +128,7 @@ function drawTarget(context, at, tip, colours) {
   }
 }
 
-/** The last seconds of all trails. */
+/** Plots the last KEPT_S seconds of all trails. */
 function drawChart(canvas, trails) {
   canvas.paintedKey = null;
   if (trails.every((trail) => trail.length > 1)) drawTracks(canvas, trails, KEPT_S, KEPT_S, false);

@@ -1,16 +1,16 @@
-// The loop of the page, in a worker: one or two runs under one pointer, paced by the clock on the wall.
+// Web worker: simulates one or two runs that follow the same pointer, at a pace relative to the wall clock.
 
-/** Of what the loop is late, so much is caught up [s]; the rest is dropped, and simulated time falls behind the clock. */
-const MOST_BEHIND_S = 0.05;
-/** The pointer's motion is smoothed over this time [s]: a screen tells it sixty times a second. */
+/** Largest backlog of simulated time that the loop catches up [s]. It drops the rest and falls behind the clock. */
+const MAX_BEHIND_S = 0.05;
+/** Time constant [s] that smooths the pointer's motion: browsers report it only about 60 times per second. */
 const SMOOTHING_S = 0.03;
-/** The engine looks ahead of a row by two steps (live.cpp), one more for rounding. */
+/** Distance [steps] that the last waypoint must lie ahead: the engine needs two steps (live.cpp), rounding one more. */
 const AHEAD = 3;
-/** A step of the pointer takes at most so many rows, whatever the pace. */
-const MOST_ROWS = 64;
+/** Largest number of steps between two waypoints of the pointer. */
+const MAX_ROWS = 64;
 
 class Loop {
-  /** `asked`: {module, files, runs: [{name, overrides}]}. */
+  /** `asked`: {module, files, runs: [{name, overrides}]}, arguments of the engines (engine.js). */
   constructor(asked) {
     this.asked = asked;
     this.pace = 0;
@@ -42,10 +42,10 @@ class Loop {
 
   get ended() { return this.engines.every((engine) => engine.ended); }
 
-  /** So many rows on, the pointer following. */
+  /** Simulates `count` steps. The hand's target follows the pointer with smoothing. */
   run(count) {
     while (count > 0 && !this.ended) {
-      const rows = Math.min(count, MOST_ROWS), share = 1 - Math.exp(-rows * this.step / SMOOTHING_S);
+      const rows = Math.min(count, MAX_ROWS), share = 1 - Math.exp(-rows * this.step / SMOOTHING_S);
       this.led = this.led.map((value, i) => value + share * (this.pointer[i] - value));
       const until = (this.rows + rows + AHEAD) * this.step;
       if (until > this.waypoints[this.waypoints.length - 1][0]) this.lead(until);
@@ -59,7 +59,7 @@ class Loop {
 
   tick() {
     const now = performance.now();
-    this.due = Math.min(this.due + (now - this.clock) / 1000 * this.pace / this.step, MOST_BEHIND_S / this.step);
+    this.due = Math.min(this.due + (now - this.clock) / 1000 * this.pace / this.step, MAX_BEHIND_S / this.step);
     this.clock = now;
     const rows = Math.floor(this.due);
     this.due -= rows;
@@ -71,7 +71,7 @@ class Loop {
     this.watchedRows = this.rows;
   }
 
-  /** The same run again up to that many rows before now, by the same waypoints. */
+  /** Goes back by `rows` steps: restarts the runs and repeats them with the same waypoints. */
   back(rows) {
     const target = Math.max(0, this.rows - rows), old = this.waypoints, {pointer} = this;
     this.begin();
@@ -80,7 +80,7 @@ class Loop {
       if (this.rows >= target) break;
       this.led = waypoint.slice(1);
       this.lead(waypoint[0]);
-      // As far as this waypoint allows.
+      // Simulate as far as this waypoint allows.
       const reach = Math.min(target, Math.round(waypoint[0] / this.step) - AHEAD), count = reach - this.rows;
       if (count <= 0) continue;
       for (const engine of this.engines) if (!engine.ended) engine.advance(count);
@@ -89,7 +89,8 @@ class Loop {
     this.watchedRows = this.rows;
   }
 
-  /** What the page draws: the rows since the last time, and the state. */
+  /** Returns data to draw: the rows since the last call, the current state, and `factor`, the reached share of the
+   *  pace. */
   show() {
     const runs = this.engines.map((engine, i) => ({rows: joined(this.fresh[i]), state: engine.state, ended: engine.ended}));
     this.fresh = this.engines.map(() => []);
@@ -127,7 +128,7 @@ const ORDERS = {
   keep: () => ({waypoints: loop.waypoints, runs: loop.engines.map((engine) => engine.state)}),
 };
 
-/** Every order is answered by a message with its number; `failed` has the engine's words. */
+/** Answers each order with a message that has the order's number. `failed` is the message of an error. */
 self.onmessage = ({data: {order, number, ...given}}) => {
   try {
     self.postMessage({number, answer: ORDERS[order](given)});

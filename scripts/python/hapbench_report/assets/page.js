@@ -1,4 +1,4 @@
-// Commands that copy themselves, figures that enlarge, tables that say that they scroll, and paper.
+// Adds buttons that copy commands, enlarges figures, marks tables that scroll sideways, and prepares printing.
 
 document.querySelectorAll("pre.command").forEach((line) => {
   const button = Object.assign(document.createElement("button"), {type: "button", className: "copy", textContent: "Copy"});
@@ -8,7 +8,7 @@ document.querySelectorAll("pre.command").forEach((line) => {
     try {
       await navigator.clipboard.writeText(code.textContent);
       button.textContent = "Copied";
-    } catch {  // a page from a file may not be allowed to: select it for the reader
+    } catch {  // a page that was opened from a file may not have access to the clipboard: select the text
       getSelection().selectAllChildren(code);
       button.textContent = "Selected";
     }
@@ -17,7 +17,7 @@ document.querySelectorAll("pre.command").forEach((line) => {
   line.append(button);
 });
 
-/** One figure over the whole window; the arrow keys go on to the next. */
+/** Dialog that shows one figure in the whole window. The arrow keys show the previous and next figure. */
 const enlarged = document.getElementById("enlarged");
 const figureButtons = [...document.querySelectorAll(".enlarge")];
 let shownFigure = 0;
@@ -47,7 +47,7 @@ addEventListener("resize", tellScrolling);
 document.addEventListener("toggle", tellScrolling, true);
 tellScrolling();
 
-// What is folded on the screen and belongs on paper.
+// Unfold details with the class "printed" while the page is printed.
 document.getElementById("print").addEventListener("click", () => print());
 const unfolded = [];
 addEventListener("beforeprint", () => document.querySelectorAll("details.printed:not([open])").forEach((part) => {

@@ -1,4 +1,4 @@
-// An orthographic view: which way one looks, how large, and where to.
+// Orthographic camera with a viewing direction, a zoom and a centre.
 
 class Camera {
   constructor(scene) {
@@ -8,7 +8,7 @@ class Camera {
     this.show("contact");
   }
 
-  /** Looks at where the tool touches, or at everything. */
+  /** Shows the region of contact (`frame` "contact") or the whole scene ("whole"). */
   show(frame) {
     this.frame = frame;
     Object.assign(this, this.frames[frame]);
@@ -18,7 +18,7 @@ class Camera {
   reset() { Object.assign(this, this.home, {pan: [0, 0]}); }
   zoomBy(factor) { this.zoom = Math.min(40, Math.max(0.2, this.zoom * factor)); }
 
-  /** A drag by so many pixels turns a 3-D view and shifts a planar one. */
+  /** Turns a 3-D view or shifts a planar view after a drag by dx, dy [pixels]. */
   drag(dx, dy) {
     if (this.planar) this.shift(dx, dy);
     else {
@@ -32,14 +32,14 @@ class Camera {
     this.pan[1] += dy;
   }
 
-  /** Unit vectors to the right, up and towards the viewer, in the world. */
+  /** Returns unit vectors to the right, up and towards the viewer, in world coordinates. */
   basis() {
     if (this.planar) return [[1, 0, 0], [0, 1, 0], [0, 0, 1]];
     const [cy, sy, cp, sp] = [Math.cos(this.yaw), Math.sin(this.yaw), Math.cos(this.pitch), Math.sin(this.pitch)];
     return [[-sy, cy, 0], [-sp * cy, -sp * sy, cp], [cp * cy, cp * sy, sp]];
   }
 
-  /** A function from world [m] to [x, y, nearness] in pixels and metres. */
+  /** Returns a function that projects a world point [m] to [x, y, nearness]: x, y [pixels], nearness to viewer [m]. */
   projection(width, height) {
     const [right, up, toward] = this.basis(), c = this.centre;
     const scale = this.scale(width, height);
@@ -49,18 +49,18 @@ class Camera {
     return Object.assign(project, {scale});
   }
 
-  /** Pixels per metre. */
+  /** Returns the scale [pixels/m]. */
   scale(width, height) { return 0.82 * this.zoom * Math.min(width, height) / this.extent; }
 }
 
-/** The places that were touched, with as much of the tool as is wide. */
+/** Frame of the region of contact: 1.5 tool diameters larger than the region, and at least 3 tool diameters wide. */
 function contactFrame(scene) {
   const [low, high] = scene.focus, wide = scene.tool ? 2 * scene.tool.radius : 0;
   const size = Math.max(...low.map((x, i) => high[i] - x));
   return {centre: low.map((x, i) => (x + high[i]) / 2), extent: Math.max(size + 1.5 * wide, 3 * wide, 1e-5)};
 }
 
-/** All points, and the tool where it starts. */
+/** Frame of all shell points, the region of contact, and the tool at its first position. */
 function wholeFrame(scene) {
   const places = [...scene.points.map((p) => p.at), ...scene.focus], first = scene.recordings[0];
   if (scene.tool) places.push(first.tip(0), add(first.tip(0), first.axis(0), scene.tool.far));

@@ -1,4 +1,4 @@
-// What the player's buttons, menus, keys and pointers do.
+// Handles the events of the player's buttons, menus, keys and pointers.
 
 function listenToPlayer(player) {
   const {find, slider, tracks} = player;
@@ -39,7 +39,7 @@ function listenToView(player, view) {
     player.draw();
   });
   view.addEventListener("wheel", (e) => {
-    // Only a view that was chosen takes the wheel; otherwise the page scrolls on.
+    // Zoom only if the view has the focus; otherwise the wheel scrolls the page.
     if (document.activeElement !== view) return;
     e.preventDefault();
     player.camera.zoomBy(Math.exp(-0.0015 * e.deltaY));
@@ -47,7 +47,8 @@ function listenToView(player, view) {
   }, {passive: false});
 }
 
-/** Space plays; arrows step, or turn a chosen view with shift; plus, minus and zero zoom; a hears the next run. */
+/** Handles keys. Space plays or pauses; left and right arrows step by one row, Page Up and Page Down by 50; Home and
+ *  End seek; shift with an arrow turns the view; +, - and 0 zoom; a plays the sound of the next run. */
 function onKey(player, event) {
   const {target, key} = event, tag = target.tagName;
   const range = target.type === "range" && target !== player.slider;
@@ -68,7 +69,7 @@ function onKey(player, event) {
   player.draw();
 }
 
-/** Where nothing else has the focus, space plays the replay that fills the middle of the window, instead of scrolling. */
+/** Handles space if no control has the focus: plays or pauses a replay in the middle of the window. */
 function onSpaceOutside(player, event) {
   const idle = event.target === document.body || event.target.id === "main";
   if (!idle || event.key !== " " || event.shiftKey || event.ctrlKey || event.metaKey || event.altKey) return;
@@ -112,7 +113,7 @@ function listenToSound(player) {
     if (player.sound.on) player.sound.stop();
     else player.sound.start();
     button.setAttribute("aria-pressed", String(player.sound.on));
-    // Sound without a moving picture is silence.
+    // Start the replay, because a paused replay has no sound.
     if (player.sound.on && !player.playing) player.play();
   });
   player.find("#replay-sound-of").addEventListener("change", (e) => hear(player, Number(e.target.value)));
@@ -122,12 +123,12 @@ function listenToSound(player) {
 
 // Moments.
 
-/** For each kind of worst moment, a button for the shown run in which it is worst. */
+/** Shows one button per kind of worst moment. It seeks the moment of the shown run with the largest value. */
 function showWorstMoments(player) {
   const kinds = new Map(), moments = player.shown.flatMap((recording) => recording.worst.map((moment) => ({...moment, recording})));
   const isSettled = (moment) => moment.title.startsWith("settled");
   for (const moment of moments) {
-    // Landings count where no run has anything else.
+    // Prefer settled moments. A moment of a landing counts only if no shown run has a settled moment of this kind.
     const kind = moment.title.replace("settled ", ""), known = kinds.get(kind);
     const worse = !known || (isSettled(known) === isSettled(moment) ? moment.value > known.value : isSettled(moment));
     if (moment.value > 0 && worse) kinds.set(kind, moment);
@@ -144,7 +145,7 @@ function showWorstMoments(player) {
 
 const say = (player, text) => { player.find("#replay-said").textContent = text; };
 
-/** The address of what is shown: #replay=SCENE,t=SECONDS,runs=0+2. */
+/** Writes scene, time and shown runs into the page's address, #replay=SCENE,t=SECONDS,runs=0+2, and copies it. */
 function linkMoment(player) {
   const runs = player.shown.map((r) => player.scene.recordings.indexOf(r)).join("+");
   const hash = `#replay=${encodeURIComponent(player.scene.id)},t=${+player.time.toFixed(6)},runs=${runs}`;

@@ -1,8 +1,9 @@
-// The recorded runs, unpacked: typed arrays over the base64 of the page.
+// Recorded runs: decodes the base64 text of the page to typed arrays.
 
 const bytesOf = (base64) => Uint8Array.from(atob(base64), (c) => c.charCodeAt(0)).buffer;
 
-/** One run: rows of numbers, and per row its contacts. Of a long run the rows that hold its peaks. */
+/** One recorded run: a row of numbers per recorded step, and the contacts of each row. A long run is subsampled, and
+ *  rows with peaks are kept. */
 class Recording {
   constructor(packed) {
     Object.assign(this, {algorithm: packed.algorithm, outcome: packed.outcome, worst: packed.worst, sound: packed.sound,
@@ -33,13 +34,13 @@ class Recording {
   get hasContacts() { return this.contacts.length > 0; }
   get endTime() { return this.time(this.length - 1); }
   get deepest() { return Math.max(0, ...Array.from({length: this.length}, (_, k) => this.value(k, "depth_max_m") || 0)); }
-  /** Row of the first contact; -1 without one. */
+  /** Index of the first row in contact; -1 if the tool never touches. */
   get firstTouch() { return this.colliding.findIndex((n) => n > 0); }
 
-  /** The last row that is not later than t; the first when all are. */
+  /** Returns the index of the last row at or before time t [s]; 0 if all rows are later. */
   rowAt(t) {
     let low = 0, high = this.length - 1;
-    // Times are kept in single precision.
+    // Tolerance, because the times of the rows have single precision.
     const late = t * (1 + 1e-7) + 1e-9;
     while (low < high) {
       const middle = (low + high + 1) >> 1;
@@ -48,7 +49,7 @@ class Recording {
     return low;
   }
 
-  /** The rendered contacts of a row: point, depth [m], gradient, weight. */
+  /** Returns the rendered contacts of a row: point [m], depth [m], gradient and weight. */
   contactsAt(row) {
     const width = this.contactScales.length, found = [];
     for (let i = this.contactStart[row]; i < this.contactStart[row + 1]; ++i) {
@@ -59,7 +60,7 @@ class Recording {
   }
 }
 
-/** A scene: shell, tool, and the recordings of several algorithms. */
+/** One scene: point shell, tool, and the recorded runs of several algorithms. */
 class Scene {
   constructor(packed) {
     Object.assign(this, {id: packed.id, title: packed.title, note: packed.note, speed: packed.speed, planar: packed.planar,
@@ -73,12 +74,13 @@ class Scene {
       this.points.push({at: triple(shell, packed.shellScale), normal: triple(normals, 1 / 127)});
     }
     this.recordings = packed.recordings.map((recording) => new Recording(recording));
-    // Colours span the depths of the gentlest recording: the deepest of one that was thrown about would flatten them.
+    // Colours span the depths of the run with the smallest peak depth. The peak depth of an unstable run would make the
+    // depths of the other runs indistinguishable.
     const depths = this.recordings.map((r) => r.deepest).filter((depth) => depth > 0);
     this.deepest = depths.length ? Math.min(...depths) : 1e-4;
   }
 
-  /** Depth of a point in the tool, by the shortest distance to its surface [m]; negative outside, and wherever all that
-   *  is known of the tool is its silhouette. */
+  /** Returns the depth of a point inside the tool [m]: its distance to the tool's surface. Negative outside, and
+   *  everywhere if only the tool's silhouette is known or the scene has no tool. */
   depthIn(point, tip, axis) { return this.tool && !this.silhouette ? this.tool.depthOf(point, tip, axis) : -1; }
 }

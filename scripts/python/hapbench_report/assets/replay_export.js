@@ -1,8 +1,8 @@
-// What is shown as one picture (PNG), or as a clip (WebM) while it plays.
+// Saves the shown views as a picture (PNG), or as a clip (WebM) during playback.
 
 const SHEET_WIDTH = 1280, SHEET_PAD = 16, SHEET_HEAD = 64;
 
-/** All views and the tracks on one canvas. */
+/** Draws all views and the tracks on one canvas. */
 function drawSheet(sheet, player) {
   const views = player.visibleSides.map((side) => side.querySelector(".view")), tracks = player.tracks, colours = palette();
   const wide = (SHEET_WIDTH - SHEET_PAD * (views.length + 1)) / views.length;
@@ -29,7 +29,7 @@ function drawSheet(sheet, player) {
 function download(blob, name) {
   const link = Object.assign(document.createElement("a"), {href: URL.createObjectURL(blob), download: name});
   link.click();
-  // Not at once: the download may not have begun.
+  // Revoke the address after 10 s, because the download may not have started yet.
   setTimeout(() => URL.revokeObjectURL(link.href), 10000);
 }
 
@@ -41,7 +41,7 @@ function savePicture(player) {
   sheet.toBlob((blob) => download(blob, `${fileStem(player)}.png`), "image/png");
 }
 
-/** Records from `start` until `stop`, then offers the file. */
+/** Records from its construction until stop(), which downloads the file. */
 class Clip {
   static get possible() { return typeof MediaRecorder === "function" && "captureStream" in HTMLCanvasElement.prototype; }
 

@@ -1,6 +1,7 @@
-// The stiffness field as in Fig. 2: u^T S u over the directions u of a plane, in units of K.
+// Draws the stiffness field as in Fig. 2 of the thesis: u^T S u in units of K, with the stiffness tensor S, for each
+// unit vector u in the plane of `lean` and `up`.
 
-// Beyond this the field is cut; the text beside it tells how far it goes.
+// Largest drawn value of u^T S u in units of K; larger values are cut. The text beside the field gives the true range.
 const LARGEST_RATIO = 2;
 
 function drawField(canvas, scene, recording, row) {
@@ -28,7 +29,7 @@ function drawField(canvas, scene, recording, row) {
   drawGradients(context, scene, recording.contactsAt(row), centre, unit, colours);
 }
 
-/** The circle of K, the axes of the plane. */
+/** Draws the circle of stiffness K and the axes of the plane. */
 function drawGrid(context, centre, unit, colours) {
   context.strokeStyle = colours.line;
   context.lineWidth = 1;
@@ -48,7 +49,7 @@ function drawGrid(context, centre, unit, colours) {
   context.fillText("K", centre[0] + 0.75 * unit, centre[1] - 0.75 * unit);
 }
 
-/** Ticks on the circle of K where gradients point. */
+/** Draws a tick on the circle of K in the direction of each contact's gradient. */
 function drawGradients(context, scene, contacts, centre, unit, colours) {
   context.strokeStyle = colours.ink;
   for (const {gradient} of contacts) {

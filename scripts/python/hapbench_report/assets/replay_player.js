@@ -1,4 +1,4 @@
-// The replay: one clock, up to four views, and the controls.
+// Player of the replay: one clock, up to four views, and the controls.
 
 class Player {
   constructor(root, packedScenes) {
@@ -47,7 +47,7 @@ class Player {
 
   get visibleSides() { return this.sides.slice(0, Number(this.find("#replay-views").value)); }
 
-  /** After another run, or another number of views, was chosen. */
+  /** Updates the player. Called after a change of the shown runs or of the number of views. */
   chooseViews() {
     const visible = this.visibleSides;
     this.sides.forEach((side) => { side.hidden = !visible.includes(side); });
@@ -56,7 +56,7 @@ class Player {
     sides.style.setProperty("--views", visible.length);
     this.shown = visible.map((side) => this.scene.recordings[side.querySelector("select").selectedIndex]);
     this.duration = Math.max(...this.shown.map((r) => r.endTime), 1e-6);
-    // The one with most rows gives the steps of the clock.
+    // The run with the largest number of rows determines the step of the slider.
     this.finest = this.shown.reduce((a, b) => (a.length >= b.length ? a : b));
     this.step = this.finest.length > 1 ? this.finest.endTime / (this.finest.length - 1) : this.duration;
     this.slider.max = String(Math.round(this.duration / this.step));
@@ -83,7 +83,7 @@ class Player {
     this.draw();
   }
 
-  /** So many recorded rows on, of the run that has most. */
+  /** Pauses and moves by `count` recorded rows of the run with the largest number of rows. */
   stepRows(count) {
     this.pause();
     const row = this.finest.rowAt(this.time) + count;
@@ -95,12 +95,12 @@ class Player {
     drawTracks(this.tracks, this.shown, this.duration, this.time, this.find("#replay-log").checked);
     this.showKey();
     if (this.clip) this.clip.draw();
-    // What is shown, for programs.
+    // Publish the shown time and scene, for tests.
     this.root.dataset.time = String(this.time);
     this.root.dataset.scene = this.scene.id;
   }
 
-  /** The names of the shown runs in their colours, and how much longer depths are drawn at this zoom. */
+  /** Shows the names of the runs in their colours, and the factor by which depths are drawn longer at this zoom. */
   showKey() {
     const key = `${this.shown.map((r) => r.label)} ${this.camera.zoom} ${this.camera.frame}`;
     if (this.keyShown === key) return;
@@ -143,7 +143,7 @@ class Player {
     if (this.time >= this.duration) this.seek(0);
     let before = null;
     const frame = (now) => {
-      // A page that was hidden must not jump.
+      // Limit the step to 0.1 s, so that the replay does not jump after the page was hidden.
       const passed = before === null ? 0 : Math.min(0.1, (now - before) / 1000), speed = Number(this.find("#replay-speed").value);
       before = now;
       this.seek(this.time + passed * speed);

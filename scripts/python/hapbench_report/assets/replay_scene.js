@@ -1,4 +1,4 @@
-// Draws one moment of a recording: shell, tool, colliding points, depths, force, and the tip's way.
+// Draws one moment of a recorded run: shell, tool, colliding points, depths, force, and the tip's path.
 
 const DEPTH_STOPS = [[253, 231, 117], [247, 160, 72], [222, 84, 92], [150, 40, 120]];
 const depthColour = (fraction) => {
@@ -10,14 +10,14 @@ const depthColour = (fraction) => {
 const NOT_A_NUMBER = "–";
 const show = (value, digits = 3) => {
   if (!Number.isFinite(value)) return NOT_A_NUMBER;
-  // No exponents: a reader compares lengths.
+  // Large values have no exponent, because readers compare the lengths of numbers.
   return (Math.abs(value) < 10 ** digits ? value.toPrecision(digits) : value.toFixed(0)).replace("-", "−");
 };
 
 const add = (p, v, length = 1) => p.map((x, i) => x + length * v[i]);
 const norm = (v) => Math.hypot(...v);
 
-/** Colours of the page, which change with the theme. */
+/** Returns the colours of the page in the current theme. */
 function palette() {
   const style = getComputedStyle(document.documentElement);
   const names = ["ink", "muted", "panel", "line", "shell", "tool", "force", "field"];
@@ -25,7 +25,8 @@ function palette() {
   return Object.assign(colours, {theme: style.colorScheme === "dark" ? "dark" : "light"});
 }
 
-/** The canvas's context in CSS pixels, cleared; its own pixels follow the screen's. */
+/** Clears the canvas and sets its resolution to the screen's. Returns its context, with coordinates in CSS pixels, and
+ *  its size [CSS pixels]. */
 function prepared(canvas) {
   const ratio = window.devicePixelRatio || 1, {clientWidth: width, clientHeight: height} = canvas;
   canvas.width = Math.max(1, Math.round(width * ratio));
@@ -35,7 +36,7 @@ function prepared(canvas) {
   return {context, width, height};
 }
 
-/** Corners of the convex hull, counter-clockwise (Andrew's monotone chain). */
+/** Returns the corners of the convex hull, counter-clockwise for y upwards (Andrew's monotone chain). */
 function hull(points) {
   const sorted = points.slice().sort((a, b) => a[0] - b[0] || a[1] - b[1]);
   const chain = (ordered) => {
@@ -73,7 +74,7 @@ function drawArrow(context, from, to, head) {
   context.fill();
 }
 
-/** Shell points, those that face away fainter; returns the colliding ones. */
+/** Draws the shell points; points that face away from the viewer are fainter. Returns the points inside the tool. */
 function drawShell(context, scene, project, toward, tip, axis, view, colours) {
   const colliding = [], size = scene.planar ? 3.4 : 2;
   context.fillStyle = colours.shell;
@@ -90,7 +91,8 @@ function drawShell(context, scene, project, toward, tip, axis, view, colours) {
   return colliding;
 }
 
-/** How many times longer than they are depths are drawn: a round number that makes the deepest one visible. */
+/** Returns the factor by which depths are drawn longer: the smallest round number, up to 1000, for which scene.deepest
+ *  is at least 18 pixels long. */
 function depthScale(scene, pixelsPerMetre) {
   const wanted = 18 / (scene.deepest * pixelsPerMetre);
   return [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000].find((factor) => factor >= wanted) || 1000;
@@ -114,26 +116,27 @@ function drawContacts(context, scene, project, colliding, contacts, colours) {
   }
 }
 
-/** The rendered force from the tip. Logarithmic, as forces span four decades: 0.1 N, 1 N, 10 N are one step each. */
+/** Draws the rendered force as an arrow from the tip. Its length is logarithmic, because forces span four decades: 26
+ *  pixels per decade above about 1 N. */
 function drawForce(context, project, tip, force, colours) {
   const size = norm(force);
   if (!(size > 0)) return;
   const pixels = 26 * Math.log10(1 + size / 0.1), from = project(tip);
   const end = project(add(tip, force, 1 / size)), direction = [end[0] - from[0], end[1] - from[1]];
-  // Seen from the side, the arrow keeps its length; seen along it, it shrinks.
+  // Shorten the arrow by the perspective: full length if seen from the side, zero if seen along its direction.
   const to = [0, 1].map((i) => from[i] + direction[i] / project.scale * pixels);
   context.strokeStyle = context.fillStyle = colours.force;
   context.lineWidth = 3;
   drawArrow(context, from, to, 11);
   context.font = "600 13px system-ui, sans-serif";
   const label = [`${show(size)} N`, to[0] + 7, to[1] + (to[1] > from[1] ? 14 : -6)];
-  // Legible over points, too.
+  // Outline the label, so that it is legible over points.
   context.strokeStyle = colours.panel;
   context.strokeText(...label);
   context.fillText(...label);
 }
 
-/** A bar of a round length in the lower left corner. */
+/** Draws a scale bar of a round length in the lower left corner. */
 function drawScaleBar(context, height, pixels, colours) {
   const decade = 10 ** Math.floor(Math.log10(40 / pixels));
   const length = [1, 2, 5, 10].map((m) => m * decade).find((l) => l * pixels >= 40), y = height - 14;
@@ -145,7 +148,7 @@ function drawScaleBar(context, height, pixels, colours) {
   context.fillText(length < 1e-3 ? `${+(length * 1e6).toPrecision(2)} µm` : `${+(length * 1e3).toPrecision(2)} mm`, 14, y - 6);
 }
 
-/** The tip's way so far, and faintly what follows. */
+/** Draws the tip's path up to the row, and the later path fainter. */
 function drawWay(context, project, recording, row, colours) {
   context.strokeStyle = recording.colours[colours.theme];
   context.lineWidth = 1.2;
@@ -158,7 +161,8 @@ function drawWay(context, project, recording, row, colours) {
   context.globalAlpha = 1;
 }
 
-/** Springs have no surface: a ray for each group, from where its springs are at rest, with their number. */
+/** Draws each group of springs as a ray from the origin, where the springs have their rest length, with their number.
+ *  Scenes of springs have no surface. */
 function drawSprings(context, scene, project, colours) {
   context.strokeStyle = colours.shell;
   context.fillStyle = colours.muted;
@@ -187,7 +191,7 @@ function drawScene(canvas, scene, camera, recording, row) {
   drawWayOut(context, project(tip), width, height, colours);
 }
 
-/** A tool that was thrown out of view: where it went. */
+/** Draws an arrow towards the tip if the tip is outside of the view. */
 function drawWayOut(context, at, width, height, colours) {
   if (at[0] >= 0 && at[0] <= width && at[1] >= 0 && at[1] <= height) return;
   const centre = [width / 2, height / 2], d = [at[0] - centre[0], at[1] - centre[1]];

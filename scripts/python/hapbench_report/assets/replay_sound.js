@@ -1,19 +1,20 @@
-// The force above 30 Hz, heard: grains of the recorded signal follow the time of the picture, so that a slowed replay keeps
-// its pitch, a jump is heard at once, and nothing sounds while the picture stands.
+// Plays the rendered force above 30 Hz as short grains of the recorded signal at the time of the picture. A slowed
+// replay therefore keeps its pitch, a jump takes effect at once, and a paused replay is silent.
 
 const GRAIN_S = 0.08, HOP_S = GRAIN_S / 2, AHEAD_S = 0.12;
-// Of full scale: the rms of the loudest run. Landings, many times louder, are bent down by the limiter.
+// Rms of the loudest run in contact at the limiter's input, whose range is -1 … 1. The limiter compresses landings,
+// which are many times louder.
 const LOUDNESS = 0.12;
 
 class Sound {
   constructor() {
     this.on = false;
     this.volume = 0.15;
-    this.grains = 0; // started, for programs
+    this.grains = 0; // number of grains that were started, for tests
     this.buffers = new Map();
   }
 
-  /** Must first be called from a click or a key: browsers start no sound without one. */
+  /** Call this first from a click or a key event, because browsers start sound only after a user's action. */
   start() {
     if (!this.context) {
       this.context = new AudioContext();
@@ -32,11 +33,11 @@ class Sound {
 
   setVolume(volume) {
     this.volume = volume;
-    // The limiter gives a quarter of full scale.
+    // The limiter's output is at most 1/4 of full scale.
     if (this.master) this.master.gain.value = 4 * volume;
   }
 
-  /** Where a clip takes the sound from; null before it was first switched on. */
+  /** Returns a stream of the sound for a clip; null if sound was never switched on. */
   stream() {
     if (!this.context) return null;
     const target = this.context.createMediaStreamDestination();
@@ -44,12 +45,13 @@ class Sound {
     return target.stream;
   }
 
-  /** Called for every frame while playing: sounds what the next moment of the picture shows. `recordings` are all that can
-   *  be switched between: one gain for them, so that they can be compared. */
+  /** Called for every frame during playback. Starts the grains of `recording` for the next AHEAD_S seconds. `time`:
+   *  time of the picture [s]. `recordings`: all shown runs, which share one gain, so that their loudness can be
+   *  compared. */
   follow(recording, recordings, time, speed) {
     if (!this.on || !recording.sound) return;
     const now = this.context.currentTime;
-    // The limiter reads -1 ... 1.
+    // Scale the loudest run to LOUDNESS.
     const loudest = Math.max(...recordings.map((r) => (r.sound ? r.sound.rms : 0)));
     this.gain.gain.value = loudest > 0 ? LOUDNESS / loudest : 0;
     if (!(this.next > now) || this.next > now + 2 * AHEAD_S) this.next = now;
@@ -64,7 +66,7 @@ class Sound {
     if (at < 0 || at >= buffer.duration) return;
     const source = this.context.createBufferSource(), window = this.context.createGain();
     source.buffer = buffer;
-    // Two neighbouring windows add up to one.
+    // Fade in and out linearly: the windows of overlapping grains add up to one.
     window.gain.setValueAtTime(0, when);
     window.gain.linearRampToValueAtTime(1, when + HOP_S);
     window.gain.linearRampToValueAtTime(0, when + GRAIN_S);
@@ -78,7 +80,7 @@ class Sound {
       const {rate, scale, samples} = recording.sound;
       const steps = new Int16Array(bytesOf(samples)), factor = Math.ceil(16000 / rate);
       const fine = resampled(Float32Array.from(steps, (step) => step * scale), factor);
-      // Contexts play buffers of 8 to 96 kHz.
+      // Audio contexts support buffers of 8 to 96 kHz.
       const buffer = this.context.createBuffer(1, fine.length, Math.min(96000, rate * factor));
       buffer.copyToChannel(fine, 0);
       this.buffers.set(recording, buffer);
@@ -87,7 +89,8 @@ class Sound {
   }
 }
 
-/** So many times as many samples, by a sinc under a Hann window of eight samples to each side: no mirrored tones. */
+/** Returns the samples at `factor` times their rate. Interpolates by a Hann-windowed sinc of eight samples on each
+ *  side, which suppresses mirrored tones. */
 function resampled(samples, factor) {
   const reach = 8, out = new Float32Array(samples.length * factor);
   for (let phase = 0; phase < factor; ++phase) {

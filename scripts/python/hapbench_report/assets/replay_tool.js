@@ -1,9 +1,10 @@
-// The tool: a solid of revolution about its axis, given by its profile. A cylinder is one, flat or round at its tip.
+// The tool: a solid of revolution about its axis, given by its profile, such as a cylinder with a flat or round tip.
 
 const RING_POINTS = 40;
 
 class Tool {
-  /** Pairs [s, r] from the far end to the tip: at s along the axis, counted from the tip centre, the radius r [m]. */
+  /** `profile`: pairs [s, r] in metres from the far end to the tip: radius r at position s along the axis, where the
+   *  tip centre has s = 0. */
   constructor(profile) {
     this.profile = profile;
     this.far = Math.min(...profile.map(([s]) => s));
@@ -11,20 +12,21 @@ class Tool {
     this.radius = Math.max(...profile.map(([, r]) => r));
   }
 
-  /** Distance of a point in the body to its surface [m]; negative outside, and there at most the distance. */
+  /** Returns the distance of a point inside the tool to its surface [m]. Outside, returns a negative number, whose
+   *  magnitude is at most the distance. */
   depthOf(point, tip, axis) {
     const q = [point[0] - tip[0], point[1] - tip[1], point[2] - tip[2]];
     const s = q[0] * axis[0] + q[1] * axis[1] + q[2] * axis[2];
     const r = Math.sqrt(Math.max(0, q[0] * q[0] + q[1] * q[1] + q[2] * q[2] - s * s));
-    // Most points lie outside the cylinder around the tool.
+    // Return early for points outside the cylinder around the tool, as most points are.
     const outside = Math.max(r - this.radius, s - this.tip, this.far - s);
     if (outside > 0) return -outside;
     let nearest = Infinity, inside = false;
     for (let i = 1; i < this.profile.length; ++i) {
       const [a, b] = [this.profile[i - 1], this.profile[i]];
-      // The ends of the profile lie on the axis, which is no surface.
+      // Skip segments on the axis, which are not part of the surface.
       if (a[1] > 0 || b[1] > 0) nearest = Math.min(nearest, distanceToSegment(s, r, a, b));
-      // Inside, if a ray outwards from the point crosses the profile an odd number of times.
+      // A point is inside if a ray outwards from the point crosses the profile an odd number of times.
       if ((a[0] > s) !== (b[0] > s) && r < a[1] + (b[1] - a[1]) * (s - a[0]) / (b[0] - a[0])) inside = !inside;
     }
     return inside ? nearest : -nearest;
@@ -37,7 +39,7 @@ function distanceToSegment(x, y, a, b) {
   return Math.hypot(x - a[0] - t * dx, y - a[1] - t * dy);
 }
 
-/** Two unit vectors that span the plane across the axis. */
+/** Returns two unit vectors that span the plane perpendicular to the axis. */
 function across(axis) {
   const e = Math.abs(axis[2]) < 0.9 ? [0, 0, 1] : [1, 0, 0];
   const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
@@ -46,7 +48,7 @@ function across(axis) {
   return [a, cross(axis, a)];
 }
 
-/** The outline: the pieces between neighbouring rings of the profile are convex, and together they are the tool. */
+/** Returns the projected tool as a path. It has one convex piece for each pair of neighbouring rings of the profile. */
 function toolPath(tool, project, tip, axis) {
   const [a, b] = across(axis), path = new Path2D();
   const ring = ([s, r]) => {
@@ -67,8 +69,8 @@ function toolPath(tool, project, tip, axis) {
 
 const toolLayer = document.createElement("canvas");
 
-/** Draws on a layer of its own, so that the edges between the pieces do not show and a tool that reaches out of the
- *  picture fades away instead of being cut. */
+/** Draws the tool on a separate layer. This hides the edges between the pieces, and a tool that extends beyond the
+ *  picture fades out instead of being cut. */
 function drawTool(context, scene, project, tip, axis, colours) {
   if (!scene.tool) return drawTip(context, project(tip), colours);
   const target = context.canvas, ratio = context.getTransform().a;
@@ -106,7 +108,7 @@ function drawTip(context, at, colours) {
   drawDot(context, at, 3);
 }
 
-/** From the tip towards the border of the picture, where the far end lies beyond it. */
+/** Fades the layer out from the tip towards the border of the picture if the tool's far end lies beyond the border. */
 function fadeOut(layer, from, to, width, height) {
   const inside = (p) => p[0] >= 0 && p[0] <= width && p[1] >= 0 && p[1] <= height;
   if (inside(to) || !inside(from)) return;

@@ -1,4 +1,4 @@
-// Force, depth and contacts over time, one under the other, all shown runs in each; a click goes to that time.
+// Plots force, depth and number of contacts over time in tracks, one below the other, for all shown runs.
 
 const TRACK_LEFT = 66, TRACK_RIGHT = 10, TRACK_TOP = 8, TRACK_BOTTOM = 36, TRACK_GAP = 12;
 const TRACKS = [
@@ -7,13 +7,13 @@ const TRACKS = [
   {title: "contacts", unit: "", of: (r, k) => r.colliding[k]},
 ];
 
-/** Steps of 1, 2 or 5 times a power of ten: at most `count` of them. */
+/** Returns a step between ticks, 1, 2 or 5 times a power of ten: at most `count` steps fit into the range. */
 function roundStep(range, count) {
   const least = range / count, decade = 10 ** Math.floor(Math.log10(least));
   return [1, 2, 5, 10].map((m) => m * decade).find((step) => step >= least * (1 - 1e-9));
 }
 
-/** A number of the axis, without the noise of a sum. */
+/** Formats a tick's value, rounded to the digits of the step, without rounding errors of floating-point numbers. */
 const tickText = (value, step) =>
   (Math.abs(value) >= 1e5 || (step < 1e-4 && value) ? value.toExponential(0) : value.toFixed(Math.max(0, -Math.floor(Math.log10(step) + 1e-9))))
     .replace("-", "−");
@@ -24,7 +24,8 @@ function linearAxis(low, high, count = 4) {
   return {at: (value) => (value - low) / (top - low), ticks};
 }
 
-/** From the decade below all but the smallest hundredth of the sizes, eight decades at most. */
+/** Returns an axis from the decade below the first percentile of the positive values to the decade above their largest,
+ *  with at most eight decades. */
 function logarithmicAxis(values) {
   const sizes = values.filter((value) => value > 0).sort((a, b) => a - b);
   if (!sizes.length) return linearAxis(0, 1);
@@ -37,7 +38,8 @@ function logarithmicAxis(values) {
 
 const show10 = (e) => (e >= -3 && e <= 4 ? String(+(10 ** e).toPrecision(1)) : `1e${e}`.replace("-", "−"));
 
-/** Whether one of the runs is thrown about, or a landing hides the rest: linear axes then show nothing else. */
+/** Returns true if the largest force of all runs is more than 30 times the smallest median force of a run. On a linear
+ *  axis, an unstable run or a landing would hide the other forces. */
 function needsLogarithm(recordings) {
   const peaks = recordings.map((r) => Array.from({length: r.length}, (_, k) => norm(r.force(k)))).map((sizes) => {
     const touching = sizes.filter((size) => size > 0).sort((a, b) => a - b);
@@ -46,7 +48,7 @@ function needsLogarithm(recordings) {
   return peaks.length > 0 && Math.max(...peaks.map((p) => p[0])) > 30 * Math.min(...peaks.map((p) => p[1]));
 }
 
-/** The curves are painted once for a size and a theme; a frame adds the line at its time. */
+/** Draws the curves, and a line at `time` [s]. The curves are cached until size, theme, runs or axes change. */
 function drawTracks(canvas, recordings, duration, time, logarithmic) {
   const {context, width, height} = prepared(canvas), colours = palette();
   const key = [width, height, canvas.width, colours.theme, duration, logarithmic, ...recordings.map((r) => r.label)].join("|");
@@ -91,7 +93,7 @@ function drawFrame(context, box, track, axis, times, x, colours) {
   for (const [value, label] of axis.ticks) {
     tracePath(context, [[box.left, y(value)], [box.right, y(value)]]);
     context.stroke();
-    // Not over the neighbour's.
+    // Skip the top label, which would overlap a label of the track above, unless the axis has few labels.
     if (y(value) > box.top + 4 || axis.ticks.length < 3) context.fillText(label, box.left - 5, y(value) + 4);
   }
   for (const [value] of times.ticks) {
@@ -137,7 +139,7 @@ function drawTimeAxis(context, width, height, times, x, colours) {
   context.textAlign = "start";
 }
 
-/** The time under a pointer. */
+/** Returns the time [s] at the pointer's position. */
 function trackTime(canvas, event, duration) {
   const x = event.clientX - canvas.getBoundingClientRect().left - TRACK_LEFT;
   return Math.min(1, Math.max(0, x / (canvas.clientWidth - TRACK_LEFT - TRACK_RIGHT))) * duration;

@@ -1,11 +1,11 @@
-// Tables that sort by a click on a heading and show only the rows that match the filters.
+// Sorts tables after a click on a heading, and shows only rows that match the filters.
 
 const sortKey = (cell) => {
   const key = cell.dataset.sort ?? cell.textContent;
   return key === "" || Number.isNaN(Number(key)) ? key.toLowerCase() : Number(key);
 };
 
-/** Numbers before words, absent values last, whichever the direction. */
+/** Orders numbers before words and missing values last, in both directions. `direction`: 1 ascending, -1 descending. */
 function compareKeys(a, b, direction) {
   if (a === "" || b === "") return (a === "") - (b === "");
   if (typeof a !== typeof b) return typeof a === "number" ? -1 : 1;
@@ -31,7 +31,8 @@ document.querySelectorAll("table.sortable").forEach((table) => {
   });
 });
 
-/** Every filter of a group must match: a text anywhere in the row, or a value of one of its data attributes. */
+/** Shows the rows that match every filter of a group: each word of a text field occurs in the row, and each menu's
+ *  value equals the cell in the menu's column. */
 function filterTable(filters) {
   const table = document.getElementById(filters.dataset.filters);
   const controls = [...filters.querySelectorAll("input, select")];
@@ -57,7 +58,7 @@ document.querySelectorAll("[data-filters]").forEach((filters) => {
   filterTable(filters);
 });
 
-/** A link to something folded unfolds it. */
+/** Unfolds the details around the target of the page's address, and scrolls to the target. */
 function openTarget() {
   const target = location.hash && document.getElementById(decodeURIComponent(location.hash.slice(1)));
   if (!target) return;

@@ -1,4 +1,4 @@
-// Light, dark, or as the system has it. The choice lasts as long as the page.
+// Theme of the page: light, dark, or the system's theme. The choice is not saved.
 
 const themeMenu = document.getElementById("theme");
 themeMenu.addEventListener("change", () => {
@@ -8,7 +8,7 @@ themeMenu.addEventListener("change", () => {
 });
 matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => document.dispatchEvent(new Event("themechange")));
 
-// Paper is white: draw for it, and then again for the screen.
+// Draw with the light theme for printing, because paper is white, and with the chosen theme after printing.
 addEventListener("beforeprint", () => {
   document.documentElement.dataset.theme = "light";
   document.dispatchEvent(new Event("themechange"));
