@@ -58,7 +58,7 @@ struct RenderingConfig {
   std::string contact_source = kComputedContacts;  ///< kComputedContacts, kTrace or kContactPlugin
   std::string contact_file;                        ///< file of kTrace or kContactPlugin, relative to the scenario file
   std::string contact_config = "{}";               ///< configuration for kContactPlugin: a JSON object
-  std::optional<MultiRateSchedule> late;           ///< multi-rate contacts; nullopt: contacts are found in every step
+  std::optional<MultiRateSchedule> multi_rate;     ///< multi-rate contacts; nullopt: contacts are found in every step
   bool local_average = false;
   std::optional<ReductionConfig> reduction;
 

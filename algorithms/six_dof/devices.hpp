@@ -39,9 +39,9 @@ struct Handle {
   Vec3 torque = Vec3::Zero();  ///< torque on the handle about the force point [N m]
 };
 
-/// Largest motion of a point of the tool in one sub-step, relative to the tool's half width. If a step of the intent
-/// moves the tool farther, the step is bisected, at most kBisections times. If a sub-step of 1/64 of the step still
-/// moves the tool farther, the motion counts as a jump.
+/// Largest motion of a point of the tool in one sub-step, relative to the tool's half width. If a step of the hand's
+/// intended pose (Intent) moves the tool farther, the step is bisected, at most kBisections times. If a sub-step of
+/// 1/64 of the step still moves the tool farther, the motion counts as a jump.
 inline constexpr double kJump = 0.1;
 inline constexpr int kBisections = 6;
 

@@ -186,7 +186,7 @@ void LiveRenderer::handle_clutch(const Measurement& now, bool pressed) noexcept 
     kept_position_ = has_position_ ? tool_.pose.position : to_world(now.tip);
     if (gain_ > 0.0 && release_ == Release::none) release(Release::clutch);
   } else if (!pressed && is_clutched_) {
-    // In admittance mode, the virtual mass has moved the handle without contact.
+    // In admittance mode, the virtual mass moved the handle while the clutch was pressed: continue from its position.
     const Vec3 at = config_.is_admittance && has_tool_ ? tool_.pose.position : to_world(now.tip);
     origin_ += *kept_position_ - at;
     tool_.pose.position = *kept_position_;

@@ -28,10 +28,11 @@ inline bool is_stable_step(const Eigen::MatrixXd& A) {
 
 /// Returns the stability limit: the largest value in [`lowest`, `highest`] up to which the step
 /// `step_matrix(value)` is stable, with a relative error of 1e-11. Returns zero if `lowest` is unstable, infinity
-/// if all values are stable.
+/// if all tested values are stable.
 ///
-/// Tests values that increase by a factor of 1.1 from `lowest` on, then bisects between the last stable and the
-/// first unstable value. Misses an unstable range that lies between two neighbouring values.
+/// Tests values that increase by a factor of 1.1 from `lowest` on and do not exceed `highest`, then bisects between the
+/// last stable and the first unstable value. Misses an unstable range that lies between two neighbouring values, or
+/// between the last value and `highest`.
 template <class StepMatrix>
 double first_stability_limit(double lowest, double highest, StepMatrix step_matrix) {
   constexpr double kNext = 1.1, kPrecision = 1e-11;

@@ -238,7 +238,7 @@ void ContactForces::report(Section& s) const {
        "relative error at most 0.8 %; no value if settled_s < 1/30 s",
        // The middle of a bin can exceed all numbers in it, so limit it to the maximum.
        if_any(is_settled, std::min(steps_.quantile(0.99), std::sqrt(step_max_squared_))), Better::less)
-      .within(MagnitudeHistogram::kRelativeError, MagnitudeHistogram::kLeast);
+      .within(MagnitudeHistogram::kRelativeError, MagnitudeHistogram::kSmallest);
   s.metric(
       "settled_force_step_max_N", "N",
       "largest force step ||f_k - f_(k-1)|| from one time step to the next in settled contact; no value if settled_s "

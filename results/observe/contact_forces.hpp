@@ -17,8 +17,8 @@ class MagnitudeHistogram {
  public:
   /// Largest relative error of a quantile between kLeast and kMost: half a bin width of sqrt(33 / 32) - 1 = 1.55 %.
   static constexpr double kRelativeError = 0.0078;
-  static constexpr double kLeast = 0x1p-30;  ///< numbers below this value count as 0
-  static constexpr double kMost = 0x1p20;    ///< numbers from this value on count as infinite
+  static constexpr double kSmallest = 0x1p-30;  ///< numbers below this value count as 0
+  static constexpr double kLargest = 0x1p20;    ///< numbers from this value on count as infinite
 
   /// Counts the number whose square is `square`. Precondition: square >= 0; at most 2^32 - 1 numbers in total.
   void add_square(double square) noexcept { ++counts_[bin_of(square)]; }
@@ -29,8 +29,8 @@ class MagnitudeHistogram {
 
  private:
   static constexpr int kDroppedBits = 52 - 5;
-  static constexpr std::uint64_t kFirst = std::bit_cast<std::uint64_t>(kLeast * kLeast) >> kDroppedBits;
-  static constexpr std::uint64_t kEnd = std::bit_cast<std::uint64_t>(kMost * kMost) >> kDroppedBits;
+  static constexpr std::uint64_t kFirst = std::bit_cast<std::uint64_t>(kSmallest * kSmallest) >> kDroppedBits;
+  static constexpr std::uint64_t kEnd = std::bit_cast<std::uint64_t>(kLargest * kLargest) >> kDroppedBits;
   static constexpr std::size_t kBins = kEnd - kFirst + 2;  ///< including one bin for smaller and one for larger numbers
 
   static std::size_t bin_of(double square) noexcept {

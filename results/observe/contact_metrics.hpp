@@ -25,7 +25,7 @@ class ContactAgeObserver final : public MetricObserver {
     rows_of_age_.resize(std::min(trial.config.steps, kMaxAges) + 1);
   }
   void on_step(const StepRecord& record) noexcept override {
-    requested_ = schedule_->asked;
+    requested_ = schedule_->queries;
     lost_ = schedule_->lost;
     const ContactSchedule::Query* query = schedule_->used();
     if (query == nullptr) return;

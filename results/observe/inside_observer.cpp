@@ -155,7 +155,7 @@ SurfaceDistance CorePassage::distance_at(const Vec3& point, double s) noexcept {
     if (axis_points_.size() < kMaxAxisPoints) axis_points_.push_back(evaluated);
   };
   if (near != nullptr && near->known) {
-    const double moved = (point - near->distance.place).norm(), size = std::abs(near->distance.value);
+    const double moved = (point - near->distance.point).norm(), size = std::abs(near->distance.value);
     if (moved < kReusedFraction * size) {
       keep({s, near->distance, true});
       return {std::copysign(size - moved, near->distance.value)};

@@ -41,7 +41,7 @@ struct InsideDepths {
 struct Passage {
   struct Event {
     double time;  ///< [s]
-    Vec3 place;   ///< [m]
+    Vec3 point;   ///< [m]
   };
   std::optional<Event> deep;  ///< first step with the tip centre deeper than half the tool's width
   /// Depth of the tip centre [m]: largest of all steps (within 2 %), and in the last step.

@@ -74,14 +74,14 @@ void report_mean(Section s, const SubjectMean& m, const char* unit, const char* 
 
 }  // namespace
 
-std::vector<PlaceMetrics> place_metrics(const std::vector<TargetRow>& rows) {
+std::vector<PositionMetrics> position_metrics(const std::vector<TargetRow>& rows) {
   struct Values {
     ValuesOfSubjects success, time, force, speed;
   };
   // Collect the values of each target position by subject.
-  std::map<std::size_t, Values> places;
+  std::map<std::size_t, Values> positions;
   for (const TargetRow& row : rows) {
-    Values& at = places[row.result.place];
+    Values& at = positions[row.result.position];
     at.success[row.subject].push_back(row.result.removed ? 1.0 : 0.0);
     at.time[row.subject].push_back(row.result.time);
     if (row.rows_on_target == 0) continue;
@@ -89,39 +89,39 @@ std::vector<PlaceMetrics> place_metrics(const std::vector<TargetRow>& rows) {
     at.speed[row.subject].push_back(row.speed);
   }
   // Average over the subjects.
-  std::vector<PlaceMetrics> metrics;
-  metrics.reserve(places.size());
-  for (const auto& [place, at] : places) {
-    metrics.push_back(
-        {place, over_subjects(at.success), over_subjects(at.time), over_subjects(at.force), over_subjects(at.speed)});
+  std::vector<PositionMetrics> metrics;
+  metrics.reserve(positions.size());
+  for (const auto& [position, at] : positions) {
+    metrics.push_back({position, over_subjects(at.success), over_subjects(at.time), over_subjects(at.force),
+                       over_subjects(at.speed)});
   }
   return metrics;
 }
 
 void TargetMetricsObserver::report(Section& s) const {
-  std::vector<PlaceMetrics> places = place_metrics(rows_);
+  std::vector<PositionMetrics> positions = position_metrics(rows_);
   if (order_.empty()) {
-    places.resize(places_);
-    for (std::size_t i = 0; i < places_; ++i) places[i].place = i;
+    positions.resize(positions_);
+    for (std::size_t i = 0; i < positions_; ++i) positions[i].position = i;
   }
-  for (const PlaceMetrics& place : places) {
-    const Section at = s.part(std::to_string(place.place));
-    report_mean(at.part("success_rate"), place.success_rate, "1",
+  for (const PositionMetrics& position : positions) {
+    const Section at = s.part(std::to_string(position.position));
+    report_mean(at.part("success_rate"), position.success_rate, "1",
                 "fraction of the targets at this position that the subject removed before the time limit (removed of "
                 "targets.csv, "
                 "at its place), mean over the subjects",
                 Better::more);
     report_mean(
-        at.part("completion_time_s"), place.completion_time, "s",
+        at.part("completion_time_s"), position.completion_time, "s",
         "time until a target at this position was removed, or the time limit if it was not (time_s of targets.csv, at "
         "its "
         "place); mean over the subjects",
         Better::less);
     report_mean(
-        at.part("model_force_N"), place.model_force, "N",
+        at.part("model_force_N"), position.model_force, "N",
         "mean ||f|| over the steps with the tip on a target at this position (model_force_N of targets.csv), mean over "
         "the subjects' means");
-    report_mean(at.part("speed_m_per_s"), place.speed, "m/s",
+    report_mean(at.part("speed_m_per_s"), position.speed, "m/s",
                 "mean speed of the handle over the steps with the tip on a target at this position (speed_m_per_s of "
                 "targets.csv), "
                 "mean over the subjects' means");

@@ -22,9 +22,9 @@ struct TargetRow {
 /// Measures the targets of all trials of a run.
 class TargetMetricsObserver final : public MetricObserver {
  public:
-  /// `places`: number of target positions of the task, which defines the metrics' names for an observer without a
+  /// `positions`: number of target positions of the task, which defines the metrics' names for an observer without a
   /// trial.
-  explicit TargetMetricsObserver(std::size_t places = 2) : places_(places) {}
+  explicit TargetMetricsObserver(std::size_t positions = 2) : positions_(positions) {}
 
   /// Precondition: the trial's hand has a task.
   void begin(const TrialParts& trial) override;
@@ -43,7 +43,7 @@ class TargetMetricsObserver final : public MetricObserver {
   /// Returns the number of targets of this trial that have ended.
   std::size_t ended() const noexcept { return rows_.size() - rows_before_; }
 
-  std::size_t places_;
+  std::size_t positions_;
   std::vector<std::size_t> order_;  ///< position number of each target; empty before the first trial
   double time_limit_ = 0.0;         ///< [s]
   TargetRow current_;               ///< sums of the current target, from which its means are computed
@@ -60,8 +60,8 @@ struct SubjectMean {
 
 /// Measurements at one target position over all subjects. Each subject contributes the mean over its targets at this
 /// position, as in Table A.1. Force and speed exclude targets that the tip never reached.
-struct PlaceMetrics {
-  std::size_t place = 0;
+struct PositionMetrics {
+  std::size_t position = 0;
   SubjectMean success_rate;
   SubjectMean completion_time;  ///< [s]; for a target that was not removed, the time limit
   SubjectMean model_force;      ///< [N]
@@ -69,6 +69,6 @@ struct PlaceMetrics {
 };
 
 /// Returns the tables of thesis D.4: one entry for each target position that occurs.
-std::vector<PlaceMetrics> place_metrics(const std::vector<TargetRow>& rows);
+std::vector<PositionMetrics> position_metrics(const std::vector<TargetRow>& rows);
 
 }  // namespace hapbench

@@ -433,8 +433,8 @@ void write_target_table(const TableTarget& target, const std::vector<TargetRow>&
   for (const TargetRow& row : rows) {
     const bool any = row.rows_on_target > 0;
     table.row(std::uint64_t{row.subject}, std::uint64_t{row.trial}, std::uint64_t{row.target},
-              std::uint64_t{row.result.place}, std::uint64_t{row.result.removed}, row.result.time, row.rows_on_target,
-              if_any(any, row.model_force), if_any(any, row.speed));
+              std::uint64_t{row.result.position}, std::uint64_t{row.result.removed}, row.result.time,
+              row.rows_on_target, if_any(any, row.model_force), if_any(any, row.speed));
   }
   table.finish(together);
 }

@@ -28,9 +28,9 @@ struct ContactSchedule {
   };
 
   MultiRateSchedule timing;
-  bool has_result = false;  ///< true once a query has returned contacts
-  Query latest;             ///< query whose contacts are used; undefined while no query has returned
-  std::uint64_t asked = 0;  ///< queries sent so far, including lost queries
+  bool has_result = false;    ///< true once a query has returned contacts
+  Query latest;               ///< query whose contacts are used; undefined while no query has returned
+  std::uint64_t queries = 0;  ///< queries sent so far, including lost queries
   std::uint64_t lost = 0;
 
   /// Returns the query whose contacts are used in the current step, or null if no query has returned yet.

@@ -110,7 +110,7 @@ void InsideSearch::examine(const ToolPose& pose, Cell cell, double outside, cons
     if (!tool_.convex()) radius += outside;
   }
   // Skip the cell if the known distance alone proves that it is not deep enough.
-  const double distance = (point - cell.known_distance.place).norm();
+  const double distance = (point - cell.known_distance.point).norm();
   if (!may_be_deepest(radius + distance - cell.known_distance.value)) return;
   ++evaluations_;
   const SurfaceDistance phi = solid_.at(point, &cell.known_distance);
@@ -230,7 +230,7 @@ InsideBound::Evaluation InsideBound::evaluate(Ball& ball, const BoundRequest& q)
   const Vec3 centre = q.pose.position + ball.position * q.pose.axis;
   const double beyond = ball.radius + q.moved + std::abs(ball.position) * q.turned;
   if (ball.near) {
-    const double distance = (centre - ball.near->place).norm(), bound = beyond - ball.near->value + distance;
+    const double distance = (centre - ball.near->point).norm(), bound = beyond - ball.near->value + distance;
     if (bound <= q.enough || (!q.best && bound - 2.0 * distance > q.enough)) return {bound, true};
   }
   ++evaluations_;

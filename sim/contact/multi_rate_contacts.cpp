@@ -20,7 +20,7 @@ void MultiRateContacts::reset() noexcept {
   source_->reset();
   fault_ = nullptr;
   random_ = Random(seed_);
-  calls_ = schedule_.asked = schedule_.lost = 0;
+  calls_ = schedule_.queries = schedule_.lost = 0;
   last_step_.reset();
   first_ = count_ = 0;
   schedule_.has_result = false;
@@ -32,7 +32,7 @@ void MultiRateContacts::begin_step(std::uint64_t row, const ToolPose& pose) noex
 
   // Send a query if a query is scheduled in this step.
   if (row % static_cast<std::uint64_t>(timing.every) == 0) {
-    const bool is_lost = schedule_.asked++ > 0 && timing.dropout > 0.0 && random_.uniform() < timing.dropout;
+    const bool is_lost = schedule_.queries++ > 0 && timing.dropout > 0.0 && random_.uniform() < timing.dropout;
     if (is_lost)
       ++schedule_.lost;
     else

@@ -13,14 +13,14 @@ std::size_t ContactTrace::end_of(std::size_t i) const {
   return i + 1 < times.size() ? times[i + 1].first : contacts.size();
 }
 
-std::size_t ContactTrace::most() const {
-  std::size_t most = 0;
-  for (std::size_t i = 0; i < times.size(); ++i) most = std::max(most, end_of(i) - times[i].first);
-  return most;
+std::size_t ContactTrace::max_contacts() const {
+  std::size_t largest = 0;
+  for (std::size_t i = 0; i < times.size(); ++i) largest = std::max(largest, end_of(i) - times[i].first);
+  return largest;
 }
 
 TraceSource::TraceSource(std::shared_ptr<const ContactTrace> trace, double dt)
-    : trace_(std::move(trace)), dt_(dt), capacity_(trace_->most()) {}
+    : trace_(std::move(trace)), dt_(dt), capacity_(trace_->max_contacts()) {}
 
 void TraceSource::contacts_at(const ToolPose&, ContactBuffer& contacts) noexcept {
   const double now = static_cast<double>(row_ != nullptr ? *row_ : work_.queries) * dt_;

@@ -27,7 +27,7 @@ struct ContactTrace {
   /// Returns the index one past the last contact of times[i].
   std::size_t end_of(std::size_t i) const;
   /// Returns the largest number of contacts at one time.
-  std::size_t most() const;
+  std::size_t max_contacts() const;
 };
 
 /// Plays back a contact trace. A step gets the contacts recorded nearest to its time, or none if the nearest

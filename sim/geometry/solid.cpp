@@ -18,7 +18,7 @@ constexpr double kFar = 1e4;  ///< longer than any distance in a scene [m]
 /// rounding, also at a point of the surface.
 double largest_distance(const Vec3& q, const KnownDistance& near) {
   constexpr double kRelative = 1e-9, kAbsolute = 1e-12;
-  return (1.0 + kRelative) * (std::abs(near.value) + (q - near.place).norm()) + kAbsolute;
+  return (1.0 + kRelative) * (std::abs(near.value) + (q - near.point).norm()) + kAbsolute;
 }
 
 /// Solid in closed form: one of the shapes of analytic_shells.hpp.
@@ -86,7 +86,7 @@ class MeshSolid final : public Solid {
     const double distance = std::sqrt(nearest.distance2);
     if (closed_) {
       // Closed mesh: the sign follows from a known distance nearby, or from the winding number.
-      if (near != nullptr && (q - near->place).norm() < std::abs(near->value))
+      if (near != nullptr && (q - near->point).norm() < std::abs(near->value))
         return {std::copysign(distance, near->value)};
       const bool out = beyond(q) || tree_.winding_number(q, surface_.vertices, surface_.triangles) <= 0;
       return {out ? distance : -distance};

@@ -21,12 +21,12 @@ struct SurfaceDistance {
 };
 
 /// Signed distance computed earlier at a nearby point, used to shorten the next search. The distance from another
-/// point to the surface is at most |value| plus the distance between the two points. A point closer to `place` than
-/// |value| lies on the same side of the surface as `place`.
+/// point to the surface is at most |value| plus the distance between the two points. A point closer to `point` than
+/// |value| lies on the same side of the surface as `point`.
 struct KnownDistance {
   /// Point at which the distance was computed [m].
-  Vec3 place;
-  /// Signed distance at `place` [m].
+  Vec3 point;
+  /// Signed distance at `point` [m].
   double value;
 };
 

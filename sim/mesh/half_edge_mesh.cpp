@@ -493,7 +493,7 @@ double refined_face_count(const HalfEdgeMesh& mesh, double longest_edge, double 
   return count;
 }
 
-std::vector<SurfacePoint> thinned(const std::vector<SurfacePoint>& points, double spacing) {
+std::vector<SurfacePoint> subsampled(const std::vector<SurfacePoint>& points, double spacing) {
   using Nearest = std::pair<double, std::size_t>;  // distance from the cube's centre [m], and index of the point
   // Find the point closest to the centre for each cube and direction.
   std::unordered_map<CubeKey, Nearest, CubeKeyHash> nearest;

@@ -37,7 +37,7 @@ double refined_face_count(const HalfEdgeMesh& mesh, double longest_edge, double 
 /// half-integer multiples of `spacing`. Keeps one point for each cube and each of the six axis directions closest to
 /// the normals, so that both sides of a thin wall remain. The kept point is the point closest to the cube's centre, or
 /// the first of several equally close points. Preserves the order of the points. O(n log n).
-std::vector<SurfacePoint> thinned(const std::vector<SurfacePoint>& points, double spacing);
+std::vector<SurfacePoint> subsampled(const std::vector<SurfacePoint>& points, double spacing);
 
 /// Connected component of a surface: triangles that are connected across edges with two triangles.
 struct MeshComponent {

@@ -17,8 +17,8 @@ void follow(double& output, double input, std::optional<double> cutoff, double d
 }  // namespace
 
 TargetTask::TargetTask(TargetRules rules, std::uint64_t seed) : rules_(std::move(rules)) {
-  for (std::size_t place = 0; place < rules_.places.size(); ++place) {
-    order_.insert(order_.end(), rules_.targets_per_place, place);
+  for (std::size_t position = 0; position < rules_.positions.size(); ++position) {
+    order_.insert(order_.end(), rules_.targets_per_position, position);
   }
   Random(seed).shuffle(order_);
   results_.reserve(order_.size());
@@ -32,7 +32,7 @@ void TargetTask::reset() noexcept {
 }
 
 Vec3 TargetTask::error(const Vec3& tip) const noexcept {
-  const Vec3 error = rules_.places[place()] - tip;
+  const Vec3 error = rules_.positions[position_index()] - tip;
   return rules_.display == TargetDisplay::panel ? Vec3(error.x(), error.y(), 0.0) : Vec3(0.0, 0.0, error.z());
 }
 
@@ -84,7 +84,7 @@ bool TargetTask::is_pressed(double dt) noexcept {
 }
 
 void TargetTask::next_target(bool removed, double time) noexcept {
-  results_.push_back({place(), removed, time});
+  results_.push_back({position_index(), removed, time});
   active_ = false;
   shown_ = held_ = 0.0;
 }

@@ -45,9 +45,9 @@ struct Threshold {
 struct TargetRules {
   TargetDisplay display = TargetDisplay::panel;
   /// Positions at which targets appear [m]; only the displayed components count.
-  std::vector<Vec3> places;
-  std::uint64_t targets_per_place = 5;  ///< number of targets at each position in one trial
-  double tolerance = 0.0002;            ///< largest distance at which the tip is on the target [m]
+  std::vector<Vec3> positions;
+  std::uint64_t targets_per_position = 5;  ///< number of targets at each position in one trial
+  double tolerance = 0.0002;               ///< largest distance at which the tip is on the target [m]
   /// Largest distance at which force and speed are logged [m]; nullopt: tolerance.
   std::optional<double> logged = {};
   double min_press_force = 1.0;             ///< smallest force along +z that counts as pressing; activates the target
@@ -60,9 +60,9 @@ struct TargetRules {
 
 /// The result of one target.
 struct TargetResult {
-  std::size_t place = 0;  ///< index in TargetRules::places
-  bool removed = false;   ///< true if the target was removed within the time limit
-  double time = 0.0;      ///< time from activation to the end [s]; the time limit if the target disappeared
+  std::size_t position = 0;  ///< index in TargetRules::positions
+  bool removed = false;      ///< true if the target was removed within the time limit
+  double time = 0.0;         ///< time from activation to the end [s]; the time limit if the target disappeared
 };
 
 /// The task of one trial. Targets appear one at a time in a pseudo-random order, equally often at each
@@ -87,10 +87,10 @@ class TargetTask {
   bool finished() const noexcept { return results_.size() == order_.size(); }
   /// Index of the displayed target in order(). Precondition: not finished.
   std::size_t number() const noexcept { return results_.size(); }
-  /// Index of the displayed target's position in TargetRules::places. Precondition: not finished.
-  std::size_t place() const noexcept { return order_[number()]; }
+  /// Index of the displayed target's position in TargetRules::positions. Precondition: not finished.
+  std::size_t position_index() const noexcept { return order_[number()]; }
   const TargetRules& rules() const noexcept { return rules_; }
-  /// Position of each target as an index in TargetRules::places, in the order in which the targets appear.
+  /// Position of each target as an index in TargetRules::positions, in the order in which the targets appear.
   const std::vector<std::size_t>& order() const noexcept { return order_; }
 
   /// Returns the vector from the tip to the target in the displayed components; all other components are 0 [m].

@@ -74,7 +74,7 @@ struct GridNodes {
     return (i * count[1] + j) * count[2] + k;
   }
   double coordinate(int axis, std::size_t i) const noexcept { return origin[axis] + spacing * static_cast<double>(i); }
-  Vec3 place(std::size_t i, std::size_t j, std::size_t k) const noexcept {
+  Vec3 position(std::size_t i, std::size_t j, std::size_t k) const noexcept {
     return {coordinate(0, i), coordinate(1, j), coordinate(2, k)};
   }
 };

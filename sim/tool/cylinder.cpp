@@ -229,7 +229,7 @@ void Cylinder::surface_constraints(const ToolPose& pose, const Vec3& wanted, dou
 }
 
 void Cylinder::support_points(const ToolPose& pose, const ContactBuffer& contacts,
-                              const MutablePointArrays& places) const noexcept {
+                              const MutablePointArrays& surface_points) const noexcept {
   const Pack radius(radius_), length(length_), zero(0.0), one(1.0), along_side(kAlongSide);
   // For a flat tip the condition forward > 2 is never true.
   const Pack ball_from(tip_ == Tip::round ? kAlongSide : 2.0);
@@ -249,9 +249,9 @@ void Cylinder::support_points(const ToolPose& pose, const ContactBuffer& contact
     Pack s = select(forward > zero, zero, -length);
     s = select(simd::abs(forward) < along_side, beside, s);
     const Mask at_ball = forward > ball_from;
-    simd::store(px + select(at_ball, -radius * nx, s * ax + scale * x), &places.x[i]);
-    simd::store(py + select(at_ball, -radius * ny, s * ay + scale * y), &places.y[i]);
-    simd::store(pz + select(at_ball, -radius * nz, s * az + scale * z), &places.z[i]);
+    simd::store(px + select(at_ball, -radius * nx, s * ax + scale * x), &surface_points.x[i]);
+    simd::store(py + select(at_ball, -radius * ny, s * ay + scale * y), &surface_points.y[i]);
+    simd::store(pz + select(at_ball, -radius * nz, s * az + scale * z), &surface_points.z[i]);
   }
 }
 

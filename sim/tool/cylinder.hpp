@@ -50,7 +50,7 @@ class Cylinder final : public ToolShape {
   void surface_constraints(const ToolPose& pose, const Vec3& wanted, double slack,
                            ContactBuffer& contacts) const noexcept override;
   void support_points(const ToolPose& pose, const ContactBuffer& contacts,
-                      const MutablePointArrays& places) const noexcept override;
+                      const MutablePointArrays& surface_points) const noexcept override;
   /// The grown cylinder extends beyond a flat tip, so its tip centre lies `margin` ahead along the axis.
   Grown grown(double margin) const override;
 

@@ -29,8 +29,8 @@ bool between(const ProfilePoint& a, const ProfilePoint& b, const ProfilePoint& c
 /// Returns true if the segments a b and c d have a point in common.
 bool meet(const ProfilePoint& a, const ProfilePoint& b, const ProfilePoint& c, const ProfilePoint& d) {
   const double abc = cross(a, b, c), abd = cross(a, b, d), cda = cross(c, d, a), cdb = cross(c, d, b);
-  const auto apart = [](double x, double y) { return (x > 0.0 && y < 0.0) || (x < 0.0 && y > 0.0); };
-  if (apart(abc, abd) && apart(cda, cdb)) return true;
+  const auto have_opposite_signs = [](double x, double y) { return (x > 0.0 && y < 0.0) || (x < 0.0 && y > 0.0); };
+  if (have_opposite_signs(abc, abd) && have_opposite_signs(cda, cdb)) return true;
   return (abc == 0.0 && between(a, b, c)) || (abd == 0.0 && between(a, b, d)) || (cda == 0.0 && between(c, d, a)) ||
          (cdb == 0.0 && between(c, d, b));
 }
@@ -179,8 +179,8 @@ class SectionParts {
   std::vector<std::size_t> lines_across(double from, double to) const {
     std::vector<std::size_t> across;
     for (std::size_t i = 0; i + 1 < profile_.size(); ++i) {
-      const auto [least, most] = std::minmax(profile_[i].s, profile_[i + 1].s);
-      if (least <= from && most >= to) across.push_back(i);
+      const auto [lower, upper] = std::minmax(profile_[i].s, profile_[i + 1].s);
+      if (lower <= from && upper >= to) across.push_back(i);
     }
     const double middle = 0.5 * (from + to);
     std::ranges::sort(across, {}, [&](std::size_t i) { return height(i, middle); });

@@ -503,15 +503,15 @@ void MeshTool::surface_constraints(const ToolPose& pose, const Vec3& wanted, dou
 }
 
 void MeshTool::support_points(const ToolPose& pose, const ContactBuffer& contacts,
-                              const MutablePointArrays& places) const noexcept {
+                              const MutablePointArrays& surface_points) const noexcept {
   const Mat3 rotation = pose.rotation();
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     const Vec3 point = rotation.transpose() * (contacts.point(i) - pose.position);
     const Vec3 support =
         pose.position + rotation * grid_->hull().foremost(rotation.transpose() * -contacts.normal(i), point);
-    places.x[i] = support.x();
-    places.y[i] = support.y();
-    places.z[i] = support.z();
+    surface_points.x[i] = support.x();
+    surface_points.y[i] = support.y();
+    surface_points.z[i] = support.z();
   }
 }
 

@@ -59,7 +59,7 @@ class MeshTool final : public ToolShape {
   /// Returns points of the mesh's convex hull. Costs about 100 dot products for each contact of a smooth mesh; see
   /// SupportTable.
   void support_points(const ToolPose& pose, const ContactBuffer& contacts,
-                      const MutablePointArrays& places) const noexcept override;
+                      const MutablePointArrays& surface_points) const noexcept override;
   /// Returns a cylinder around the body.
   Grown grown(double margin) const override;
 

@@ -17,8 +17,8 @@ std::string joined(const Parts&... parts) {
 }
 
 /// Returns the three coordinates, separated by commas.
-inline std::string coordinates(const Vec3& place) {
-  return joined(place.x(), ", ", place.y(), ", ", place.z());
+inline std::string coordinates(const Vec3& point) {
+  return joined(point.x(), ", ", point.y(), ", ", point.z());
 }
 
 /// Throws std::invalid_argument; the message is the concatenated parts.

@@ -71,7 +71,7 @@ Pack convex_depth(const Meridian& meridian, const Pack& s, const Pack& rho) {
 }
 
 /// Closest point on the profile's segments and discs.
-struct NearestPlace {
+struct NearestPoint {
   Pack distance2;
   Pack vs, vr;  ///< normal of the segment at the closest point; at a corner, the vector from the query point to the
                 ///< corner
@@ -79,12 +79,12 @@ struct NearestPlace {
 };
 
 /// Returns the closest point of the outline for points with axial coordinate s and distance rho from the axis.
-[[gnu::always_inline]] inline NearestPlace nearest_place(const Meridian& meridian, const Pack& s, const Pack& rho) {
+[[gnu::always_inline]] inline NearestPoint nearest_point(const Meridian& meridian, const Pack& s, const Pack& rho) {
   const Pack zero(0.0);
   // If a point is closer to a corner than this, the direction to the corner is dominated by rounding. The segment's
   // normal is then used, which is one of the valid directions.
   const Pack at_line(1e-12 * meridian.widest);
-  NearestPlace nearest{Pack(std::numeric_limits<double>::infinity()), zero, zero, zero < zero};
+  NearestPoint nearest{Pack(std::numeric_limits<double>::infinity()), zero, zero, zero < zero};
   for (const Meridian::Line& line : meridian.lines) {
     const Pack ns(line.ns), nr(line.nr);
     const Pack inwards = line.slack(s, rho);
@@ -104,7 +104,7 @@ struct NearestPlace {
 /// Returns the distance to the closest point of the outline. nearest_place() is inlined, so its other results are
 /// not computed here.
 Pack nearest_distance(const Meridian& meridian, const Pack& s, const Pack& rho) {
-  return simd::sqrt(nearest_place(meridian, s, rho).distance2);
+  return simd::sqrt(nearest_point(meridian, s, rho).distance2);
 }
 
 /// Ray x + d u in axial coordinates, with d the distance along it: s + d slope along the axis, and the vector rho +
@@ -306,7 +306,7 @@ void Revolved::shortest_gradients(const ToolPose& pose, ContactBuffer& contacts)
   for (std::size_t i = 0; i < contacts.padded_size(); i += simd::lanes) {
     const AxialPack q(pose, &contacts.x[i], &contacts.y[i], &contacts.z[i]);
     const Pack rho = simd::sqrt(q.rho2);
-    const NearestPlace nearest = nearest_place(meridian_, q.s, rho);
+    const NearestPoint nearest = nearest_point(meridian_, q.s, rho);
     // Unit vector to the closest point, from the half plane to the world frame.
     const Pack scale = one / simd::sqrt(nearest.vs * nearest.vs + nearest.vr * nearest.vr);
     const Pack vs = nearest.vs * scale, vr = nearest.vr * scale;
@@ -356,7 +356,7 @@ void Revolved::surface_constraints(const ToolPose& pose, const Vec3& wanted, dou
     const Mask inside = in_section(m, q.s >= low && q.s <= high, q.s, q.rho2) || in_tip;
 
     // Signed distance and outward normal at the closest point of the outline.
-    const NearestPlace nearest = nearest_place(m, q.s, rho);
+    const NearestPoint nearest = nearest_point(m, q.s, rho);
     // Outside of the body, the vector to a corner is opposite to the normal.
     const Pack length = simd::sqrt(nearest.vs * nearest.vs + nearest.vr * nearest.vr);
     const Pack scale = select(nearest.at_corner && !inside, -one, one) / length;
@@ -392,7 +392,7 @@ void Revolved::surface_constraints(const ToolPose& pose, const Vec3& wanted, dou
 }
 
 void Revolved::support_points(const ToolPose& pose, const ContactBuffer& contacts,
-                              const MutablePointArrays& places) const noexcept {
+                              const MutablePointArrays& surface_points) const noexcept {
   const Meridian& m = meridian_;
   const Pack zero(0.0), one(1.0), along_line(kAlongLine), ball(m.ball);
   const PackVector position(pose.position), axis(pose.axis);
@@ -435,9 +435,9 @@ void Revolved::support_points(const ToolPose& pose, const ContactBuffer& contact
     }
     // A round tip may be further ahead than every corner.
     const Mask at_ball = m.tip == Tip::round ? forward > along_line && ball >= best : zero > one;
-    simd::store(select(at_ball, -ball * n.x, s * axis.x + rho * out.x) + position.x, &places.x[i]);
-    simd::store(select(at_ball, -ball * n.y, s * axis.y + rho * out.y) + position.y, &places.y[i]);
-    simd::store(select(at_ball, -ball * n.z, s * axis.z + rho * out.z) + position.z, &places.z[i]);
+    simd::store(select(at_ball, -ball * n.x, s * axis.x + rho * out.x) + position.x, &surface_points.x[i]);
+    simd::store(select(at_ball, -ball * n.y, s * axis.y + rho * out.y) + position.y, &surface_points.y[i]);
+    simd::store(select(at_ball, -ball * n.z, s * axis.z + rho * out.z) + position.z, &surface_points.z[i]);
   }
 }
 

@@ -62,7 +62,7 @@ class Revolved final : public ToolShape {
   void surface_constraints(const ToolPose& pose, const Vec3& wanted, double slack,
                            ContactBuffer& contacts) const noexcept override;
   void support_points(const ToolPose& pose, const ContactBuffer& contacts,
-                      const MutablePointArrays& places) const noexcept override;
+                      const MutablePointArrays& surface_points) const noexcept override;
   /// Returns the convex hull of squares about the profile's points, whose corners are sqrt(2) margin away from the
   /// points. A round tip stays round if no part of the body is wider than the tip.
   Grown grown(double margin) const override;

@@ -146,7 +146,7 @@ void check_winding(const std::vector<std::int8_t>& numbers, const GridNodes& nod
   const auto first = std::find_if(numbers.begin(), numbers.end(), is_wrong);
   if (first == numbers.end()) return;
   const auto i = static_cast<std::size_t>(first - numbers.begin()), column = i / nodes.count[2];
-  const Vec3 position = nodes.place(column / nodes.count[1], column % nodes.count[1], i % nodes.count[2]);
+  const Vec3 position = nodes.position(column / nodes.count[1], column % nodes.count[1], i % nodes.count[2]);
   refuse("the mesh passes through itself: it encloses [", coordinates(position), "] m ", int{*first}, " times, and so ",
          std::count_if(first, numbers.end(), is_wrong), " of ", nodes.count[0], " x ", nodes.count[1], " x ",
          nodes.count[2], " nodes; unite its parts, all counter-clockwise from outside");

@@ -144,7 +144,7 @@ class ToolShape {
   /// Writes the support point of the body in the direction -n_i for each contact normal n_i: argmin <q, n_i> over
   /// the points q of the body. If the support point is not unique, writes a support point near the contact.
   virtual void support_points(const ToolPose& pose, const ContactBuffer& contacts,
-                              const MutablePointArrays& places) const noexcept = 0;
+                              const MutablePointArrays& surface_points) const noexcept = 0;
 
   /// Shape that encloses the body with a margin. Its tip centre lies `forward` [m] ahead of the body's tip centre,
   /// along the axis.

@@ -29,12 +29,12 @@ void free_used(void* block) {
   std::free(block);
 }
 
-TEST(AllocationCounter, CountsEveryWayToAllocate) {
+TEST(AllocationCounter, CountsEveryKindOfAllocation) {
   const struct {
-    const char* way;
+    const char* method;
     void (*allocate)();
     std::uint64_t times;
-  } kWays[] = {
+  } kAllocations[] = {
       {"none", [] {}, 0},
       {"new", [] { use(std::make_unique<int>(1).get()); }, 1},
       {"new[]", [] { use(std::make_unique<int[]>(7).get()); }, 1},
@@ -44,10 +44,10 @@ TEST(AllocationCounter, CountsEveryWayToAllocate) {
       {"aligned_alloc", [] { free_used(std::aligned_alloc(64, 64)); }, 1},
       {"Eigen", [] { use(Eigen::MatrixXd(3, 3).data()); }, 1},
   };
-  for (const auto& [way, allocate, times] : kWays) {
+  for (const auto& [method, allocate, times] : kAllocations) {
     const AllocationCount count;
     allocate();
-    EXPECT_EQ(count.value(), times) << way;
+    EXPECT_EQ(count.value(), times) << method;
   }
   const AllocationCount count;
   void* block = std::malloc(10);
@@ -61,7 +61,7 @@ struct Stages {
   bool local_average;
   std::optional<ReductionConfig> reduction;
   bool controlled = false;
-  std::optional<MultiRateSchedule> late = {};
+  std::optional<MultiRateSchedule> multi_rate = {};
   std::optional<ForceStageConfig> stage = {};
 };
 const Stages kStages[] = {
@@ -164,7 +164,7 @@ TEST_P(NoAllocation, InAStepOrAReset) {
   config.local_average = GetParam().stages->local_average;
   config.reduction = GetParam().stages->reduction;
   config.passivity_controller = GetParam().stages->controlled;
-  config.late = GetParam().stages->late;
+  config.multi_rate = GetParam().stages->multi_rate;
   config.force_stage = GetParam().stages->stage;
   config.mu_s = 5.0;
   config.mu_f = 10.0;
@@ -176,7 +176,7 @@ TEST_P(NoAllocation, InAStepOrAReset) {
   Simulation simulation(run, parts_of(GetParam(), config), {&observer});
 
   EXPECT_EQ(allocations_of_two_runs(simulation), 0u);
-  EXPECT_EQ(observer.rows_with_contact, 600 - (config.late ? 2 * config.late->delay : 0));
+  EXPECT_EQ(observer.rows_with_contact, 600 - (config.multi_rate ? 2 * config.multi_rate->delay : 0));
 }
 
 /// Some integrators find contacts and render again within a step.

@@ -305,7 +305,7 @@ class RandomStroke {
 };
 
 TEST(ContinuousNormalProjectionDepth, FollowsItsFormulaFromStepToStep) {
-  std::size_t at_the_least = 0, at_the_most = 0, between = 0;
+  std::size_t at_the_smallest = 0, at_the_largest = 0, between = 0;
   for (std::uint64_t seed = 0; seed < test::cases(300); ++seed) {
     RandomStroke walk(seed);
     const std::vector<SurfacePoint> points = walk.points();
@@ -321,8 +321,8 @@ TEST(ContinuousNormalProjectionDepth, FollowsItsFormulaFromStepToStep) {
         const double followed = last.contains(i) ? last[i].continuous - moved.dot(points[i].normal) : 0.0;
         const double expected = std::min(d.projected, std::max({0.0, d.shortest, followed}));
         ASSERT_NEAR(d.continuous, expected, kRounding) << seed << ' ' << step;
-        at_the_least += d.continuous == d.shortest;
-        at_the_most += d.continuous == d.projected;
+        at_the_smallest += d.continuous == d.shortest;
+        at_the_largest += d.continuous == d.projected;
         between += d.continuous > d.shortest && d.continuous < d.projected;
       }
       last = now;
@@ -330,7 +330,7 @@ TEST(ContinuousNormalProjectionDepth, FollowsItsFormulaFromStepToStep) {
     }
   }
   // Check that all cases of the formula have occurred.
-  for (const std::size_t count : {at_the_least, at_the_most, between}) EXPECT_GT(count, test::cases(300));
+  for (const std::size_t count : {at_the_smallest, at_the_largest, between}) EXPECT_GT(count, test::cases(300));
 }
 
 TEST(ContinuousNormalProjectionDepth, AFlatTipPressedInIsAsDeepAsItsTip) {

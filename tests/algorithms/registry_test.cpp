@@ -64,9 +64,9 @@ TEST(Registry, EveryForceBoundHoldsForASingleSpring) {
     setting.springs = SpringSet{{Vec3::UnitX()}, true};
     setting.pose.position = {1e-4, 0.0, 0.0};
     const RenderedForce force = test::Probe(setting, config).force_at(setting.pose);
-    const double most = config.stiffness * bound(config, setting.tool, 1, force.depth_max);
+    const double largest = config.stiffness * bound(config, setting.tool, 1, force.depth_max);
     EXPECT_GT(force.spring.norm(), 0.0) << entry.info->name;
-    EXPECT_LE(force.spring.norm(), most * (1.0 + 1e-12)) << entry.info->name;
+    EXPECT_LE(force.spring.norm(), largest * (1.0 + 1e-12)) << entry.info->name;
   }
 }
 

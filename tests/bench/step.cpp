@@ -364,8 +364,8 @@ void add_skips() {
   plain.mu_s = plain.mu_f = 0.0;
   for (const Skips skips : {Skips::on, Skips::off}) {
     const auto add = [skips](const char* what, auto function, auto... arguments) {
-      const char* way = skips == Skips::on ? "taken" : "off";
-      benchmark::RegisterBenchmark(fmt::format("skip/{}/{}", what, way).c_str(), function, arguments..., skips);
+      const char* setting = skips == Skips::on ? "taken" : "off";
+      benchmark::RegisterBenchmark(fmt::format("skip/{}/{}", what, setting).c_str(), function, arguments..., skips);
     };
     add("clearance", clearance_benchmark);
     add("no_contact", rendering_benchmark, task_rendering(), std::size_t{0});

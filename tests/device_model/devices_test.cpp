@@ -249,10 +249,10 @@ TEST(ImpedanceDevice, TheToolIsAtTheMeasuredPosition) {
   EXPECT_EQ(rows[0].tool.velocity, Vec3(0, 0, 0));
   EXPECT_EQ(rows[0].handle.position, Vec3(2.5 * q, -2.5 * q, 0.4 * q)) << "the true one";
   for (std::size_t k = 1; k < rows.size(); ++k) {
-    const Vec3 place = rows[k].tool.pose.position;
-    EXPECT_LE((place - rows[k].handle.position).cwiseAbs().maxCoeff(), 0.5 * q);
-    EXPECT_EQ(place.x() / q, std::round(place.x() / q));
-    EXPECT_EQ(rows[k].tool.velocity, Vec3((place - rows[k - 1].tool.pose.position) / kT));
+    const Vec3 measured = rows[k].tool.pose.position;
+    EXPECT_LE((measured - rows[k].handle.position).cwiseAbs().maxCoeff(), 0.5 * q);
+    EXPECT_EQ(measured.x() / q, std::round(measured.x() / q));
+    EXPECT_EQ(rows[k].tool.velocity, Vec3((measured - rows[k - 1].tool.pose.position) / kT));
   }
 }
 

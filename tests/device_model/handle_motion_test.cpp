@@ -300,15 +300,15 @@ void advance(HandleMotion& motion, const Vec3& force, double time) {
 }
 
 TEST(HandleMotion, StopsWhereAndWhenCoulombFrictionSays) {
-  const double stop = kMass * kSpeed / kCoulomb, place = 0.5 * kMass * kSpeed * kSpeed / kCoulomb;
+  const double stop = kMass * kSpeed / kCoulomb, distance = 0.5 * kMass * kSpeed * kSpeed / kCoulomb;
   HandleMotion motion = started(handle_of(0.0, kCoulomb), {kSpeed, -kSpeed, 0.0});
   advance(motion, Vec3::Zero(), 0.999 * stop);
   EXPECT_NEAR(motion.handle().velocity.x(), 0.001 * kSpeed, 1e-15);
   EXPECT_NEAR(motion.handle().velocity.y(), -0.001 * kSpeed, 1e-15);
   advance(motion, Vec3::Zero(), 0.002 * stop);
   EXPECT_EQ(motion.handle().velocity, Vec3(0, 0, 0));
-  EXPECT_NEAR(motion.handle().position.x(), place, 1e-16);
-  EXPECT_NEAR(motion.handle().position.y(), -place, 1e-16);
+  EXPECT_NEAR(motion.handle().position.x(), distance, 1e-16);
+  EXPECT_NEAR(motion.handle().position.y(), -distance, 1e-16);
 }
 
 TEST(HandleMotion, SticksUpToTheFrictionAndBreaksAwayBeyond) {
@@ -318,9 +318,9 @@ TEST(HandleMotion, SticksUpToTheFrictionAndBreaksAwayBeyond) {
   EXPECT_EQ(motion.handle().velocity, Vec3(0, 0, 0));
   const double push = 1.25 * kCoulomb, time = 0.25;
   advance(motion, {push, -push, 0.0}, time);
-  const double place = 0.5 * (push - kCoulomb) / kMass * time * time;
-  EXPECT_NEAR(motion.handle().position.x(), place, 1e-15);
-  EXPECT_NEAR(motion.handle().position.y(), -place, 1e-15);
+  const double distance = 0.5 * (push - kCoulomb) / kMass * time * time;
+  EXPECT_NEAR(motion.handle().position.x(), distance, 1e-15);
+  EXPECT_NEAR(motion.handle().position.y(), -distance, 1e-15);
   EXPECT_EQ(motion.handle().position.z(), 0.0);
 }
 
@@ -336,10 +336,10 @@ TEST(HandleMotion, SwingsOutUnderAHandWithASpring) {
   int swings = 0;
   for (; k * amplitude > kCoulomb; ++swings) amplitude -= 2.0 * kCoulomb / k;
   ASSERT_GE(swings, 9);
-  const double place = swings % 2 == 0 ? amplitude : -amplitude;
+  const double distance = swings % 2 == 0 ? amplitude : -amplitude;
   EXPECT_EQ(motion.handle().velocity, Vec3(0, 0, 0));
-  EXPECT_NEAR(motion.handle().position.x(), place, 1e-13);
-  EXPECT_NEAR(motion.handle().position.z(), -place, 1e-13);
+  EXPECT_NEAR(motion.handle().position.x(), distance, 1e-13);
+  EXPECT_NEAR(motion.handle().position.z(), -distance, 1e-13);
   EXPECT_EQ(motion.handle().position.y(), 0.0);
 }
 
@@ -388,10 +388,11 @@ TEST(HandleMotion, DissipatesByItsFrictionAlone) {
   for (int i = 0; i < 20000; ++i) {  // half-way, a force reverses the motion
     const double before = motion.handle().position.x();
     advance(motion, {i < 10000 ? 0.0 : -1.0, 0, 0}, 1e-5);
-    const double way = motion.handle().position.x() - before, mean = 0.5 * (speed + motion.handle().velocity.x());
+    const double displacement = motion.handle().position.x() - before,
+                 mean = 0.5 * (speed + motion.handle().velocity.x());
     speed = motion.handle().velocity.x();
     viscous += b * mean * mean * 1e-5;
-    path += std::abs(way);
+    path += std::abs(displacement);
   }
   // The trapezoidal rule has an error of (h / time constant)^2 = 1e-8.
   EXPECT_NEAR(motion.energy().dissipated, -viscous - kCoulomb * path, 1e-7 * (viscous + kCoulomb * path));

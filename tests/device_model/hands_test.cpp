@@ -94,10 +94,10 @@ TEST(SmoothedSurface, OfAPlaneIsThePlane) {
   Random random(3);
   for (int i = 0; i < 100; ++i) {
     const Vec3 at = 0.002 * random.direction();
-    const SurfacePoint place = surface.nearest(at);
+    const SurfacePoint found = surface.nearest(at);
     // All points have z = 0 and equal normals, so the averages are exact up to the division of equal sums.
-    EXPECT_LT((place.normal - Vec3(0, 0, 1)).norm(), 1e-15);
-    EXPECT_LT((place.position - Vec3(at.x(), at.y(), 0)).norm(), 1e-18) << at.transpose();
+    EXPECT_LT((found.normal - Vec3(0, 0, 1)).norm(), 1e-15);
+    EXPECT_LT((found.position - Vec3(at.x(), at.y(), 0)).norm(), 1e-18) << at.transpose();
   }
 }
 
@@ -108,11 +108,11 @@ TEST(SmoothedSurface, OfASphereFollowsIt) {
   Random random(4);
   for (int i = 0; i < 200; ++i) {
     const Vec3 radial = random.direction();
-    const SurfacePoint place = surface.nearest((kRadius + 0.001 * random.uniform()) * radial);
+    const SurfacePoint found = surface.nearest((kRadius + 0.001 * random.uniform()) * radial);
     // Neighbours lie within R of a position near the sphere. Therefore no normal among them, and no mean of the
     // normals, differs by more than the angle 2 asin(R / 2r), and their centre is no deeper than the sagitta of R.
-    EXPECT_LT(std::acos(std::min(1.0, place.normal.dot(radial))), 2.0 * std::asin(kSmoothing / (2.0 * kRadius)));
-    EXPECT_NEAR(place.position.norm(), kRadius, kSmoothing * kSmoothing / (2.0 * kRadius));
+    EXPECT_LT(std::acos(std::min(1.0, found.normal.dot(radial))), 2.0 * std::asin(kSmoothing / (2.0 * kRadius)));
+    EXPECT_NEAR(found.position.norm(), kRadius, kSmoothing * kSmoothing / (2.0 * kRadius));
   }
 }
 
@@ -121,9 +121,9 @@ TEST(SmoothedSurface, DoesNotSeeTheFarSideOfAThinWall) {
   for (std::size_t i = 0, n = points.size(); i < n; ++i)
     points.push_back({points[i].position - Vec3(0, 0, 0.0001), {0, 0, -1}});
   const PointShell shell(points, 0.0001);
-  const SurfacePoint place = SmoothedSurface(shell, kSmoothing).nearest({0.0003, 0.0002, 0.0001});
-  EXPECT_LT((place.normal - Vec3(0, 0, 1)).norm(), 1e-15);
-  EXPECT_LT(std::abs(place.position.z()), 1e-18);
+  const SurfacePoint found = SmoothedSurface(shell, kSmoothing).nearest({0.0003, 0.0002, 0.0001});
+  EXPECT_LT((found.normal - Vec3(0, 0, 1)).norm(), 1e-15);
+  EXPECT_LT(std::abs(found.position.z()), 1e-18);
 }
 
 TEST(SmoothedSurface, EndsWithTheShell) {
@@ -218,22 +218,22 @@ TEST_F(DragOnPlane, AxisLeansFromTheNormalTowardsTheTravel) {
 
 constexpr double kStep = 1.0 / 2048;
 
-Subject calm() {
+Subject without_tremor() {
   Subject subject;
   subject.motor_noise = subject.tilt_noise = 0.0;
   return subject;
 }
 
-TargetTask one_target(TargetDisplay display, const Vec3& place) {
+TargetTask one_target(TargetDisplay display, const Vec3& position) {
   TargetRules rules;
   rules.display = display;
-  rules.places = {place};
-  rules.targets_per_place = 1;
+  rules.positions = {position};
+  rules.targets_per_position = 1;
   return {rules, 1};
 }
 
 TEST(TrackingHand, DoesNothingBeforeTheReactionDelay) {
-  const Subject subject = calm();
+  const Subject subject = without_tremor();
   TrackingHand hand(subject, one_target(TargetDisplay::panel, {0.01, 0, 0}), 0.0, kStep, 1);
   const Seen view{{}, {}, {0, 0, subject.press}};  // no correction needed in z
   const int delay = static_cast<int>(std::lround(subject.reaction_delay / kStep));
@@ -249,7 +249,7 @@ TEST(TrackingHand, DoesNothingBeforeTheReactionDelay) {
 }
 
 TEST(TrackingHand, MovesTowardsTheTargetAtTheBandwidthOfTheSubject) {
-  Subject subject = calm();
+  Subject subject = without_tremor();
   subject.reaction_delay = 0.0;
   const double error = 0.001;
   TrackingHand hand(subject, one_target(TargetDisplay::panel, {error, -error, 0}), 0.0, kStep, 1);
@@ -262,7 +262,7 @@ TEST(TrackingHand, MovesTowardsTheTargetAtTheBandwidthOfTheSubject) {
 }
 
 TEST(TrackingHand, PressesHarderOrSofterUntilTheGaugeShowsWhatItWants) {
-  Subject subject = calm();
+  Subject subject = without_tremor();
   subject.reaction_delay = 0.0;
   for (const double shown : {0.0, subject.press + 1.0}) {
     TrackingHand hand(subject, one_target(TargetDisplay::panel, {0, 0, 0}), 0.0, kStep, 1);
@@ -276,17 +276,17 @@ TEST(TrackingHand, PressesHarderOrSofterUntilTheGaugeShowsWhatItWants) {
 TEST(TrackingHand, ReadsTheSpringForceFromAGaugeAndTheRenderedForceWithoutOne) {
   const Seen view{{}, {}, {0, 0, 3.0}, {0, 0, 2.0}};
   TargetRules rules;
-  rules.places = {Vec3(0, 0, 0)};
+  rules.positions = {Vec3(0, 0, 0)};
   for (const bool has_gauge : {false, true}) {
     if (has_gauge) rules.gauge = Gauge{1e6, 0.1};  // so fast that it filters nothing
-    TrackingHand hand(calm(), TargetTask(rules, 1), 0.0, kStep, 1);
+    TrackingHand hand(without_tremor(), TargetTask(rules, 1), 0.0, kStep, 1);
     hand.force(0.0, view);
     EXPECT_EQ(hand.task()->reading(), has_gauge ? 2.0 : 3.0);
   }
 }
 
 TEST(TrackingHand, TurnsTheToolOnlyWithTheHeightDisplay) {
-  Subject subject = calm();
+  Subject subject = without_tremor();
   subject.reaction_delay = 0.0;
   const double rise = 0.001;
   TrackingHand panel(subject, one_target(TargetDisplay::panel, {0, 0, rise}), 0.5, kStep, 1);
@@ -305,7 +305,7 @@ TEST(TrackingHand, NoiseHasTheGivenDeviationAndBandwidth) {
   subject.motor_noise = 0.5;
   subject.noise_bandwidth = 8.0;
   TargetRules rules;
-  rules.places = {Vec3(0, 0, 0)};
+  rules.positions = {Vec3(0, 0, 0)};
   rules.time_limit = 1e6;
   TrackingHand hand(subject, TargetTask(rules, 1), 0.0, kStep, 7);
   double squares = 0.0, products = 0.0, last = 0.0;

@@ -35,15 +35,15 @@ SampledLoop unit_loop(double delay, double beta) {
 
 /// Returns the largest limit over beta, found between 0 and 2 by golden-section search; the limit first increases and
 /// then decreases.
-template <class Edge>
-double best_over_damping(Edge edge) {
+template <class Limit>
+double best_over_damping(Limit limit) {
   const double ratio = std::numbers::phi - 1.0;
   double low = 0.01, high = 1.9;
   while (high - low > 1e-5) {
     const double a = high - ratio * (high - low), b = low + ratio * (high - low);
-    (edge(a) < edge(b) ? low : high) = edge(a) < edge(b) ? a : b;
+    (limit(a) < limit(b) ? low : high) = limit(a) < limit(b) ? a : b;
   }
-  return edge(0.5 * (low + high));
+  return limit(0.5 * (low + high));
 }
 
 TEST(SampledLoop, RendersAtMostTheseStiffnessesOnAnUndampedHandle) {
@@ -55,7 +55,7 @@ TEST(SampledLoop, RendersAtMostTheseStiffnessesOnAnUndampedHandle) {
   }
 }
 
-TEST(SampledLoop, HasTheEdgeOfTheClosedFormWithoutDelay) {
+TEST(SampledLoop, HasTheLimitOfTheClosedFormWithoutDelay) {
   for (const double beta : {0.01, 0.1, 0.5, 2.0 * std::numbers::sqrt2 - 2.0, 1.2, 1.9}) {
     const double closed = 2.0 * beta * (2.0 - beta) / (2.0 + beta);
     EXPECT_NEAR(linear_stability_limit(unit_loop(0.0, beta)), closed, 1e-10 * closed) << beta;
@@ -83,9 +83,9 @@ double first_crossing(SampledLoop loop) {
   loop.stiffness = 1.0;
   const Eigen::MatrixXd wall = loop.state_matrix() - A;
   const Eigen::VectorXcd u = wall.col(0).cast<std::complex<double>>();
-  Eigen::Index most = 0;
-  wall.col(0).cwiseAbs().maxCoeff(&most);
-  const Eigen::RowVectorXcd v = (wall.row(most) / wall(most, 0)).cast<std::complex<double>>();
+  Eigen::Index largest = 0;
+  wall.col(0).cwiseAbs().maxCoeff(&largest);
+  const Eigen::RowVectorXcd v = (wall.row(largest) / wall(largest, 0)).cast<std::complex<double>>();
   const auto stiffness_at = [&](double theta) {
     const Eigen::MatrixXcd shifted =
         std::polar(1.0, theta) * Eigen::MatrixXcd::Identity(A.rows(), A.rows()) - A.cast<std::complex<double>>();
@@ -112,7 +112,7 @@ double first_crossing(SampledLoop loop) {
   return first;
 }
 
-TEST(SampledLoop, HasNoCrossingBelowItsEdge) {
+TEST(SampledLoop, HasNoCrossingBelowItsLimit) {
   Random random(3);
   for (int i = 0; i < 12; ++i) {
     SampledLoop loop = unit_loop(std::floor(10.0 * random.uniform()) / 4.0, 0.4 * random.uniform());
@@ -120,10 +120,10 @@ TEST(SampledLoop, HasNoCrossingBelowItsEdge) {
     loop.hand = {2.0 * random.uniform(), i % 2 == 0 ? 0.0 : 0.01 * random.uniform(), 0.0};
     if (i % 3 == 0) loop.device.velocity_filter = LowPassFilter{0.1, static_cast<std::size_t>(1 + i) % 4 + 1};
     if (i % 4 == 1) loop.device.position_filter = LowPassFilter{0.3, 2};
-    const double edge = linear_stability_limit(loop);
-    ASSERT_GT(edge, 0.0);
+    const double limit = linear_stability_limit(loop);
+    ASSERT_GT(limit, 0.0);
     // The sweep cannot find a crossing at pi, but no loop here has its first crossing at pi.
-    EXPECT_NEAR(first_crossing(loop), edge, 1e-8 * edge) << i;
+    EXPECT_NEAR(first_crossing(loop), limit, 1e-8 * limit) << i;
   }
 }
 
@@ -292,9 +292,9 @@ TEST(HandFamily, NeedsLessStiffnessThanAnyOfItsHands) {
   bool met = false;
   for (const AttachedHand& hand : typical_hands()) {
     loop.hand = hand;
-    const double edge = linear_stability_limit(loop);
-    EXPECT_GE(edge, worst);
-    met = met || edge == worst;
+    const double limit = linear_stability_limit(loop);
+    EXPECT_GE(limit, worst);
+    met = met || limit == worst;
   }
   EXPECT_TRUE(met);
 }
@@ -358,19 +358,19 @@ TEST(StiffnessLimits, WhatIsPassiveIsStableWithEveryHand) {
   }
 }
 
-TEST(StiffnessLimits, TheLinearConditionComesCloseToTheExactEdgeAtLowDamping) {
+TEST(StiffnessLimits, TheLinearConditionComesCloseToTheExactLimitAtLowDamping) {
   for (const double delay : {0.0, 0.5, 1.0, 2.0, 3.0}) {
     SampledLoop loop = light_loop();  // m/T = 100 N s/m
     loop.device.delay_samples = delay;
     loop.device.viscous = 0.5;
     loop.wall_damping = 1.0;
     EXPECT_NEAR(linear_stability_limit(loop) / *limit("stable_gil_hulin", loop), 1.0, 0.02) << delay;
-    const double most = 0.15 * 100.0 / (1.0 + delay);
-    loop.wall_damping = 0.999 * most - loop.device.viscous;
+    const double largest = 0.15 * 100.0 / (1.0 + delay);
+    loop.wall_damping = 0.999 * largest - loop.device.viscous;
     const double ratio = linear_stability_limit(loop) / *limit("stable_gil_hulin", loop);
     EXPECT_LT(ratio, 1.0) << delay;
     EXPECT_GT(ratio, 0.86) << delay;
-    loop.wall_damping = 1.001 * most - loop.device.viscous;
+    loop.wall_damping = 1.001 * largest - loop.device.viscous;
     EXPECT_FALSE(limit("stable_gil_hulin", loop)) << "not low any more";
   }
 }
@@ -453,7 +453,7 @@ TEST(AdmittanceLoop, IsTheLinearMapOfTheSimulation) {
 }
 
 /// Checks that runs with hands one per cent softer than the limit decay, and with hands one per cent stiffer grow.
-TEST(AdmittanceLoop, HasItsEdgeWhereRunsGrow) {
+TEST(AdmittanceLoop, HasItsLimitWhereRunsGrow) {
   for (const std::size_t delay : {0u, 1u, 2u}) {
     AdmittanceLoop loop;
     loop.tool.K = 20000.0;
@@ -461,21 +461,22 @@ TEST(AdmittanceLoop, HasItsEdgeWhereRunsGrow) {
     loop.servo.delay = delay;
     loop.servo.max_force = 1e9;
     loop.hand_damping = 6.0;
-    const double edge = first_stability_limit(1.0, 1e9, [loop](double k) mutable {
+    const double limit = first_stability_limit(1.0, 1e9, [loop](double k) mutable {
       loop.hand_stiffness = k;
       return loop.state_matrix();
     });
-    ASSERT_GT(edge, 1.0);
-    ASSERT_LT(edge, 1e8);
+    ASSERT_GT(limit, 1.0);
+    ASSERT_LT(limit, 1e8);
     const auto grows = [&](double factor) {
-      loop.hand_stiffness = factor * edge;
+      loop.hand_stiffness = factor * limit;
       const auto rows = simulated(loop, 1e-6, 0.0, 20000);
-      const auto largest = [&](std::size_t from) {
-        double most = 0.0;
-        for (std::size_t i = from; i < from + 2000; ++i) most = std::max(most, std::abs(rows[i].handle.velocity.x()));
-        return most;
+      const auto amplitude = [&](std::size_t from) {
+        double largest = 0.0;
+        for (std::size_t i = from; i < from + 2000; ++i)
+          largest = std::max(largest, std::abs(rows[i].handle.velocity.x()));
+        return largest;
       };
-      return rows.size() < 20000 || largest(18000) > largest(8000);
+      return rows.size() < 20000 || amplitude(18000) > amplitude(8000);
     };
     EXPECT_FALSE(grows(0.99)) << delay;
     EXPECT_TRUE(grows(1.01)) << delay;

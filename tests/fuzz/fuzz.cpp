@@ -123,7 +123,7 @@ void read_trace(std::string_view text) {
   const ContactTrace trace = parse_contact_trace(text, "trace.csv");
   for (const ContactTrace::Contact& contact : trace.contacts)
     require(std::abs(contact.gradient.norm() - 1.0) <= 2e-12 && contact.depth >= 0.0, "a contact that cannot be used");
-  require(trace.most() <= trace.contacts.size(), "more contacts at a time than there are");
+  require(trace.max_contacts() <= trace.contacts.size(), "more contacts at a time than there are");
 }
 
 /// Checks that the rows of a finished table are accepted or rejected.

@@ -81,9 +81,9 @@ SimulationParts free_run(const Setting& setting, const RenderingConfig& config) 
   parts.shell = shell_of(setting);
   parts.springs = springs_of(setting);
   parts.source = source_of(parts.shell.get(), parts.springs, *parts.tool, config);
-  if (config.late)
-    parts.source =
-        std::make_unique<MultiRateContacts>(std::move(parts.source), *config.late, setting.springs.has_value(), 1);
+  if (config.multi_rate)
+    parts.source = std::make_unique<MultiRateContacts>(std::move(parts.source), *config.multi_rate,
+                                                       setting.springs.has_value(), 1);
   parts.algorithm = make_algorithm(config);
   parts.motion = constant_axis(setting.pose.axis);
   parts.hand = std::make_unique<ForceHand>();

@@ -109,7 +109,7 @@ TEST(AveragedDirection, CountsGradientsAsCancelledUpToABillionthOfTheirNumber) {
   EXPECT_GT(with_rest(3.1e-9), 0.0);
 }
 
-TEST(HighestDepth, OfStretchedSpringsIsTheLeastStretched) {
+TEST(HighestDepth, OfStretchedSpringsIsTheSmallestElongation) {
   // Depths of bilateral springs may all be negative; the zeros of the padding do not count as depths.
   EXPECT_EQ(evaluate("highest_depth", {Vec3::UnitX(), Vec3::UnitX()}, {-0.5, -0.25}).spring, Vec3(0.25, 0, 0));
 }

@@ -253,7 +253,7 @@ struct Rig {
   std::unique_ptr<ForceAlgorithm> proxy;
   ContactBuffer contacts;
   RenderedForce force;
-  Vec3 place = Vec3::Zero();  ///< position of the proxy [m]
+  Vec3 proxy_position = Vec3::Zero();  ///< position of the proxy [m]
 
   Rig(const test::Setting& setting, const RenderingConfig& config)
       : shell(setting.points, 0.0),
@@ -267,12 +267,12 @@ struct Rig {
   void step(const ToolState& tool) {
     source.contacts_at(tool.pose, contacts);
     proxy->compute(tool, contacts, force);
-    place = tool.pose.position + force.spring / kK;
+    proxy_position = tool.pose.position + force.spring / kK;
   }
   /// Returns the depth of the deepest point in the tool at the position of the proxy [m].
   double deepest(const Vec3& axis) {
     ContactBuffer there(source.capacity());
-    source.contacts_at({place, axis}, there);
+    source.contacts_at({proxy_position, axis}, there);
     return there.largest_depth();
   }
 };
@@ -317,10 +317,10 @@ TEST(ProxyRendering, SlidesOverAFlatWithoutBumpingIntoThePointsAhead) {
     setting.points = surface_points(Plane{0.004, 0.0001});
     for (SurfacePoint& point : setting.points) point.normal = (point.normal + 0.1 * random.direction()).normalized();
     setting.tool = {0.0005, 0.01, Tip::flat};
-    const Vec3 way = random.direction_in_plane();
+    const Vec3 direction = random.direction_in_plane();
     test::Probe probe(setting, proxy_config());
     for (int step = 0; step <= 200; ++step) {
-      const Vec3 p = 5e-6 * step * way + Vec3(0, 0, step == 0 ? 1e-4 : -5e-5);
+      const Vec3 p = 5e-6 * step * direction + Vec3(0, 0, step == 0 ? 1e-4 : -5e-5);
       const Vec3 force = probe.force_at({p, -Vec3::UnitZ()}).spring;
       // The planes of the patches are tilted by up to 0.1 rad and extend 0.75 spacings from their points.
       if (step > 0) {
@@ -354,7 +354,7 @@ TEST(ProxyRendering, NeverLetsThePointsInWhereTheToolHasRoom) {
       rig.step(tool);
       held += !rig.contacts.empty();
       ASSERT_LE(lambda_max(rig.force.S), 1.0 + 1e-12);
-      const double longest = (tool.pose.position - rig.place).norm() + 2e-4;
+      const double longest = (tool.pose.position - rig.proxy_position).norm() + 2e-4;
       ASSERT_LE(rig.deepest(tool.pose.axis), kViolationTolerance * longest) << "run " << run << ", step " << step;
     }
   }
@@ -389,17 +389,17 @@ TEST(ProxyRendering, LeavesAPlaneItStartsInSlowlyAndThenForGood) {
   Vec3 last = tool.pose.position;
   for (int step = 0; step < 40; ++step) {
     rig.step(tool);
-    const Vec3 moved = rig.place - last;
+    const Vec3 moved = rig.proxy_position - last;
     ASSERT_GE(moved.z(), -1e-15) << step;
     ASSERT_LE(moved.norm(), kNearly * kRecovery) << step;
-    last = rig.place;
+    last = rig.proxy_position;
   }
   EXPECT_LE((rig.force.spring - Vec3(0, 0, kK * depth)).norm(), kK * 1e-9);
   // Once outside, the proxy stays outside, however fast the tool rotates.
   const ToolPose turned{tool.pose.position, Vec3(1.0, 0.0, 0.02).normalized()};
   rig.step({turned, Vec3::Zero()});
   EXPECT_LE(rig.deepest(turned.axis), 1e-10);
-  EXPECT_GT((rig.place - last).norm(), kRecovery);
+  EXPECT_GT((rig.proxy_position - last).norm(), kRecovery);
 }
 
 TEST(ProxyRendering, StoresTheEnergyOfOneSpring) {
@@ -425,7 +425,7 @@ TEST(ProxyRendering, DampsTheTurnOfTheEdgeThatTouches) {
   rig.step({setting.pose, Vec3::Zero(), turn});
   ASSERT_EQ(rig.contacts.size(), 1u);
   // One patch holds the edge. The normal component of the velocity omega x r at its point is damped.
-  const double along = turn.cross(rig.contacts.point(0) - rig.place).z();
+  const double along = turn.cross(rig.contacts.point(0) - rig.proxy_position).z();
   const double B = 2.0 * config.damping_ratio * std::sqrt(kK * config.mass);
   EXPECT_LE((rig.force.rendered - rig.force.spring - Vec3(0, 0, -B * along)).norm(), 1e-12);
 }

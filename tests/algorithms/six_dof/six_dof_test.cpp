@@ -529,7 +529,7 @@ TEST(SixDofDevice, RestsInAShallowNotch) {
 }
 
 // A slot that is narrower than the tool: no pose satisfies all constraints.
-TEST(SixDofDevice, SaysThatThereIsNoRoom) {
+TEST(SixDofDevice, ReportsThatThereIsNoRoom) {
   const PointShell shell(surface_points(Slot{.gap = 0.0009, .depth = 0.004, .length = 0.004}), 0.0);
   const Cylinder tool(kRadius, kLength, Tip::flat);
   SixDofDevice device(shell, tool, kSprings, Skips::on);

@@ -60,8 +60,8 @@ TEST(EnergyTank, NeverGivesMoreThanItHoldsAndTakesOnlyPush) {
       const Vec3 f = random_force(random), v = random_velocity(random);
       const Vec3 given = rows.answer(f, v);
       const double wanted = f.dot(v) * kDt, gave = given.dot(v) * kDt;
-      const double most = std::max(level, 0.0), rounding = rows.rounding();
-      ASSERT_NEAR(gave, std::min(wanted, std::max(most, std::min(wanted, 0.0))), rounding) << seed << " " << k;
+      const double allowed = std::max(level, 0.0), rounding = rows.rounding();
+      ASSERT_NEAR(gave, std::min(wanted, std::max(allowed, std::min(wanted, 0.0))), rounding) << seed << " " << k;
       // The force component perpendicular to the velocity is unchanged, and so is a force that resists the motion.
       ASSERT_LE((given - f).cross(v).norm(), 1e-12 * f.norm() * v.norm());
       if (wanted <= 0.0) {
@@ -191,16 +191,16 @@ TEST(StagedRendering, CountsWhatTheStageTakesAndWhatItAbsorbs) {
   double taken = 0.0, absorbed = 0.0;
   for (std::size_t k = 0; k + 1 < rows.size(); ++k) {
     ASSERT_NEAR(energies[k], absorbed, 1e-15) << k;  // energies are about 1e-3 J
-    const Vec3 way = 0.5 * kDt * (rows[k].tool.velocity + rows[k + 1].tool.velocity);
-    taken += (damped_spring(rows[k].tool) - rows[k].force.rendered).dot(way);
-    absorbed -= rows[k].force.rendered.dot(way);
+    const Vec3 displacement = 0.5 * kDt * (rows[k].tool.velocity + rows[k + 1].tool.velocity);
+    taken += (damped_spring(rows[k].tool) - rows[k].force.rendered).dot(displacement);
+    absorbed -= rows[k].force.rendered.dot(displacement);
   }
   EXPECT_NEAR(run.algorithm().work().energy_staged, taken, 1e-15);
   EXPECT_NE(taken, 0.0);
   EXPECT_EQ(run.algorithm().work().steps_staged, 200u);
 }
 
-TEST(StagedRendering, TellsTheRowAndCutsTheAnswerToTheForceLimit) {
+TEST(StagedRendering, GetsTheRowAndItsForceIsClampedToTheLimit) {
   RenderingConfig config;
   config.max_force = 2.0;
   config.mass = 0.3;
@@ -298,11 +298,11 @@ TEST(DryFriction, IsPassiveForAnyMotionLoadsAndNormals) {
       for (std::uint64_t n = random.below(4); n > 0; --n) {
         loads += load((u + 0.8 * random.direction()).normalized(), random.uniform(0.0, 5.0));
       }
-      const Vec3 way = random.uniform(0.0, 2e-4) * random.direction();
+      const Vec3 displacement = random.uniform(0.0, 2e-4) * random.direction();
       const double before = friction.energy();
-      const Vec3 force = friction.force(loads, way / kDt);
-      const double scale = before + friction.energy() + force.norm() * way.norm();
-      ASSERT_GE(-force.dot(way), friction.energy() - before - 50 * 2.3e-16 * scale) << run << " " << step;
+      const Vec3 force = friction.force(loads, displacement / kDt);
+      const double scale = before + friction.energy() + force.norm() * displacement.norm();
+      ASSERT_GE(-force.dot(displacement), friction.energy() - before - 50 * 2.3e-16 * scale) << run << " " << step;
     }
   }
 }

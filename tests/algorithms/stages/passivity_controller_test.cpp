@@ -24,11 +24,11 @@ class Watch final : public Observer {
     observed_.move(r.tool);
     observed_.answer(r.tool, r.force.rendered, r.springs);
     const Vec3 w = r.tool.velocity + r.hand.input * (0.5 * dt_ / mass_);
-    least = std::min(least, observed_.energy());
+    smallest = std::min(smallest, observed_.energy());
     turnover = std::max(turnover, std::abs(observed_.energy()) + 0.5 * mass_ * w.squaredNorm());
     force_max = std::max(force_max, r.force.rendered.norm());
   }
-  double least = std::numeric_limits<double>::infinity();
+  double smallest = std::numeric_limits<double>::infinity();
   double turnover = 0.0;
   double force_max = 0.0;
   /// Rounding error of one step, for the scale s, the force and its work.
@@ -81,7 +81,7 @@ TEST(PassivityController, KeepsAnyForceUnderAnyHandPassive) {
     };
     parts.hand = std::make_unique<ForceHand>(std::array<Profile, 3>{wave(), wave(), wave()});
     const Ran ran = run(run_config, controlled(std::move(parts), config));
-    EXPECT_GE(ran.watch.least, -ran.watch.rounding());
+    EXPECT_GE(ran.watch.smallest, -ran.watch.rounding());
     if (config.max_force) {
       EXPECT_LE(ran.watch.force_max, *config.max_force * (1.0 + 4.0 * kEpsilon));
     }
@@ -131,7 +131,7 @@ class Trembling final : public Motion {
 };
 
 TEST(PassivityController, KeepsAnyMomentOfATremblingHandPassive) {
-  double least_without = 0.0;
+  double smallest_without = 0.0;
   for (std::uint64_t seed = 1; seed <= 100; ++seed) {
     SCOPED_TRACE(seed);
     const auto ran = [&](bool controller) {
@@ -143,12 +143,12 @@ TEST(PassivityController, KeepsAnyMomentOfATremblingHandPassive) {
       return run(test::thrown(400), controller ? controlled(std::move(parts), config) : std::move(parts));
     };
     const Ran held = ran(true);
-    EXPECT_GE(held.watch.least, -held.watch.rounding());
+    EXPECT_GE(held.watch.smallest, -held.watch.rounding());
     EXPECT_LE(held.watch.force_max, (seed % 2 == 0 ? 0.5 : 5.0) * (1.0 + 4.0 * kEpsilon));
     EXPECT_GT(held.controlled, 0u);
-    least_without = std::min(least_without, ran(false).watch.least);
+    smallest_without = std::min(smallest_without, ran(false).watch.smallest);
   }
-  EXPECT_LT(least_without, -1e-3);
+  EXPECT_LT(smallest_without, -1e-3);
 }
 
 /// The controller predicts the observed energy of the next step exactly. With a fixed axis it therefore changes a run
@@ -169,14 +169,14 @@ TEST(PassivityController, ChangesARunOnlyIfItWouldCreateEnergy) {
           return run(test::free_run_config(setting, config, 400), std::move(parts));
         };
         const Ran plain = ran(false), held = ran(true);
-        EXPECT_GE(held.watch.least, -held.watch.rounding());
-        if (plain.watch.least > plain.watch.rounding()) {
+        EXPECT_GE(held.watch.smallest, -held.watch.rounding());
+        if (plain.watch.smallest > plain.watch.rounding()) {
           EXPECT_EQ(held.controlled, 0u);
         }
-        if (plain.watch.least < -plain.watch.rounding()) {
+        if (plain.watch.smallest < -plain.watch.rounding()) {
           EXPECT_GT(held.controlled, 0u);
         }
-        (plain.watch.least < -plain.watch.rounding() ? active : passive) += 1;
+        (plain.watch.smallest < -plain.watch.rounding() ? active : passive) += 1;
         if (held.controlled == 0) {
           EXPECT_EQ(held.tool.pose.position, plain.tool.pose.position);
           EXPECT_EQ(held.tool.velocity, plain.tool.velocity);

@@ -112,18 +112,18 @@ TEST(GradientReduction, AShuffledReductionVisitsTheShellsPointsInAnOrderOfItsSee
   for (int i = 0; i < 30; ++i) {
     // Some of the points collide; their order does not depend on the others.
     ContactBuffer contacts(n);
-    std::vector<std::optional<std::size_t>> place(n);
+    std::vector<std::optional<std::size_t>> index(n);
     for (std::uint32_t k = 0; k < n; ++k) {
       if (random.uniform() < 0.3) continue;
-      place[k] = contacts.size();
+      index[k] = contacts.size();
       contacts.push(k, Vec3::Zero(), Vec3::UnitZ());
-      contacts.set_gradient(*place[k], random.direction());
-      contacts.depth[*place[k]] = random.uniform();
+      contacts.set_gradient(*index[k], random.direction());
+      contacts.depth[*index[k]] = random.uniform();
     }
     contacts.pad();
     std::vector<std::size_t> visited;
     for (const std::uint32_t k : order) {
-      if (place[k]) visited.push_back(*place[k]);
+      if (index[k]) visited.push_back(*index[k]);
     }
     const ReductionConfig config{0.9, 30, 11};
     const Reference expected(config, contacts, visited);

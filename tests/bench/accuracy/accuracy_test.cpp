@@ -109,7 +109,7 @@ TEST(Merging, DependsOnTheOrderOfTheContactsOnlyWhereTheyAreReduced) {
   }
 }
 
-TEST(MultiRateContacts, OfEveryRowAreNotLate) {
+TEST(MultiRateContacts, OfEveryRowAreThoseOfASingleRate) {
   const Panel panel = accuracy::multi_rate_contacts(bundled("drag_molar", {"time.duration_s=0.05"}));
   EXPECT_EQ(value(panel, "multi_rate_contacts/mean hold 1", "error_rms_m"), 0.0);
   EXPECT_GT(value(panel, "multi_rate_contacts/mean hold 8", "error_rms_m"), 0.0);

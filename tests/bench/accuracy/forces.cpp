@@ -18,7 +18,7 @@ namespace {
 
 using Sets = std::vector<ContactBuffer>;
 
-constexpr std::uint64_t kRowsApart = 64;
+constexpr std::uint64_t kSampledEvery = 64;
 
 constexpr int kExact = -1;  // in place of a number of iterations
 constexpr int kIterations[] = {0, 1, 2, 3, 4, 5, 10, 20, 40, 80, 160, kExact};
@@ -28,20 +28,20 @@ constexpr double kMergedSpacings[] = {0.0001, 0.00005, 0.000025};
 constexpr int kOrders = 4;
 
 /// A law with or without the reduction before it.
-struct Way {
+struct Method {
   std::string name;
   const char* law;
   std::optional<ReductionConfig> reduction = {};
 };
-const Way kReference{"exact_shaping of all", "exact_shaping"};
-const Way kMergingWays[] = {kReference,
-                            {"exact_shaping reduced", "exact_shaping", ReductionConfig{}},
-                            {"shaped_stiffness of all", "shaped_stiffness"},
-                            {"shaped_stiffness reduced", "shaped_stiffness", ReductionConfig{}},
-                            {"merged_shaping", "merged_shaping"}};
+const Method kReference{"exact_shaping of all", "exact_shaping"};
+const Method kMergingMethods[] = {kReference,
+                                  {"exact_shaping reduced", "exact_shaping", ReductionConfig{}},
+                                  {"shaped_stiffness of all", "shaped_stiffness"},
+                                  {"shaped_stiffness reduced", "shaped_stiffness", ReductionConfig{}},
+                                  {"merged_shaping", "merged_shaping"}};
 
 Sets drill_sets(const Scenario& drill) {
-  return contact_sets(drill_in_hole(drill), kRowsApart);
+  return contact_sets(drill_in_hole(drill), kSampledEvery);
 }
 
 /// Returns the time of `force(contacts)` over copies of all sets, which it may change. Copying is not timed.
@@ -83,8 +83,9 @@ Errors off_the_optimum(const Sets& sets, const std::vector<Mat3>& optimum, int i
 /// Computes the force of contacts, which it may change.
 class ForceOf {
  public:
-  ForceOf(const Way& way, const RenderingConfig& config, std::size_t capacity)
-      : reduction_(way.reduction ? make_gradient_reduction(*way.reduction) : nullptr), law_(make_law(way.law, config)) {
+  ForceOf(const Method& method, const RenderingConfig& config, std::size_t capacity)
+      : reduction_(method.reduction ? make_gradient_reduction(*method.reduction) : nullptr),
+        law_(make_law(method.law, config)) {
     if (reduction_) reduction_->prepare({});
     law_->prepare(capacity);
   }
@@ -115,8 +116,8 @@ double spread_over_orders(const ForceOf& force_of, const ContactBuffer& set, con
   return largest;
 }
 
-Errors off_exact_shaping(const Way& way, const Sets& sets, const RenderingConfig& config) {
-  const ForceOf exact(kReference, config, largest_size(sets)), force_of(way, config, largest_size(sets));
+Errors off_exact_shaping(const Method& method, const Sets& sets, const RenderingConfig& config) {
+  const ForceOf exact(kReference, config, largest_size(sets)), force_of(method, config, largest_size(sets));
   Random random(1);
   ContactBuffer work(largest_size(sets));
   double squares = 0.0, scale = 0.0, largest = 0.0, spread = 0.0, contacts = 0.0, kept = 0.0;
@@ -142,9 +143,9 @@ Errors off_exact_shaping(const Way& way, const Sets& sets, const RenderingConfig
 }
 
 template <class Asked>
-Setting setting_of(const std::string& name, const Way& way, const Asked& sets, const RenderingConfig& config) {
-  return {name, "call", [=] { return off_exact_shaping(way, sets(), config); },
-          [=] { return forces_of(sets(), ForceOf(way, config, largest_size(sets()))); }};
+Setting setting_of(const std::string& name, const Method& method, const Asked& sets, const RenderingConfig& config) {
+  return {name, "call", [=] { return off_exact_shaping(method, sets(), config); },
+          [=] { return forces_of(sets(), ForceOf(method, config, largest_size(sets()))); }};
 }
 
 }  // namespace
@@ -170,9 +171,9 @@ Panel reduction(const Scenario& drill) {
   Panel panel;
   for (const char* law : {"shaped_stiffness", "exact_shaping"}) {
     for (const double threshold : kThresholds) {
-      const Way way{fmt::format("{} {}", law, threshold), law,
-                    ReductionConfig{.threshold = threshold, .max_points = 100'000, .shuffle_seed = {}}};
-      panel.push_back(setting_of("reduction/" + way.name, way, sets, drill.rendering));
+      const Method method{fmt::format("{} {}", law, threshold), law,
+                          ReductionConfig{.threshold = threshold, .max_points = 100'000, .shuffle_seed = {}}};
+      panel.push_back(setting_of("reduction/" + method.name, method, sets, drill.rendering));
     }
     panel.push_back(setting_of(fmt::format("reduction/{} off", law), {"", law}, sets, drill.rendering));
   }
@@ -185,8 +186,8 @@ Panel merging(const Scenario& drill) {
     Scenario scenario = drill;
     std::get<BlockEnvironment>(scenario.environment).grid = spacing;
     const auto sets = once([scenario] { return drill_sets(scenario); });
-    for (const Way& way : kMergingWays)
-      panel.push_back(setting_of(fmt::format("merging/{} {}", way.name, spacing), way, sets, drill.rendering));
+    for (const Method& method : kMergingMethods)
+      panel.push_back(setting_of(fmt::format("merging/{} {}", method.name, spacing), method, sets, drill.rendering));
   }
   return panel;
 }

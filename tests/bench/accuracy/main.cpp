@@ -12,17 +12,17 @@ namespace {
 void measure(benchmark::State& state, const Setting& setting, const Errors& errors) {
   using Clock = std::chrono::steady_clock;
   const Work work = setting.work();
-  double least = std::numeric_limits<double>::infinity();
+  double smallest = std::numeric_limits<double>::infinity();
   for (auto _ : state) {
     if (work.prepare) work.prepare();
     const auto start = Clock::now();
     work.run();
     const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
-    least = std::min(least, seconds);
+    smallest = std::min(smallest, seconds);
     state.SetIterationTime(seconds);
   }
   state.SetLabel(errors.outcome);
-  state.counters["seconds_per_" + setting.unit] = least / static_cast<double>(work.count);
+  state.counters["seconds_per_" + setting.unit] = smallest / static_cast<double>(work.count);
   for (const auto& [name, value] : errors.values)
     if (value) state.counters[name] = *value;
 }

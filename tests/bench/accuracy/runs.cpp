@@ -39,7 +39,7 @@ struct Exact {
   std::vector<Vec3> positions;  ///< positions at the steps of the scene [m]
 };
 
-/// Solves M x'' = -K S x - B S x' - F (I - S) x', the equation of bilateral springs with constant weights, by the
+/// Solves M x'' = -K S x - B S x' - mu_s (I - S) x', the equation of bilateral springs with constant weights, by the
 /// matrix exponential: exact to rounding.
 Exact exact_solution(const Scenario& scenario) {
   FirstTensor first;
@@ -231,7 +231,7 @@ Errors off_the_fresh(const Scenario& run, const std::shared_ptr<const PointShell
                      const std::vector<Vec3>& fresh) {
   MetricsObserver metrics(run.time.step, {});
   const SampledRun late = sampled_run(run, shell, 1, {&metrics});
-  const double every = run.rendering.late ? static_cast<double>(run.rendering.late->every) : 1.0;
+  const double every = run.rendering.multi_rate ? static_cast<double>(run.rendering.multi_rate->every) : 1.0;
   return {std::string(outcome_name(outcome_of(late.result.ending))),
           {{"rate_Hz", 1.0 / (run.time.step * every)},
            {"error_rms_m", distance(late.positions, fresh).rms},
@@ -289,13 +289,13 @@ Panel multi_rate_contacts(const Scenario& free) {
   Panel panel;
   for (const AlgorithmEntry& algorithm : hapbench::algorithms()) {
     Scenario run = with_algorithm(scenario, algorithm.info->name);
-    run.rendering.late.reset();
+    run.rendering.multi_rate.reset();
     const auto fresh = once([=] { return sampled_run(run, shell(), 1).positions; });
     for (const bool linear : {false, true}) {
       for (const std::int64_t every : kQueryEvery) {
-        run.rendering.late = MultiRateSchedule{};
-        run.rendering.late->every = every;
-        run.rendering.late->linear = linear;
+        run.rendering.multi_rate = MultiRateSchedule{};
+        run.rendering.multi_rate->every = every;
+        run.rendering.multi_rate->linear = linear;
         panel.push_back(
             {fmt::format("multi_rate_contacts/{} {} {}", algorithm.info->name, linear ? "linear" : "hold", every),
              "step", [=] { return off_the_fresh(run, shell(), fresh()); }, [=] { return bare_run(run, shell()); }});

@@ -211,7 +211,7 @@ TEST(CsvWriter, NumbersReadBackBitForBit) {
   }
 }
 
-TEST(CsvWriter, WritesCellsWhoseTypesAreKnownLate) {
+TEST(CsvWriter, WritesCellsWhoseTypesAreKnownOnlyAtTheEnd) {
   const TemporaryDirectory dir;
   CsvWriter csv(dir / "fruits.csv", "name,weight_kg,seeds,ripe");
   csv.cells(std::vector<Cell>{"apple, red", 0.25, std::uint64_t{5}, true});

@@ -67,7 +67,7 @@ std::vector<Vec3> points_of(const Vec3& low, const Vec3& high) {
   return points;
 }
 
-using Way = std::function<ToolPose(double u)>;  ///< path of the tool, u = 0 … 1
+using Path = std::function<ToolPose(double u)>;  ///< path of the tool, u = 0 … 1
 ToolPose upright(double x, double z) {
   return {{x, 0.0, z}, {0.0, 0.0, -1.0}, 0.0};
 }
@@ -79,14 +79,14 @@ struct Ran {
 
 /// Moves the tool along its path, with contacts at the points.
 Ran run(const NamedTool& tool, const std::shared_ptr<const Solid>& solid, const std::vector<Vec3>& points,
-        const Way& way, int rows) {
+        const Path& path, int rows) {
   InsideObserver observer(tool.shape, solid);
   ContactBuffer contacts(points.size());
   for (const Vec3& p : points) contacts.push(0, p, Vec3::UnitZ());
   double deepest = 0.0;
   for (int i = 0; i <= rows; ++i) {
     StepRecord row = test::row(static_cast<std::uint64_t>(i), 0.001 * i, contacts);
-    row.tool.pose = way(static_cast<double>(i) / rows);
+    row.tool.pose = path(static_cast<double>(i) / rows);
     tool.shape->surface_constraints(row.tool.pose, Vec3::Zero(), 0.0, contacts);
     row.force.depth_max = std::max(0.0, contacts.largest_depth());
     deepest = std::max(deepest, row.force.depth_max);
@@ -96,17 +96,17 @@ Ran run(const NamedTool& tool, const std::shared_ptr<const Solid>& solid, const 
 }
 
 /// A path through a plate that extends from x = 0 to 4 mm below z = 0 and is `thickness` t thick.
-struct NamedWay {
+struct NamedPath {
   const char* name;
   int rows;
-  std::function<Way(double t)> way;
+  std::function<Path(double t)> path;
 };
 
-Way sideways(double t) {
+Path sideways(double t) {
   return [t](double u) { return upright(-0.0015 + 0.007 * u, -t - 3.0 * kRadius); };
 }
 
-const NamedWay kWays[] = {
+const NamedPath kPaths[] = {
     {"pushed", 200, [](double t) { return [t](double u) { return upright(0.002, 0.001 - u * (t + 0.003)); }; }},
     {"pushed and withdrawn", 200,
      [](double t) {
@@ -125,7 +125,7 @@ const NamedWay kWays[] = {
 class ThroughAPlate : public testing::TestWithParam<std::size_t> {};
 
 /// Tests plates from a twentieth of the tool's radius to three radii thick.
-TEST_P(ThroughAPlate, OnEveryWay) {
+TEST_P(ThroughAPlate, OnEveryPath) {
   const NamedTool tool = tools()[GetParam()];
   constexpr double kShares[] = {0.05, 0.1, 0.3, 0.6, 1.0, 1.8, 3.0};
   for (std::size_t i = 0; i < std::size(kShares); i += test::sanitized(3)) {
@@ -134,8 +134,8 @@ TEST_P(ThroughAPlate, OnEveryWay) {
     const TriangleSoup plate = box(low, high);
     const std::shared_ptr<const Solid> solid = make_solid(plate.vertices, plate.triangles);
     const std::vector<Vec3> points = points_of(low, high);
-    for (const NamedWay& w : kWays)
-      EXPECT_TRUE(run(tool, solid, points, w.way(t), w.rows).through) << tool.name << " " << share << " " << w.name;
+    for (const NamedPath& w : kPaths)
+      EXPECT_TRUE(run(tool, solid, points, w.path(t), w.rows).through) << tool.name << " " << share << " " << w.name;
   }
 }
 INSTANTIATE_TEST_SUITE_P(Tools, ThroughAPlate, testing::Range<std::size_t>(0, 6));
@@ -149,9 +149,9 @@ TEST(ThroughAWall, FromOneFaceToTheOther) {
     const std::shared_ptr<const Solid> solid = make_solid(wall.vertices, wall.triangles);
     const std::vector<Vec3> points = points_of({0.0, -0.003, -0.004}, high);
     for (const NamedTool& tool : tools()) {
-      const Way way = [](double u) { return upright(-0.0015 + 0.004 * u, -0.002); };
-      EXPECT_TRUE(run(tool, solid, points, way, 200).through) << tool.name << " " << share;
-      const Way back = [&way](double u) { return way(0.45 * (1.0 - std::abs(2.0 * u - 1.0))); };
+      const Path path = [](double u) { return upright(-0.0015 + 0.004 * u, -0.002); };
+      EXPECT_TRUE(run(tool, solid, points, path, 200).through) << tool.name << " " << share;
+      const Path back = [&path](double u) { return path(0.45 * (1.0 - std::abs(2.0 * u - 1.0))); };
       // The wall is thicker than the depth to which the tool enters.
       if (share >= 1.0) {
         EXPECT_FALSE(run(tool, solid, points, back, 200).through) << tool.name << " " << share;
@@ -171,17 +171,17 @@ TEST(DeepInABlock, IsNotThrough) {
   const auto there_and_back = [](double u) { return 1.0 - std::abs(2.0 * u - 1.0); };
   for (const NamedTool& tool : tools()) {
     const double back = core_offset(*tool.shape);
-    const Way pressed = [&](double u) { return upright(0.002, 0.001 - there_and_back(u) * (0.001 + 0.95 * back)); };
-    const Way beside = [&](double u) { return upright(-0.001 + 0.0013 * there_and_back(u), -0.002); };
-    const Way out_above = [&](double u) {
+    const Path pressed = [&](double u) { return upright(0.002, 0.001 - there_and_back(u) * (0.001 + 0.95 * back)); };
+    const Path beside = [&](double u) { return upright(-0.001 + 0.0013 * there_and_back(u), -0.002); };
+    const Path out_above = [&](double u) {
       return upright(-0.001 + 0.0013 * std::min(1.0, 2.0 * u), -0.002 + 0.004 * std::max(0.0, 2.0 * u - 1.0));
     };
-    for (const auto& [name, way] : {std::pair("pressed", &pressed), {"beside", &beside}, {"out above", &out_above}}) {
-      const Ran ran = run(tool, solid, points, *way, 200);
+    for (const auto& [name, path] : {std::pair("pressed", &pressed), {"beside", &beside}, {"out above", &out_above}}) {
+      const Ran ran = run(tool, solid, points, *path, 200);
       EXPECT_FALSE(ran.through) << tool.name << " " << name;
       EXPECT_GE(ran.deepest, 0.25 * kRadius) << tool.name << " " << name;
     }
-    const Way through = [](double u) { return upright(0.002, 0.001 - 0.008 * u); };
+    const Path through = [](double u) { return upright(0.002, 0.001 - 0.008 * u); };
     EXPECT_FALSE(run(tool, inside_out, points, through, 200).through) << tool.name;
   }
 }
@@ -195,7 +195,7 @@ TEST(DeepInAHole, IsNotThrough) {
       points.push_back({0.00052 * std::cos(0.1963 * i), 0.00052 * std::sin(0.1963 * i), -0.0001 * k});
   for (double x = -0.0004; x < 0.0005; x += 0.0001) points.push_back({x, 0.0, -0.002});
   const NamedTool drill = tools()[0];
-  const Way worked = [](double u) {
+  const Path worked = [](double u) {
     const double aside = 0.00048 * std::sin(12.0 * u), tilt = 0.1 * std::sin(7.0 * u);
     return ToolPose{
         {aside, 0.0, 0.0006 - 0.00305 * std::sin(3.14159 * u)}, {std::sin(tilt), 0.0, -std::cos(tilt)}, 0.0};

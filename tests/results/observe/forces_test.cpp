@@ -165,9 +165,10 @@ double counted(double number) {
 // For every bin, tests the lower edge and the number just below it, which are farthest from the middles of their bins.
 TEST(MagnitudeHistogram, ErrorOfEveryBinIsTheStatedOne) {
   double largest = 0.0;
-  for (double edge = MagnitudeHistogram::kLeast; edge < MagnitudeHistogram::kMost; edge *= std::sqrt(33.0 / 32.0)) {
-    for (const double number : {edge, std::nextafter(edge, 0.0) * (1.0 - 1e-12)}) {
-      if (number < MagnitudeHistogram::kLeast) continue;
+  for (double boundary = MagnitudeHistogram::kSmallest; boundary < MagnitudeHistogram::kLargest;
+       boundary *= std::sqrt(33.0 / 32.0)) {
+    for (const double number : {boundary, std::nextafter(boundary, 0.0) * (1.0 - 1e-12)}) {
+      if (number < MagnitudeHistogram::kSmallest) continue;
       largest = std::max(largest, std::abs(counted(number) / number - 1.0));
     }
   }
@@ -177,8 +178,8 @@ TEST(MagnitudeHistogram, ErrorOfEveryBinIsTheStatedOne) {
 
 TEST(MagnitudeHistogram, TakesNumbersBeyondItsEndsAsZeroAndInfinity) {
   EXPECT_EQ(counted(0.0), 0.0);
-  EXPECT_EQ(counted(0.9 * MagnitudeHistogram::kLeast), 0.0);
-  EXPECT_EQ(counted(MagnitudeHistogram::kMost), std::numeric_limits<double>::infinity());
+  EXPECT_EQ(counted(0.9 * MagnitudeHistogram::kSmallest), 0.0);
+  EXPECT_EQ(counted(MagnitudeHistogram::kLargest), std::numeric_limits<double>::infinity());
   EXPECT_EQ(counted(1e300), std::numeric_limits<double>::infinity());
 }
 

@@ -63,7 +63,7 @@ TEST(Metrics, OfSeveralTrialsAreOneLongRunButForTheSeams) {
   EXPECT_FALSE(reported(both, "ratio_min"));
 }
 
-TEST(Metrics, OfNoRowsHaveNoMeansAndNoPlace) {
+TEST(Metrics, OfNoRowsHaveNoMeansAndNoPosition) {
   const MetricsObserver none(kDt);
   for (const char* name : {"colliding_mean", "contact_share", "last_contact_s", kVibration, "force_mean_in_contact_N"})
     EXPECT_FALSE(reported(none, name)) << name;
@@ -131,7 +131,7 @@ TEST(LostTorque, HasNoValueWithoutContact) {
   for (const char* name : {"lost_mean_Nm", "lost_max_Nm"}) EXPECT_FALSE(reported(observer, name)) << name;
 }
 
-TEST(PassivityObserver, OfSeveralTrialsTheOneThatCreatedMostCounts) {
+TEST(PassivityObserver, OfSeveralTrialsTheTrialWithTheLargestCreatedEnergyCounts) {
   SimulationConfig config;
   config.dt = 0.5;
   const SimulationParts parts = test::fake_parts([](const ToolState&) { return Vec3::Zero(); });
@@ -201,7 +201,7 @@ double shortest_row(const ContactBuffer& first, const ContactBuffer& second) {
 // (quadratic).
 TEST(ReductionJumps, TakeTimeThatGrowsLessThanQuadratically) {
   constexpr std::uint32_t kFew = 2000, kGrowth = 8;
-  constexpr double kMostGrowth = 28.0;
+  constexpr double kMaxGrowth = 28.0;
   const auto points = [](std::uint32_t n, std::uint32_t first = 0) {
     std::vector<std::uint32_t> numbers(n);
     std::iota(numbers.begin(), numbers.end(), first);
@@ -214,8 +214,8 @@ TEST(ReductionJumps, TakeTimeThatGrowsLessThanQuadratically) {
     std::ranges::reverse(turned);
     return shortest_row(kept(points(n)), kept(turned));
   };
-  EXPECT_LT(one_change(kGrowth * kFew), kMostGrowth * one_change(kFew));
-  EXPECT_LT(reversed(kGrowth * kFew), kMostGrowth * reversed(kFew));
+  EXPECT_LT(one_change(kGrowth * kFew), kMaxGrowth * one_change(kFew));
+  EXPECT_LT(reversed(kGrowth * kFew), kMaxGrowth * reversed(kFew));
 }
 
 TEST(ReductionJumps, AreAMetricOfRunsWithAReductionOnly) {

@@ -19,7 +19,7 @@ namespace {
 const BlockWithHole kBlock;
 constexpr double kRadius = 0.0005;
 
-TEST(IdealPlace, ExistsWhileTheTipIsOnTheWallAboveTheBottom) {
+TEST(IdealPose, ExistsWhileTheTipIsOnTheWallAboveTheBottom) {
   const double limit = std::numbers::pi / 3;
   EXPECT_TRUE(ideal_tip_position(kBlock, kRadius, limit - 1e-9));
   EXPECT_FALSE(ideal_tip_position(kBlock, kRadius, limit + 1e-9));
@@ -61,12 +61,12 @@ double depth_at(const ToolPose& pose, double angle, double height) {
 /// by ternary search.
 double deepest_at(const ToolPose& pose, double angle) {
   constexpr int kHeights = 400;
-  constexpr double kApart = 0.006 / kHeights;  // distance at which the rest of the tool is in free air [m]
+  constexpr double kSpacing = 0.006 / kHeights;  // distance at which the rest of the tool is in free air [m]
   double best = 0.0;
   for (int h = 0; h < kHeights; ++h) {
-    if (depth_at(pose, angle, h * kApart) > depth_at(pose, angle, best)) best = h * kApart;
+    if (depth_at(pose, angle, h * kSpacing) > depth_at(pose, angle, best)) best = h * kSpacing;
   }
-  double low = std::max(0.0, best - kApart), high = best + kApart;
+  double low = std::max(0.0, best - kSpacing), high = best + kSpacing;
   while (high - low > 1e-13) {
     const double a = low + (high - low) / 3, b = high - (high - low) / 3;
     if (depth_at(pose, angle, a) > depth_at(pose, angle, b)) {
@@ -82,17 +82,17 @@ double deepest_at(const ToolPose& pose, double angle) {
 /// deepest angle.
 double searched(const ToolPose& pose) {
   double deepest = 0.0, angle = 0.0;
-  const auto look = [&](double from, double apart, int angles) {
+  const auto search = [&](double from, double spacing, int angles) {
     for (int i = 0; i <= angles; ++i) {
-      const double depth = deepest_at(pose, from + i * apart);
+      const double depth = deepest_at(pose, from + i * spacing);
       if (depth <= deepest) continue;
       deepest = depth;
-      angle = from + i * apart;
+      angle = from + i * spacing;
     }
   };
-  constexpr double kApart = std::numbers::pi / 45;
-  look(0.0, kApart, 90);
-  for (double around = kApart; around > 1e-8; around *= 0.5) look(angle - around, around / 4, 8);
+  constexpr double kSpacing = std::numbers::pi / 45;
+  search(0.0, kSpacing, 90);
+  for (double around = kSpacing; around > 1e-8; around *= 0.5) search(angle - around, around / 4, 8);
   return deepest;
 }
 
@@ -117,20 +117,20 @@ TEST(Interpenetration, KnowsTheUpperEndOfAShortTool) {
   }
 }
 
-TEST(PlaceMetrics, TargetsNeverReachedHaveNoForceAndNoSpeed) {
-  EXPECT_TRUE(place_metrics({}).empty());
+TEST(PositionMetrics, TargetsNeverReachedHaveNoForceAndNoSpeed) {
+  EXPECT_TRUE(position_metrics({}).empty());
   TargetRow missed, reached;
   missed.result = {0, false, 10.0};
   reached.subject = 1;
   reached.result = {0, true, 3.0};
   reached.rows_on_target = 5;
   reached.model_force = 2.0;
-  const PlaceMetrics place = place_metrics({missed, reached})[0];
-  EXPECT_EQ(place.model_force.subjects, 1u);
-  EXPECT_EQ(place.model_force.mean, 2.0);
-  EXPECT_EQ(place.model_force.standard_error, 0.0);
-  EXPECT_EQ(place.completion_time.subjects, 2u);
-  EXPECT_EQ(place_metrics({missed})[0].speed.subjects, 0u);
+  const PositionMetrics metrics = position_metrics({missed, reached})[0];
+  EXPECT_EQ(metrics.model_force.subjects, 1u);
+  EXPECT_EQ(metrics.model_force.mean, 2.0);
+  EXPECT_EQ(metrics.model_force.standard_error, 0.0);
+  EXPECT_EQ(metrics.completion_time.subjects, 2u);
+  EXPECT_EQ(position_metrics({missed})[0].speed.subjects, 0u);
 }
 
 /// A hand with a task; its trial can begin.
@@ -154,14 +154,14 @@ void begin(TargetMetricsObserver& observer, std::size_t subject, std::size_t tri
 
 TEST(TargetMetrics, ALostTrialFailsTheTargetsThatAreLeft) {
   TargetRules rules;
-  rules.places = {Vec3(0, 0, 0), Vec3(1, 0, 0)};
-  rules.targets_per_place = 2;
+  rules.positions = {Vec3(0, 0, 0), Vec3(1, 0, 0)};
+  rules.targets_per_position = 2;
   TargetTask task(rules, 1);
   TargetMetricsObserver observer;
   begin(observer, 4, 5, task);
   StepRecord record;
   record.task = &task;
-  record.tool.pose.position = rules.places[task.place()];
+  record.tool.pose.position = rules.positions[task.position_index()];
   task.advance(record.tool.pose.position, 2.0, 2.0, rules.hold);
   observer.on_step(record);  // the first target is removed
   observer.fail_rest();
@@ -169,7 +169,7 @@ TEST(TargetMetrics, ALostTrialFailsTheTargetsThatAreLeft) {
   for (std::size_t i = 0; i < 4; ++i) {
     const TargetRow& row = observer.rows()[i];
     EXPECT_EQ(row.target, i);
-    EXPECT_EQ(row.result.place, task.order()[i]);
+    EXPECT_EQ(row.result.position, task.order()[i]);
     EXPECT_EQ(row.result.removed, i == 0);
     EXPECT_EQ(row.result.time, i == 0 ? rules.hold : rules.time_limit);
     EXPECT_EQ(row.subject, 4u);
@@ -179,8 +179,8 @@ TEST(TargetMetrics, ALostTrialFailsTheTargetsThatAreLeft) {
 
 TEST(TargetMetrics, MeansAreOverTheRowsOnTheTargetOfTheTrial) {
   TargetRules rules;
-  rules.places = {Vec3(0, 0, 0)};
-  rules.targets_per_place = 2;
+  rules.positions = {Vec3(0, 0, 0)};
+  rules.targets_per_position = 2;
   rules.tolerance = 0.0001;
   rules.logged = 0.0003;
   rules.hold = 2.0;

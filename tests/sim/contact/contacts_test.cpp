@@ -150,14 +150,14 @@ class PoseSource final : public ContactSource {
   SearchWork work_;
 };
 
-std::vector<ToolPose> random_way(std::uint64_t seed, std::size_t rows, bool rolls) {
+std::vector<ToolPose> random_path(std::uint64_t seed, std::size_t rows, bool rolls) {
   Random random(seed);
-  std::vector<ToolPose> way(rows);
+  std::vector<ToolPose> path(rows);
   for (std::size_t k = 0; k < rows; ++k) {
-    const Vec3 axis = (k == 0 ? random.direction() : way[k - 1].axis) + 0.1 * random.direction();
-    way[k] = {1e-3 * random.direction(), axis.normalized(), rolls ? random.uniform(-3.0, 3.0) : 0.0};
+    const Vec3 axis = (k == 0 ? random.direction() : path[k - 1].axis) + 0.1 * random.direction();
+    path[k] = {1e-3 * random.direction(), axis.normalized(), rolls ? random.uniform(-3.0, 3.0) : 0.0};
   }
-  return way;
+  return path;
 }
 
 /// Returns Q of MultiRateContacts: the shortest rotation between the axes, then the difference of the rolls.
@@ -185,22 +185,22 @@ TEST(TurnMatrix, IsTheSmallestTurnFollowedByTheRoll) {
 }
 
 /// Returns, for each step, the step of the query whose contacts are used; -1 before the first query returns.
-std::vector<std::int64_t> rows_that_serve(const MultiRateSchedule& late, const std::set<std::int64_t>& lost,
+std::vector<std::int64_t> rows_that_serve(const MultiRateSchedule& schedule, const std::set<std::int64_t>& lost,
                                           std::size_t rows) {
   std::vector<std::int64_t> serve(rows, -1);
   for (std::size_t k = 0; k < rows; ++k)
-    for (std::int64_t q = 0; q + late.delay <= static_cast<std::int64_t>(k); q += late.every)
+    for (std::int64_t q = 0; q + schedule.delay <= static_cast<std::int64_t>(k); q += schedule.every)
       if (!lost.contains(q)) serve[k] = q;
   return serve;
 }
 
 struct Case {
-  MultiRateSchedule late;
+  MultiRateSchedule schedule;
   bool rolls;
 };
 
-class LateContactsOfAnyWay : public testing::TestWithParam<Case> {};
-INSTANTIATE_TEST_SUITE_P(Some, LateContactsOfAnyWay,
+class MultiRateContactsOfEverySchedule : public testing::TestWithParam<Case> {};
+INSTANTIATE_TEST_SUITE_P(Some, MultiRateContactsOfEverySchedule,
                          testing::Values(Case{{.every = 1, .delay = 0, .dropout = 0.5}, false},
                                          Case{{.every = 4}, false}, Case{{.every = 1, .delay = 9}, false},
                                          Case{{.every = 4, .delay = 3, .linear = true}, false},
@@ -208,18 +208,19 @@ INSTANTIATE_TEST_SUITE_P(Some, LateContactsOfAnyWay,
                                          Case{{.every = 5, .delay = 5, .linear = true}, true},
                                          Case{{.every = 7, .delay = 2, .dropout = 1.0}, true}));
 
-TEST_P(LateContactsOfAnyWay, AreTheFreshOnesOfTheQueryMovedAsTheToolWas) {
-  const auto& [late, rolls] = GetParam();
+TEST_P(MultiRateContactsOfEverySchedule, AreTheFreshOnesOfTheQueryMovedAsTheToolWas) {
+  const auto& [schedule, rolls] = GetParam();
   constexpr std::size_t kRows = 300;
-  const std::vector<ToolPose> way = random_way(7, kRows, rolls);
+  const std::vector<ToolPose> path = random_path(7, kRows, rolls);
   // Draw which queries are lost: one random number for each query after the first query.
   std::set<std::int64_t> lost;
   Random random(42);
-  for (std::int64_t q = late.every; late.dropout > 0.0 && q < static_cast<std::int64_t>(kRows); q += late.every)
-    if (random.uniform() < late.dropout) lost.insert(q);
-  const auto serve = rows_that_serve(late, lost, kRows);
+  for (std::int64_t q = schedule.every; schedule.dropout > 0.0 && q < static_cast<std::int64_t>(kRows);
+       q += schedule.every)
+    if (random.uniform() < schedule.dropout) lost.insert(q);
+  const auto serve = rows_that_serve(schedule, lost, kRows);
 
-  MultiRateContacts source(std::make_unique<PoseSource>(), late, false, 42);
+  MultiRateContacts source(std::make_unique<PoseSource>(), schedule, false, 42);
   std::uint64_t row = 0;
   source.follow(&row);
   PoseSource fresh;
@@ -227,13 +228,13 @@ TEST_P(LateContactsOfAnyWay, AreTheFreshOnesOfTheQueryMovedAsTheToolWas) {
   std::size_t moved = 0, dropped = 0;
   for (int again = 0; again < 2; ++again, source.reset()) {
     for (row = 0; row < kRows; ++row) {
-      source.contacts_at(way[row], contacts);
+      source.contacts_at(path[row], contacts);
       ASSERT_EQ(source.schedule()->used() == nullptr, serve[row] < 0);
       if (serve[row] < 0) {
         EXPECT_TRUE(contacts.empty());
         continue;
       }
-      const ToolPose &then = way[static_cast<std::size_t>(serve[row])], &now = way[row];
+      const ToolPose &then = path[static_cast<std::size_t>(serve[row])], &now = path[row];
       ASSERT_EQ(source.schedule()->used()->row, static_cast<std::uint64_t>(serve[row]));
       fresh.contacts_at(then, asked);
       std::size_t next = 0;
@@ -241,8 +242,8 @@ TEST_P(LateContactsOfAnyWay, AreTheFreshOnesOfTheQueryMovedAsTheToolWas) {
         const Vec3 x = asked.point(i);
         const Vec3 delta =
             now.position - then.position + smallest_turn(then, now) * (x - then.position) - (x - then.position);
-        const double depth = asked.depth[i] + (late.linear ? asked.gradient(i).dot(delta) : 0.0);
-        if (late.linear && depth <= 0.0) {
+        const double depth = asked.depth[i] + (schedule.linear ? asked.gradient(i).dot(delta) : 0.0);
+        if (schedule.linear && depth <= 0.0) {
           ++dropped;
           continue;
         }
@@ -261,11 +262,11 @@ TEST_P(LateContactsOfAnyWay, AreTheFreshOnesOfTheQueryMovedAsTheToolWas) {
       source.contacts_at(now, contacts);
       EXPECT_EQ(before.size(), contacts.size());
     }
-    EXPECT_EQ(source.schedule()->asked, 1 + (kRows - 1) / static_cast<std::uint64_t>(late.every));
+    EXPECT_EQ(source.schedule()->queries, 1 + (kRows - 1) / static_cast<std::uint64_t>(schedule.every));
     EXPECT_EQ(source.schedule()->lost, lost.size());
   }
-  EXPECT_EQ(moved > 0, late.linear);
-  EXPECT_EQ(dropped > 0, late.linear);
+  EXPECT_EQ(moved > 0, schedule.linear);
+  EXPECT_EQ(dropped > 0, schedule.linear);
 }
 
 /// If springs may pull, contacts with a negative depth are not dropped. The depth of a spring is linear in the position
@@ -275,11 +276,11 @@ TEST(MultiRateContacts, OfSpringsThatPullAreFreshWhenLinear) {
   const auto springs = std::make_shared<SpringSet>();
   Random random(1);
   for (int i = 0; i < 20; ++i) springs->gradients.push_back(random.direction());
-  MultiRateContacts late(std::make_unique<SpringSource>(springs), {.every = 8, .linear = true}, true, 1);
+  MultiRateContacts source(std::make_unique<SpringSource>(springs), {.every = 8, .linear = true}, true, 1);
   SpringSource fresh(springs);
   ContactBuffer a(20), b(20);
-  for (const ToolPose& pose : random_way(5, 50, false)) {
-    late.contacts_at(pose, a);
+  for (const ToolPose& pose : random_path(5, 50, false)) {
+    source.contacts_at(pose, a);
     fresh.contacts_at(pose, b);
     ASSERT_EQ(a.size(), 20u);
     for (std::size_t i = 0; i < 20; ++i) EXPECT_NEAR(a.depth[i], b.depth[i], 1e-18);

@@ -156,7 +156,7 @@ TEST(RigidContact, SideOfTheToolTouchesAnEdge) {
   EXPECT_NEAR((free - to - 0.0002 * normal).norm(), 0.0, kExact);
 }
 
-TEST(RigidContact, SaysThatItStartsInContactOrTouchesTheFarEnd) {
+TEST(RigidContact, ReportsThatItStartsInContactOrTouchesTheFarEnd) {
   RigidContact contact(square(), {kRadius, 0.002});
   EXPECT_FALSE(contact.start({0, 0, 0.9 * kRadius}, kDown));
   EXPECT_TRUE(contact.start({0, 0, 1.1 * kRadius}, kDown));

@@ -100,13 +100,13 @@ const Vec3 kPosition(0x3p-4, -0x5p-4, 0x1p-4);
 
 /// Returns points (s, a, b): s along the axis, a and b perpendicular to it.
 std::vector<Vec3> on_cylinder() {
-  std::vector<Vec3> places;
+  std::vector<Vec3> points;
   for (const double s : {0.0, -kLength / 2, -kLength}) {
     // 0.6 and 0.8 radii are 3 and 4 units of 2^-13, which are exact.
     for (const auto& [a, b] : {std::pair(1.0, 0.0), {0.0, -1.0}, {0.6, 0.8}, {0.0, 0.0}})
-      places.push_back({s, a * kRadius, b * kRadius});
+      points.push_back({s, a * kRadius, b * kRadius});
   }
-  return places;
+  return points;
 }
 const std::vector<Vec3> kOnRound = {
     {kRadius, 0, 0}, {0.6 * kRadius, 0.8 * kRadius, 0}, {0.8 * kRadius, 0, -0.6 * kRadius}};
@@ -120,8 +120,8 @@ TEST_P(ShellQueryForTip, FindsPointsExactlyOnTheSurfaceAndNoneJustOutside) {
   for (Eigen::Index k = 0; k < 6; ++k) {
     const Vec3 axis = (k < 3 ? -1.0 : 1.0) * Vec3::Unit(k % 3), e1 = Vec3::Unit((k + 1) % 3),
                e2 = Vec3::Unit((k + 2) % 3);
-    const auto expect = [&](const std::vector<Vec3>& places, bool hit) {
-      for (const Vec3& p : places) {
+    const auto expect = [&](const std::vector<Vec3>& points, bool hit) {
+      for (const Vec3& p : points) {
         const Vec3 point = kPosition + p[0] * axis + p[1] * e1 + p[2] * e2;
         EXPECT_EQ(collides(tool, {kPosition, axis}, point), hit) << k << ": " << p.transpose();
       }

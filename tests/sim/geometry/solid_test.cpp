@@ -86,7 +86,7 @@ TEST(Solid, OfAClosedMeshHasItsExactDistance) {
       const Vec3 q = random_point(random, 0.01);
       EXPECT_NEAR(solid->at(q).value, test::exact_distance(*soup, q), 1e-12) << q.transpose();
       const KnownDistance near{q + random_point(random, 0.002), 0.0};
-      const KnownDistance looked{near.place, solid->at(near.place).value};
+      const KnownDistance looked{near.point, solid->at(near.point).value};
       EXPECT_EQ(solid->at(q, &looked).value, solid->at(q).value);
       EXPECT_NEAR(solid->gradient(q, 1e-6).dot(test_gradient(*soup, q)), 1.0, 1e-6) << q.transpose();
       EXPECT_TRUE(solid->at(q).known);
@@ -196,7 +196,7 @@ double dense_depth(const test::DefinedTool& tool, const ToolPose& pose, const So
   return deepest;
 }
 
-struct Place {
+struct TiltedSolid {
   const char* name;
   std::unique_ptr<const Solid> solid;
   double tilt;
@@ -210,57 +210,57 @@ TEST(Inside, AgreesWithADenseSampleOfTheTool) {
   const TriangleSoup plate = test::cube(0.001, {0.0, 0.0, 0.0});
   TriangleSoup thin = plate;
   for (Vec3& v : thin.vertices) v = {3.0 * v.x(), 3.0 * v.y(), 0.1 * v.z() - 0.0001};
-  std::vector<Place> places;
-  places.push_back({"plane", make_solid(Plane{0.01, 0.0001}), 0.0});
-  places.push_back({"plane, leaning", make_solid(Plane{0.01, 0.0001}), 0.7});
-  places.push_back({"block", make_solid(BlockWithHole{{0.006, 0.006, 0.004}, 0.0008, 0.001}), 0.4});
-  places.push_back({"cone", make_solid(ConicalHole{0.5, 0.001, 0.0001}), 0.2});
-  places.push_back({"slot", make_solid(Slot{0.0006, 0.002, 0.004, 0.0001}), 0.1});
-  places.push_back({"cube", make_solid(box.vertices, box.triangles), 0.3});
-  places.push_back({"plate", make_solid(thin.vertices, thin.triangles), 0.5});
+  std::vector<TiltedSolid> solids;
+  solids.push_back({"plane", make_solid(Plane{0.01, 0.0001}), 0.0});
+  solids.push_back({"plane, leaning", make_solid(Plane{0.01, 0.0001}), 0.7});
+  solids.push_back({"block", make_solid(BlockWithHole{{0.006, 0.006, 0.004}, 0.0008, 0.001}), 0.4});
+  solids.push_back({"cone", make_solid(ConicalHole{0.5, 0.001, 0.0001}), 0.2});
+  solids.push_back({"slot", make_solid(Slot{0.0006, 0.002, 0.004, 0.0001}), 0.1});
+  solids.push_back({"cube", make_solid(box.vertices, box.triangles), 0.3});
+  solids.push_back({"plate", make_solid(thin.vertices, thin.triangles), 0.5});
   Random random(7);
   int deep = 0;
-  double most = 0.0;
+  double largest = 0.0;
   for (const test::ToolKind& kind : test::tool_kinds()) {
-    for (const Place& place : places) {
+    for (const TiltedSolid& tilted : solids) {
       const test::DefinedTool tool = kind.make(random, 0.001);
       const double width = tool.shape->half_width();
       ToolPose pose;
       pose.position = {0.0006 * random.uniform(), 0.0006 * random.uniform(), width * (1.2 - 3.0 * random.uniform())};
-      const double tilt = place.tilt * random.uniform();
+      const double tilt = tilted.tilt * random.uniform();
       pose.axis = {-std::sin(tilt), 0.0, -std::cos(tilt)};
-      InsideSearch search(*tool.shape, *place.solid);
+      InsideSearch search(*tool.shape, *tilted.solid);
       const auto depth = search.depth(pose);
-      const double step = std::max(0.00002, 0.05 * width), sample = dense_depth(tool, pose, *place.solid, step);
+      const double step = std::max(0.00002, 0.05 * width), sample = dense_depth(tool, pose, *tilted.solid, step);
       if (!depth) {
-        EXPECT_EQ(sample, 0.0) << kind.name << " in " << place.name;
+        EXPECT_EQ(sample, 0.0) << kind.name << " in " << tilted.name;
         continue;
       }
-      EXPECT_LE(sample, *depth + InsideSearch::kTolerance * (width + *depth)) << kind.name << " in " << place.name;
+      EXPECT_LE(sample, *depth + InsideSearch::kTolerance * (width + *depth)) << kind.name << " in " << tilted.name;
       // Only at sharp edges, a point of the tool may have no sample in the tool within half a diagonal.
-      EXPECT_LE(*depth, sample + 2.0 * std::sqrt(3.0) * step) << kind.name << " in " << place.name;
-      most = std::max(most, sample - *depth);
+      EXPECT_LE(*depth, sample + 2.0 * std::sqrt(3.0) * step) << kind.name << " in " << tilted.name;
+      largest = std::max(largest, sample - *depth);
       deep += *depth > 0.0 ? 1 : 0;
       // The bound must not be lower, neither at this pose nor at a nearby pose for which it must hold.
-      InsideBound bound(*tool.shape, *place.solid);
+      InsideBound bound(*tool.shape, *tilted.solid);
       EXPECT_GE(std::max(0.0, bound.at(pose, 0.0, 0.0, 0.0, true)), *depth - 1e-12)
-          << kind.name << " in " << place.name;
+          << kind.name << " in " << tilted.name;
       EXPECT_GE(std::max(0.0, bound.at(pose, 0.0, 0.0, 0.0, false)), *depth - 1e-12)
-          << kind.name << " in " << place.name;
+          << kind.name << " in " << tilted.name;
       ToolPose beside = pose;
       beside.position += Vec3(0.0001 * random.uniform(), 0.0, 0.0002 * random.uniform());
       beside.axis = Vec3(-std::sin(tilt + 0.05), 0.0, -std::cos(tilt + 0.05));
       const double moved = (beside.position - pose.position).norm(), turned = (beside.axis - pose.axis).norm();
       EXPECT_GE(std::max(0.0, bound.at(beside, moved, turned, 0.0, true)), *depth - 1e-12)
-          << kind.name << " in " << place.name;
+          << kind.name << " in " << tilted.name;
       EXPECT_GE(std::max(0.0, bound.coarse_bound_at(beside, moved, turned)), *depth - 1e-12)
-          << kind.name << " in " << place.name;
+          << kind.name << " in " << tilted.name;
       // A known depth shortens the search but does not change the result.
-      EXPECT_EQ(search.depth(pose, *depth).value_or(-1.0), *depth) << kind.name << " in " << place.name;
+      EXPECT_EQ(search.depth(pose, *depth).value_or(-1.0), *depth) << kind.name << " in " << tilted.name;
     }
   }
   EXPECT_GT(deep, 20);
-  RecordProperty("largest_shortfall_um", std::to_string(1e6 * most));
+  RecordProperty("largest_shortfall_um", std::to_string(1e6 * largest));
 }
 
 /// A round tip lies in one ball, which is enlarged by a tenth of the tolerance for rounding. A leaning flat tip touches

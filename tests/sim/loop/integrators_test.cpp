@@ -54,8 +54,8 @@ TEST(IntegratorTable, AStepIsTheMatrixOfItsFormula) {
     stepped.step_matrix = nullptr;  // the matrix is then computed from steps of the integrator
     for_random_systems(entry, [&](SpringDamper system) {
       const Eigen::Matrix2d expected = step_of(system), scale = Eigen::Vector2d(1.0, system.dt).asDiagonal();
-      for (const IntegratorEntry* way : {entry, static_cast<const IntegratorEntry*>(&stepped)}) {
-        system.integrator = way;
+      for (const IntegratorEntry* used : {entry, static_cast<const IntegratorEntry*>(&stepped)}) {
+        system.integrator = used;
         // A few roundings of terms up to the fourth power of 30.
         EXPECT_LE((scale * system.step_matrix() * scale.inverse() - expected).norm(), 1e-12 * expected.norm())
             << entry->info.name << ' ' << system.K << ' ' << system.B;

@@ -114,7 +114,7 @@ TEST(Simulation, EndsWithTheRowInWhichTheHandHasFinishedItsTask) {
       return {0, 0, 0};
     }
     const TargetTask* task() const noexcept override { return &task_; }
-    TargetTask task_{{.places = {Vec3(0, 0, 0)}, .targets_per_place = 2, .hold = 1.0}, 1};
+    TargetTask task_{{.positions = {Vec3(0, 0, 0)}, .targets_per_position = 2, .hold = 1.0}, 1};
   };
   SimulationParts parts = fake_parts(test::weightless);
   parts.hand = std::make_unique<Worker>();

@@ -406,11 +406,11 @@ Place place_of(const SurfacePoint& p, double spacing) {
   return {along(0), along(1), along(2), static_cast<int>(axis), p.normal[axis] < 0 ? -1 : 1};
 }
 
-TEST(Thinned, KeepsTheMostCentralPointOfEachCubeAndDirection) {
+TEST(Subsampled, KeepsTheMostCentralPointOfEachCubeAndDirection) {
   HalfEdgeMesh mesh = mesh_from_triangles(test::sphere(1.0, 4)).mesh;
   const auto points = vertices_with_normals(mesh);
   const double spacing = 0.25;
-  const auto thin = thinned(points, spacing);
+  const auto thin = subsampled(points, spacing);
   EXPECT_LT(thin.size(), points.size() / 2);
   const auto off_centre = [spacing](const SurfacePoint& p) {
     return (p.position / spacing - Vec3((p.position / spacing).array().round())).norm() * spacing;
@@ -422,7 +422,7 @@ TEST(Thinned, KeepsTheMostCentralPointOfEachCubeAndDirection) {
     ASSERT_NE(found, kept.end());
     EXPECT_LE(found->second, off_centre(p) + 1e-15);
   }
-  EXPECT_EQ(thinned(thin, spacing).size(), thin.size());
+  EXPECT_EQ(subsampled(thin, spacing).size(), thin.size());
 }
 
 }  // namespace

@@ -43,8 +43,8 @@ bool is_fan(const DividedPolygon& divided) {
   return true;
 }
 
-/// Checks that the triangles have the polygon's area and that none is reversed. Also checks that each edge is used
-/// equally often in both directions, together with the reversed sides of the polygon.
+/// Checks that the triangles have the polygon's area and that none is reversed. Also checks that the edges of the
+/// triangles and the reversed sides of the polygon, taken together, use each edge equally often in both directions.
 void expect_covered(const Polygon& polygon) {
   const DividedPolygon divided = polygon_test::divided(polygon);
   const Vec3 area = area_vector(polygon);

@@ -15,8 +15,8 @@ constexpr int kSecond = 1024;
 /// Returns rules with one target at the origin and the thesis's times.
 TargetRules one_target() {
   TargetRules rules;
-  rules.places = {Vec3(0, 0, 0)};
-  rules.targets_per_place = 1;
+  rules.positions = {Vec3(0, 0, 0)};
+  rules.targets_per_position = 1;
   return rules;
 }
 
@@ -97,7 +97,7 @@ TEST(ForceGauge, DipsThatAreShortEachDoNotAddUp) {
 
 TEST(ForceGauge, GraceNeitherActivatesATargetNorCarriesOverFromTheLast) {
   TargetRules rules = with_gauge(1e6, 0.1);
-  rules.targets_per_place = 2;
+  rules.targets_per_position = 2;
   TargetTask task(rules, 1);
   advance(task, 10, kOn, 0.999);
   EXPECT_FALSE(task.active());
@@ -168,7 +168,7 @@ TEST(TargetTask, ATargetThatNobodyActivatesDisappearsToo) {
 
 TEST(TargetTask, OnlyTheComponentsOnDisplayCount) {
   TargetRules rules = one_target();
-  rules.places = {Vec3(1, 2, 3)};
+  rules.positions = {Vec3(1, 2, 3)};
   EXPECT_EQ(TargetTask(rules, 1).error({0, 0, 0}), Vec3(1, 2, 0));
   rules.display = TargetDisplay::height;
   EXPECT_EQ(TargetTask(rules, 1).error({0, 0, 0}), Vec3(0, 0, 3));
@@ -176,20 +176,21 @@ TEST(TargetTask, OnlyTheComponentsOnDisplayCount) {
 
 std::vector<std::size_t> order_of(TargetTask task) {
   std::vector<std::size_t> order;
-  for (; !task.finished(); advance(task, kSecond, task.rules().places[order.back()], 1.0))
-    order.push_back(task.place());
+  for (; !task.finished(); advance(task, kSecond, task.rules().positions[order.back()], 1.0))
+    order.push_back(task.position_index());
   return order;
 }
 
-TEST(TargetTask, EveryPlaceComesEquallyOftenInAnOrderOfTheSeed) {
+TEST(TargetTask, EveryPositionComesEquallyOftenInAnOrderOfTheSeed) {
   TargetRules rules;
-  rules.places = {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(2, 0, 0)};
-  rules.targets_per_place = 5;
+  rules.positions = {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(2, 0, 0)};
+  rules.targets_per_position = 5;
   std::vector<std::vector<std::size_t>> orders;
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     const std::vector<std::size_t> order = order_of(TargetTask(rules, seed));
     ASSERT_EQ(order.size(), 15u);
-    for (std::size_t place = 0; place < 3; ++place) EXPECT_EQ(std::count(order.begin(), order.end(), place), 5);
+    for (std::size_t position = 0; position < 3; ++position)
+      EXPECT_EQ(std::count(order.begin(), order.end(), position), 5);
     EXPECT_EQ(order_of(TargetTask(rules, seed)), order);
     orders.push_back(order);
   }

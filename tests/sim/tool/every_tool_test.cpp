@@ -177,16 +177,16 @@ TEST_P(EveryTool, IsAxisymmetricWhereATurnAboutItsAxisMovesNoPoint) {
   });
 }
 
-TEST_P(EveryTool, HasItsForemostPlaceOnTheSurfaceAndNoneBeyondIt) {
+TEST_P(EveryTool, HasItsForemostPointOnTheSurfaceAndNoneBeyondIt) {
   for_tools(2000, [&](const DefinedTool& tool, const ToolPose& pose, Random& random) {
     const ContactBuffer contacts = contacts_around(tool, pose, random, 8);
     alignas(64) double x[simd::lanes], y[simd::lanes], z[simd::lanes];
     tool.shape->support_points(pose, contacts, {x, y, z});
     for (std::size_t i = 0; i < 8; ++i) {
-      const Vec3 place(x[i], y[i], z[i]);
-      ASSERT_NEAR(slack_at(tool, pose, place), 0.0, kRounding);
+      const Vec3 point(x[i], y[i], z[i]);
+      ASSERT_NEAR(slack_at(tool, pose, point), 0.0, kRounding);
       for (int k = 0; k < 20; ++k) {
-        ASSERT_GE((tool.surface_point(pose, random) - place).dot(contacts.normal(i)), -kRounding);
+        ASSERT_GE((tool.surface_point(pose, random) - point).dot(contacts.normal(i)), -kRounding);
       }
     }
   });

@@ -59,8 +59,8 @@ TEST_P(GridOfMesh, HasExactSignedDistancesAtItsNodes) {
   for (std::size_t n = 0; n < cases(3000); ++n) {
     const std::size_t i = random.below(nodes.count[0]), j = random.below(nodes.count[1]),
                       k = random.below(nodes.count[2]);
-    ASSERT_NEAR(grid_->values()[nodes.index(i, j, k)], exact_distance(soup_, nodes.place(i, j, k)), 1e-8)
-        << nodes.place(i, j, k).transpose();
+    ASSERT_NEAR(grid_->values()[nodes.index(i, j, k)], exact_distance(soup_, nodes.position(i, j, k)), 1e-8)
+        << nodes.position(i, j, k).transpose();
   }
 }
 
@@ -94,18 +94,18 @@ TEST_P(GridOfMesh, IsTheSameBytesForAnyNumberOfThreads) {
   EXPECT_TRUE(std::equal(grid_->kinds(), grid_->kinds() + n, again->kinds()));
 }
 
-TEST_P(GridOfMesh, KnowsTheForemostPlaceInEveryDirection) {
+TEST_P(GridOfMesh, KnowsTheForemostPointInEveryDirection) {
   Random random(2);
   for (std::size_t n = 0; n < cases(3000); ++n) {
     const Vec3 u = n % 4 == 0 ? Vec3(Vec3::Unit(static_cast<int>(n / 4 % 3))) : random.direction();
-    double most = -1e300;
-    for (const Vec3& v : soup_.vertices) most = std::max(most, u.dot(v));
-    ASSERT_NEAR(grid_->hull().support(u), most, 1e-14);
-    ASSERT_NEAR(grid_->hull().foremost(u, 2.0 * random.direction()).dot(u), most, 1e-8);
+    double largest = -1e300;
+    for (const Vec3& v : soup_.vertices) largest = std::max(largest, u.dot(v));
+    ASSERT_NEAR(grid_->hull().support(u), largest, 1e-14);
+    ASSERT_NEAR(grid_->hull().foremost(u, 2.0 * random.direction()).dot(u), largest, 1e-8);
   }
 }
 
-TEST(SignedDistanceGrid, FindsThePlaceOfAForemostEdgeOrFaceThatIsAbreast) {
+TEST(SignedDistanceGrid, FindsAPointOfAForemostEdgeOrFaceAcrossTheDirection) {
   const auto grid = grid_of(test::cube(1.0), 0.1);
   EXPECT_LT((grid->hull().foremost({0, 0, 1}, {0.3, -0.2, 4.0}) - Vec3(0.3, -0.2, 1.0)).norm(),
             0.001);  // tolerance of two passes over the corners
@@ -189,7 +189,7 @@ Vec3 to_world(const ToolPose& pose, const Vec3& x) {
   return pose.position + pose.rotation() * x;
 }
 
-Vec3 random_place(const SignedDistanceGrid& grid, Random& random, double beyond = 0.2) {
+Vec3 random_position(const SignedDistanceGrid& grid, Random& random, double beyond = 0.2) {
   const Vec3 extent = grid.box().size();
   return grid.box().min - beyond * extent +
          (1.0 + 2.0 * beyond) * extent.cwiseProduct(Vec3(random.uniform(), random.uniform(), random.uniform()));
@@ -236,7 +236,7 @@ TEST_P(MeshToolOf, IsWithinItsBoundOfTheExactDistance) {
   Random random(1);
   double worst = 0.0;
   for (std::size_t i = 0; i < cases(5000); ++i) {
-    const Vec3 x = random_place(grid_, random, 0.0);
+    const Vec3 x = random_position(grid_, random, 0.0);
     const double exact = exact_distance(soup_, x);
     const double error = field(tool_, kHome, x) - exact;
     worst = std::max(worst, std::abs(error));
@@ -291,12 +291,12 @@ TEST_P(MeshToolOf, FindsInEverySearchTheContactsOfBruteForceAndGivesThemDepths) 
 
 TEST_P(MeshToolOf, MarksAsNearWhateverLiesWithinTheMargin) {
   Random random(3);
-  std::size_t outside = 0, places = 0;
-  while (places < cases(5000)) {
+  std::size_t outside = 0, positions = 0;
+  while (positions < cases(5000)) {
     const ToolPose pose = random_pose(random);
-    const Vec3 inside = random_place(grid_, random, 0.0);
+    const Vec3 inside = random_position(grid_, random, 0.0);
     if (field(tool_, kHome, inside) > 0.0) continue;
-    ++places;
+    ++positions;
     const double margin = 2.0 * tool_.half_width() * random.uniform();
     const Vec3 point = to_world(pose, inside + margin * random.direction());
     outside += field(tool_, pose, point) > 0.0;
@@ -328,7 +328,7 @@ TEST_P(MeshToolOf, MovesNoPointOfItsBodyFurtherThanItSays) {
     const double turn = std::pow(10.0, random.uniform(-6.0, 0.0));
     const ToolPose to{from.position + turn * random.direction(), (from.axis + turn * random.direction()).normalized(),
                       from.roll + turn * random.uniform(-1.0, 1.0)};
-    Vec3 x = random_place(grid_, random, 0.0);
+    Vec3 x = random_position(grid_, random, 0.0);
     if (x.norm() > tool_.reach()) x *= tool_.reach() / x.norm();
     ASSERT_LE((to_world(to, x) - to_world(from, x)).norm(), tool_.displacement_bound(from, to) + 1e-14);
   }
@@ -341,7 +341,7 @@ TEST_P(MeshToolOf, HasTheGradientOfItsField) {
   const double step = 1e-6 * GetParam().spacing;
   for (std::size_t i = 0; i < cases(2000); ++i) {
     const ToolPose pose = random_pose(random);
-    const Vec3 x = to_world(pose, random_place(grid_, random, 0.0));
+    const Vec3 x = to_world(pose, random_position(grid_, random, 0.0));
     Vec3 slope;
     for (int k = 0; k < 3; ++k) {
       slope[k] =
@@ -365,7 +365,7 @@ TEST_P(MeshToolOf, LeavesItsBodyAtTheExitDistance) {
   std::size_t found = 0;
   while (found < cases(2000)) {
     const ToolPose pose = random_pose(random);
-    const Vec3 x = to_world(pose, random_place(grid_, random, 0.0));
+    const Vec3 x = to_world(pose, random_position(grid_, random, 0.0));
     if (field(tool_, pose, x) > 0.0) continue;
     ++found;
     ContactBuffer contacts = contacts_at({x});
@@ -416,7 +416,7 @@ TEST_P(MeshToolOf, KeepsPointsOutOfConvexBodiesByItsConstraints) {
   Random random(8);
   for (std::size_t i = 0; i < cases(5000); ++i) {
     const ToolPose pose = random_pose(random);
-    const Vec3 x = to_world(pose, random_place(grid_, random));
+    const Vec3 x = to_world(pose, random_position(grid_, random));
     ContactBuffer contacts(1);
     contacts.push(0, x, random.direction());
     const Vec3 wanted = tool_.half_width() * random.direction();

@@ -30,7 +30,7 @@ TEST(LargestSquareWithin, IsTheLastSquareWhoseRootDoesNotExceedTheRadius) {
   }
 }
 
-TEST(CylinderConstraints, OnTheAxisTakeSomeNearestPlace) {
+TEST(CylinderConstraints, OnTheAxisTakeSomeNearestPoint) {
   const Cylinder tool{0.0005, 0.01, Tip::flat};
   ContactBuffer contacts(2);
   for (const double height : {0.005, 0.0001}) contacts.push(0, {0, 0, height}, Vec3::UnitZ());
@@ -67,7 +67,7 @@ TEST(Revolved, PointsOnItsSurfaceCollideWithDepthZero) {
   for (std::size_t i = 0; i < contacts.size(); ++i) EXPECT_EQ(contacts.depth[i], 0.0) << i;
 }
 
-TEST(Revolved, FallsBackToTheInwardNormalWhereNoPlaceIsNearest) {
+TEST(Revolved, FallsBackToTheInwardNormalWhereNoPointIsNearest) {
   const Revolved tool({{-0.01, 0.0005}, {-0.005, 0.0008}, {0.0, 0.0005}});
   const Vec3 normal = Vec3(3, 4, 0) / 5;
   ContactBuffer contacts(1);
@@ -105,7 +105,7 @@ void expect_refused(const std::string& start, const std::string& about, std::vec
   EXPECT_NE(what.find(about), std::string::npos) << what;
 }
 
-TEST(Meridian, SaysWhichPointIsWrongAndWhy) {
+TEST(Meridian, NamesThePointThatIsWrongAndWhy) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   expect_refused("a profile needs", "two points", {{0, 1}});
   expect_refused("profile[1] = [nan, 1]", "finite", {{-2, 1}, {nan, 1}, {0, 1}});
