@@ -70,8 +70,9 @@ void Cases::sort_runs() {
   sorted_.resize(size_);
   std::iota(sorted_.begin(), sorted_.end(), std::size_t{0});
   std::ranges::stable_sort(sorted_, [&](std::size_t i, std::size_t j) {
-    const auto differs = std::ranges::find_if(slow, [&](std::size_t a) { return place(i, a) != place(j, a); });
-    return differs != slow.end() && place(i, *differs) < place(j, *differs);
+    const auto differs =
+        std::ranges::find_if(slow, [&](std::size_t a) { return value_index(i, a) != value_index(j, a); });
+    return differs != slow.end() && value_index(i, *differs) < value_index(j, *differs);
   });
 }
 
@@ -86,7 +87,7 @@ std::vector<std::string> Cases::changes(std::size_t i) const {
   for (std::size_t a = 0; a < axes_.size(); ++a) changes[a].insert(0, axes_[a].path + "=");
   for (std::size_t a = 0; a < axes_.size(); ++a) {
     if (axes_[a].along.empty()) continue;
-    const std::vector<std::string>& more = axes_[a].along[place(i, a)].overrides;
+    const std::vector<std::string>& more = axes_[a].along[value_index(i, a)].overrides;
     changes.insert(changes.end(), more.begin(), more.end());
   }
   return changes;
@@ -94,7 +95,7 @@ std::vector<std::string> Cases::changes(std::size_t i) const {
 
 const ScenarioText& Cases::scene(std::size_t i) const {
   const auto axis = std::ranges::find(axes_, kSceneAxis, &Axis::path);
-  return scenes_[axis == axes_.end() ? 0 : place(i, static_cast<std::size_t>(axis - axes_.begin()))];
+  return scenes_[axis == axes_.end() ? 0 : value_index(i, static_cast<std::size_t>(axis - axes_.begin()))];
 }
 
 std::vector<std::string> Cases::overrides(std::size_t i) const {
@@ -137,7 +138,7 @@ LoadedScenario Cases::load_case(std::size_t i) const {
 LoadedScenario Cases::load(std::size_t i) const {
   LoadedScenario loaded = load_case(i);
   for (std::size_t a = 0; a < axes_.size(); ++a)
-    if (!axes_[a].along.empty()) loaded.scenario.time.stride *= axes_[a].along[place(i, a)].stride;
+    if (!axes_[a].along.empty()) loaded.scenario.time.stride *= axes_[a].along[value_index(i, a)].stride;
   return loaded;
 }
 

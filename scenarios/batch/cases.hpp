@@ -39,7 +39,7 @@ class Cases {
 
   /// Returns the index of the axis value that case i has. Precondition: the axis has listed values or is part
   /// of a grid.
-  std::size_t place(std::size_t i, std::size_t axis) const {
+  std::size_t value_index(std::size_t i, std::size_t axis) const {
     return sampling_ ? axes_[axis].index_at(unit_[axis][i]) : i / strides_[axis] % axes_[axis].size();
   }
   /// Returns the value of each axis in case i. Computed again at each call.
@@ -64,7 +64,7 @@ class Cases {
   /// Returns the error with the line of case i in the file of --points, where a value of this line is at fault.
   InputError with_line_of_point(const InputError& error, std::size_t i) const;
   std::string value(std::size_t i, std::size_t axis) const {
-    return sampling_ ? axes_[axis].value_at(unit_[axis][i]) : axes_[axis].value(place(i, axis));
+    return sampling_ ? axes_[axis].value_at(unit_[axis][i]) : axes_[axis].value(value_index(i, axis));
   }
 
   std::vector<ScenarioText> scenes_;

@@ -94,7 +94,7 @@ void remove_unfounded_ranks(Ranking& ranking, std::size_t s, std::size_t m) {
   std::set<std::uint64_t> ranks;
   const std::size_t first = s * ranking.algorithms.size();
   const auto entry = [&](std::size_t a) -> RankingEntry& {
-    return ranking.standings[(first + a) * ranking.metrics.size() + m];
+    return ranking.entries[(first + a) * ranking.metrics.size() + m];
   };
   for (std::size_t a = 0; a < ranking.algorithms.size(); ++a) {
     RankingEntry& own = entry(a);
@@ -145,12 +145,12 @@ void Ranking::rank() {
     common.push_back(seeds_without_failure(*this, s, seeds - 1));
     if (common.back().empty()) common.back() = seeds_without_failure(*this, s, 0);
     // Compute the mean of each algorithm and metric, then rank the means.
-    const std::size_t first = standings.size();
+    const std::size_t first = entries.size();
     for (std::size_t a = 0; a < algorithms.size(); ++a)
-      for (std::size_t m = 0; m < metrics.size(); ++m) standings.push_back(ranking_entry(*this, s, a, m));
+      for (std::size_t m = 0; m < metrics.size(); ++m) entries.push_back(ranking_entry(*this, s, a, m));
     for (std::size_t a = 0; a < algorithms.size(); ++a)
       for (std::size_t m = 0; m < metrics.size(); ++m)
-        standings[first + a * metrics.size() + m].rank = rank_of(*this, s, a, m);
+        entries[first + a * metrics.size() + m].rank = rank_of(*this, s, a, m);
     for (std::size_t m = 0; m < metrics.size(); ++m) remove_unfounded_ranks(*this, s, m);
   }
   // Rank the algorithms over all scenarios.

@@ -71,8 +71,8 @@ struct Ranking {
   /// succeeded, not counting algorithms that failed for every seed. If there is no such seed, all seeds are used;
   /// failed runs do not count.
   std::vector<std::vector<std::size_t>> common = {};
-  std::vector<RankingEntry> standings = {};  ///< ordered by scenario, then algorithm, then metric
-  std::vector<LawRankingEntry> laws = {};    ///< ordered by mean rank, best first
+  std::vector<RankingEntry> entries = {};  ///< ordered by scenario, then algorithm, then metric
+  std::vector<LawRankingEntry> laws = {};  ///< ordered by mean rank, best first
 
   /// Computes the ranks. Precondition: `runs` has a run for each scenario, algorithm and seed.
   void rank();
@@ -82,7 +82,7 @@ struct Ranking {
     return (scenario * algorithms.size() + algorithm) * seeds;
   }
   const RankingEntry& at(std::size_t scenario, std::size_t algorithm, std::size_t metric) const {
-    return standings[(scenario * algorithms.size() + algorithm) * metrics.size() + metric];
+    return entries[(scenario * algorithms.size() + algorithm) * metrics.size() + metric];
   }
   /// Returns true if the seed changes any run of a scenario.
   bool seeds_matter(std::size_t scenario) const;

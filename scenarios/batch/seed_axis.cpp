@@ -37,10 +37,10 @@ Axis seed_axis(const Scenario& scenario, std::size_t seeds, double jitter) {
     const Vec3 shift = start_shift(repetition, jitter);
     // A prescribed path is shifted as a whole.
     const auto* path = std::get_if<PrescribedPosition>(&repetition.motion.position);
-    const Vec3 place = shift + (path != nullptr ? path->shift.value_or(Vec3::Zero()) : repetition.initial.position);
+    const Vec3 start = shift + (path != nullptr ? path->shift.value_or(Vec3::Zero()) : repetition.initial.position);
     axis.along.push_back(
-        {{fmt::format("{}=[{},{},{}]", path != nullptr ? "motion.position.shift_m" : "initial.position_m", place.x(),
-                      place.y(), place.z())}});
+        {{fmt::format("{}=[{},{},{}]", path != nullptr ? "motion.position.shift_m" : "initial.position_m", start.x(),
+                      start.y(), start.z())}});
   }
   return axis;
 }

@@ -153,9 +153,9 @@ std::vector<std::size_t> runs_to_check(const Cases& cases) {
   for (std::size_t a = cases.axes().size(); a-- > 0;) {
     const std::size_t size = cases.axes()[a].size(), count = std::min(size, kMaxChecked);
     for (std::size_t i = 0; i < count; ++i) {
-      const std::size_t place = count == 1 ? 0 : i * (size - 1) / (count - 1);
-      runs.insert(place * stride);
-      if (cases.axes().size() > 1) runs.insert(cases.size() - 1 - place * stride);
+      const std::size_t index = count == 1 ? 0 : i * (size - 1) / (count - 1);
+      runs.insert(index * stride);
+      if (cases.axes().size() > 1) runs.insert(cases.size() - 1 - index * stride);
     }
     stride *= size;
   }

@@ -23,9 +23,9 @@ std::ifstream open_rows(SweepTable& table) {
   std::string line;
   std::getline(in, line);
   table.columns = csv_cells(line);
-  const std::size_t outcome = table.place("outcome");
-  if (table.columns[0] != "index" || table.columns.back() != "state_hash" || table.place("expected") != outcome + 1 ||
-      table.place("steps") != outcome + 2)
+  const std::size_t outcome = table.column_index("outcome");
+  if (table.columns[0] != "index" || table.columns.back() != "state_hash" ||
+      table.column_index("expected") != outcome + 1 || table.column_index("steps") != outcome + 2)
     fail_in_file(table.file, "is not the table of the sweep that sweep.json describes");
   return in;
 }
@@ -59,14 +59,14 @@ void SweepCounts::add(std::size_t run, const std::string& outcome, bool is_expec
 
 std::vector<std::string> SweepTable::metrics() const {
   // Tables of earlier versions have no column kEndedAt.
-  auto first = columns.begin() + static_cast<std::ptrdiff_t>(place("steps")) + 1;
+  auto first = columns.begin() + static_cast<std::ptrdiff_t>(column_index("steps")) + 1;
   first += *first == kEndedAt;
   return {first,
           std::find_if(first, columns.end() - 1, [](const auto& name) { return name.starts_with(kToleranceOf); })};
 }
 
 std::optional<double> SweepTable::number(const SweepRow& row, std::string_view column) const {
-  const std::size_t at = place(column);
+  const std::size_t at = column_index(column);
   return at < row.size() ? finite_number(row[at]) : std::nullopt;
 }
 
@@ -79,7 +79,7 @@ SweepTable read_sweep(const fs::path& file, const std::vector<std::string>& cond
                    .kept = {}};
   std::ifstream in = open_rows(table);
   const RowCondition is_kept = parse_row_conditions(conditions, table.columns);
-  const std::size_t outcome = table.place("outcome");
+  const std::size_t outcome = table.column_index("outcome");
   // Count all rows, and keep the rows that satisfy the conditions.
   for_each_row(in, table, [&](std::size_t run, SweepRow& row) {
     const bool is_expected = row[outcome + 1] == "true";

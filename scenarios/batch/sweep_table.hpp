@@ -49,11 +49,11 @@ struct SweepTable {
   SweepCounts kept;            ///< counts of the rows that satisfy the conditions
 
   /// Returns the index of a column; the number of columns if it does not exist.
-  std::size_t place(std::string_view column) const {
+  std::size_t column_index(std::string_view column) const {
     return static_cast<std::size_t>(std::ranges::find(columns, column) - columns.begin());
   }
   /// Returns the number of fields that vary.
-  std::size_t fields() const { return place("outcome") - 1; }
+  std::size_t fields() const { return column_index("outcome") - 1; }
   const std::string& outcome(const SweepRow& row) const { return row[1 + fields()]; }
   /// Returns the names of the metric columns.
   std::vector<std::string> metrics() const;

@@ -56,7 +56,7 @@ class InputError : public std::runtime_error {
   Kind kind() const { return kind_; }
   const ErrorLocation& location() const { return location_; }
   /// Returns the location as text; empty if the location has no parts.
-  const std::string& place() const { return location_text_; }
+  const std::string& location_text() const { return location_text_; }
   const std::string& problem() const { return problem_; }
   /// Returns each fault as an error. An error that was not made by `all` has one fault.
   std::vector<InputError> faults() const;

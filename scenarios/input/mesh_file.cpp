@@ -281,7 +281,7 @@ std::vector<SurfacePoint> MeshFile::points() const {
   if (!sampling_.spacing) return vertices_with_normals(surface_->mesh);
   HalfEdgeMesh mesh = surface_->mesh;
   refine(mesh, *sampling_.spacing);
-  return thinned(vertices_with_normals(mesh), *sampling_.spacing);
+  return subsampled(vertices_with_normals(mesh), *sampling_.spacing);
 }
 
 }  // namespace hapbench

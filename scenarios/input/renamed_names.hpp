@@ -13,6 +13,7 @@ struct RenamedName {
 /// All renamed names. Error messages suggest the new name wherever it is allowed. CHANGELOG.md has the same table.
 inline constexpr RenamedName kRenamedNames[] = {
     {"league.csv", "ranking.csv"},
+    {"standings", "ranking"},
     {"beyond", "first_unstable"},
     {"class_beyond", "first_unstable_class"},
     {"low", "stable_low"},

@@ -112,7 +112,7 @@ SimulationParts assemble_rendering(const Scenario& scenario, const NamedFiles& f
   }
   // Multi-rate contacts wrap the source and evaluate it only at some steps.
   if (has_multi_rate_contacts(scenario)) {
-    parts.source = std::make_unique<MultiRateContacts>(std::move(parts.source), *rendering.late,
+    parts.source = std::make_unique<MultiRateContacts>(std::move(parts.source), *rendering.multi_rate,
                                                        parts.springs && parts.springs->bilateral,
                                                        derived_seed(scenario, trial, RandomUse::lost_queries));
   }

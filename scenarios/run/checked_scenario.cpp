@@ -50,7 +50,7 @@ CheckedScenario checked(LoadedScenario loaded, Libraries libraries) {
     if (auto warning = stroke_clock_warning(*file->stroke(), scenario.time)) warnings.push_back(std::move(*warning));
   }
   if (scenario.rendering.contact_source == kTrace) {
-    const std::int64_t every = scenario.rendering.late ? scenario.rendering.late->every : 1;
+    const std::int64_t every = scenario.rendering.multi_rate ? scenario.rendering.multi_rate->every : 1;
     if (auto warning = trace_clock_warning(*loaded.files.at(kContactFile).trace(), scenario.time, every))
       warnings.push_back(std::move(*warning));
   }

@@ -69,7 +69,8 @@ const ClockUnit* unit_of_stroke(Samples samples, const RunTimes& run) {
   for (const double factor : {1.1, 3.0})
     for (const ClockUnit& unit : kClockUnits)
       if (fits(unit, factor)) return &unit;
-  // The run may have been made as long as the stroke. Then a recording with a usual rate decides.
+  // The duration of the run may have been set to the duration of the stroke, so it does not show the unit. Return the
+  // first unit in which the recording has a usual sample rate.
   constexpr double kFastest = 2e-4, kSlowest = 0.05;  // intervals of samples [s]
   constexpr std::size_t kMinSamples = 20;             // fewer samples may be waypoints
   for (const ClockUnit& unit : kClockUnits) {

@@ -62,8 +62,9 @@ Number ended(const DiagnosedRun& run) {
 }
 
 /// Thresholds that more than one rule needs.
-inline constexpr double kMaxBuzz = 0.1, kMaxEdge = 0.8, kMaxEncoderForce = 0.1, kMaxReduction = 0.1, kMaxChatter = 10.0,
-                        kMaxDampingShare = 0.5, kMaxSoftness = 3.0, kMaxCoarseness = 1.15, kMaxSaturation = 0.01;
+inline constexpr double kMaxBuzz = 0.1, kMaxLimitRatio = 0.8, kMaxEncoderForce = 0.1, kMaxReduction = 0.1,
+                        kMaxChatter = 10.0, kMaxDampingShare = 0.5, kMaxSoftness = 3.0, kMaxCoarseness = 1.15,
+                        kMaxSaturation = 0.01;
 /// Largest vibration of a tool without settled contact [m/s]. Ten times kMaxVibration, because the landing counts too:
 /// a landing at speed v adds v sqrt(2.6 ms / duration).
 inline constexpr double kMaxShake = 1e-2;

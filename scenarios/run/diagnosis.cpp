@@ -58,7 +58,7 @@ constexpr Rule kRules[] = {
     {"edge",
      "K divided by the linear limit of the loop of device, hand, tool and contact (without dry friction), in a run "
      "that vibrates, diverges or loses contact",
-     "1", kMaxEdge, "K is {} times the linear stability limit", stability_limit_ratio, against_unstable_stiffness,
+     "1", kMaxLimitRatio, "K is {} times the linear stability limit", stability_limit_ratio, against_unstable_stiffness,
      no_more, true},
     {"loop",
      "1 if the loop of device, hand, tool and contact is unstable at any K, in a run that vibrates, diverges or loses "

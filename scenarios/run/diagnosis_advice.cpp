@@ -49,7 +49,7 @@ bool is_beyond(const Number& number, double threshold) {
 
 /// Returns true if K is a measured cause: it is near or beyond the stability limit.
 bool is_too_stiff(const DiagnosedRun& run) {
-  return is_beyond(stability_limit_ratio(run), kMaxEdge);
+  return is_beyond(stability_limit_ratio(run), kMaxLimitRatio);
 }
 
 /// Returns the remedies for measured causes of a rough force.

@@ -248,14 +248,14 @@ class OutcomeObserverImpl final : public OutcomeObserver {
     const double half_width = tool_->half_width();
     const std::string end =
         failure_ ? fmt::format("the run ended there (--full continues it)")
-        : p.left ? fmt::format("left it on another side at {:.4g} s at {}", p.left->time, millimetres(p.left->place))
+        : p.left ? fmt::format("left it on another side at {:.4g} s at {}", p.left->time, millimetres(p.left->point))
         : p.last_depth > 0.0 ? fmt::format("at the end it was {} below the surface", length_text(p.last_depth))
                              : std::string("at the end it was not below the surface");
     if (p.deep) {
       return fmt::format(
           "its tip centre was deeper below the surface than its half width, {}, at {:.4g} s at {}; largest depth {}; "
           "{}",
-          length_text(half_width), p.deep->time, millimetres(p.deep->place), length_text(p.deepest), end);
+          length_text(half_width), p.deep->time, millimetres(p.deep->point), length_text(p.deepest), end);
     }
     // In this case the tip centre was never deeper than the half width.
     if (p.left) return fmt::format("it entered the environment at {} and {}", millimetres(p.entered), end);

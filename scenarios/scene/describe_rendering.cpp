@@ -135,12 +135,13 @@ static void describe_hunt_crossley(Fields& f, double& chi) {
   });
 }
 
-static void describe(Fields& f, MultiRateSchedule& late) {
-  number(f, parameter::kEvery, late.every, "contacts are computed in every n-th time step, starting with the first");
-  number(f, parameter::kDelay, late.delay, "delay, in time steps, from computing the contacts to using them");
-  f.choice("between", late.linear, {"hold", "linear"}, "kind of contacts between queries",
+static void describe(Fields& f, MultiRateSchedule& schedule) {
+  number(f, parameter::kEvery, schedule.every,
+         "contacts are computed in every n-th time step, starting with the first");
+  number(f, parameter::kDelay, schedule.delay, "delay, in time steps, from computing the contacts to using them");
+  f.choice("between", schedule.linear, {"hold", "linear"}, "kind of contacts between queries",
            "hold: depths stay as computed; linear: depths follow the tool's motion along the gradients");
-  number(f, parameter::kDropout, late.dropout,
+  number(f, parameter::kDropout, schedule.dropout,
          "probability that the result of a contact query is lost (except the first), drawn by the seed");
 }
 
@@ -204,9 +205,9 @@ void describe(Fields& f, RenderingConfig& rendering) {
           "contacts, depths and gradients",
           Presence::has_default, [&rendering](Fields& source) { describe_contact_source(source, rendering); });
   if_not_null(
-      f, "contacts", rendering.late,
+      f, "contacts", rendering.multi_rate,
       "multi-rate rendering: a slower loop computes the contacts; null: contacts are computed in every time step",
-      [](Fields& late, MultiRateSchedule& value) { late.object(value); });
+      [](Fields& schedule, MultiRateSchedule& value) { schedule.object(value); });
   f.boolean(key(parameter::kLocalAverage), rendering.local_average,
             "merge colliding points that share a grid cell of the shell");
   f.object(

@@ -57,9 +57,9 @@ InputError in_file(const InputError& fault, const fs::path& file) {
 }  // namespace
 
 void rethrow_with_file(const InputError& error, const fs::path& file) {
-  LoadedScenario place;
-  place.file = file;
-  rethrow_with_file(error, place);
+  LoadedScenario source;
+  source.file = file;
+  rethrow_with_file(error, source);
 }
 
 void rethrow_with_file(const InputError& error, const LoadedScenario& loaded) {

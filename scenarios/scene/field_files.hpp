@@ -26,13 +26,13 @@ std::vector<std::string> with_files(const LoadedScenario& loaded, const std::vec
 [[noreturn]] void rethrow_with_file(const InputError& error, const LoadedScenario& loaded);
 
 /// Calls `work` and returns its result. An InputError that `work` throws is passed to rethrow_with_file with
-/// `place`, which is a file or a loaded scenario.
-template <class Place, class Work>
-auto with_file(const Place& place, Work work) {
+/// `source`, which is a file or a loaded scenario.
+template <class Source, class Work>
+auto with_file(const Source& source, Work work) {
   try {
     return work();
   } catch (const InputError& error) {
-    rethrow_with_file(error, place);
+    rethrow_with_file(error, source);
   }
 }
 

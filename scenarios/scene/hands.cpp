@@ -116,9 +116,9 @@ static void describe(Fields& f, TargetRules& task) {
       "panel: the target has x and y, and the orientation is scripted; height: the target has z, and the hand turns "
       "the tool");
   f.list(
-      "places_m", task.places, {1, TrackingHandFields::kMaxTargetPositions}, "positions at which targets appear",
+      "places_m", task.positions, {1, TrackingHandFields::kMaxTargetPositions}, "positions at which targets appear",
       [](Fields& p, Vec3& position) { p.vector3(position, kCoordinate); }, Presence::required);
-  f.integer("targets_per_place", task.targets_per_place, {1, 1000}, "number of targets per position in one trial");
+  f.integer("targets_per_place", task.targets_per_position, {1, 1000}, "number of targets per position in one trial");
   f.number("tolerance_m", task.tolerance, {0.0, 1.0, "m", true}, "distance within which the tip is on the target");
   f.number("logged_m", task.logged, {0.0, 1.0, "m", true},
            "distance within which steps count for the mean model force and speed at a target; null: tolerance_m");

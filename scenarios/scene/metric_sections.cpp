@@ -43,9 +43,9 @@ std::unique_ptr<MetricObserver> observe_targets(const Scenario*, std::size_t tar
   return std::make_unique<TargetMetricsObserver>(target_positions);
 }
 
-std::size_t target_places(const Scenario& scenario, bool) {
+std::size_t target_positions(const Scenario& scenario, bool) {
   const auto* hand = std::get_if<TrackingHandFields>(&scenario.hand);
-  return hand == nullptr ? 0 : hand->task.places.size();
+  return hand == nullptr ? 0 : hand->task.positions.size();
 }
 
 /// All sections, in the order of the summary. To add a section, add an entry here and a source file with its
@@ -65,7 +65,7 @@ const SectionKind kSections[] = {
      make<ForceStageObserver>},
     {"contacts", [](const Scenario& s, bool) { return std::size_t{has_multi_rate_contacts(s)}; },
      make<ContactAgeObserver>},
-    {"targets", target_places, observe_targets, true}};
+    {"targets", target_positions, observe_targets, true}};
 
 /// Adds the metrics that every run has. `inside` is null if the environment has no solid.
 void report_common_metrics(const MetricsObserver& metrics, const InsideDepths* inside, MetricList& list) {

@@ -309,7 +309,7 @@ bool has_external_contacts(const Scenario& scenario);
 /// Returns true if contacts are found at a lower rate than the steps, so that the contact is not part of a loop at the
 /// period of a step.
 inline bool has_multi_rate_contacts(const Scenario& scenario) {
-  return scenario.rendering.late && scenario.rendering.late->any();
+  return scenario.rendering.multi_rate && scenario.rendering.multi_rate->any();
 }
 
 /// Returns the scenario with another algorithm, and with the depth model and reduction that this algorithm fixes.

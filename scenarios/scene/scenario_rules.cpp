@@ -37,7 +37,7 @@ void check_sizes(const Scenario& scenario, double steps) {
     require_at_most(kMaxRows, steps * trial_count(scenario.hand), "/record/timing", "timed steps");
 }
 
-/// Throws InputError unless `up` and `lean` are perpendicular and not zero.
+/// Throws InputError if the motion has an orientation whose `up` and `lean` are not perpendicular or are zero.
 void check_orientation(const MotionFields& motion) {
   if (!motion.orientation) return;
   const Vec3 &up = motion.orientation->up, &lean = motion.orientation->lean;
@@ -130,7 +130,7 @@ constexpr Rule kRules[] = {
     {kTurningProxy, "got a number with springs, which act at the tip centre and turn nothing; allowed: null",
      [](const Scenario& s) { return turns(s.rendering) && is<SpringsEnvironment>(s.environment); }},
     {kTurningProxy, "got a number with multi-rate contacts (rendering.contacts); allowed: null",
-     [](const Scenario& s) { return turns(s.rendering) && s.rendering.late && s.rendering.late->any(); }},
+     [](const Scenario& s) { return turns(s.rendering) && s.rendering.multi_rate && s.rendering.multi_rate->any(); }},
     {kTurningProxy, "got a number with rendering.angular_damping; allowed: null",
      [](const Scenario& s) { return turns(s.rendering) && s.rendering.angular_damping; }},
     {kTurningProxy, "got a number with a damping_time_s; allowed: null",

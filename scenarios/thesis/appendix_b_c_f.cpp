@@ -73,12 +73,12 @@ Finding judge_groove(const Measured& measured, const PublishedNumbers& p) {
     });
   };
   const auto with = under_damped("groove_friction"), without = under_damped("groove_swing");
-  const double most = threshold(p, "most") * static_cast<double>(measured.size());
+  const double majority = threshold(p, "most") * static_cast<double>(measured.size());
   return {
-      decide(static_cast<double>(with) > most, static_cast<double>(without) > most),
+      decide(static_cast<double>(with) > majority, static_cast<double>(without) > majority),
       fmt::format("true of the normal damping, which acts only along the merged direction; the friction of Table B.1 "
                   "{} the missing damping across this direction",
-                  static_cast<double>(with) > most ? "does not hide" : "hides"),
+                  static_cast<double>(with) > majority ? "does not hide" : "hides"),
       "",
       fmt::format("under-damped at {} of {} angles without friction, at {} with friction", without, measured.size(),
                   with)};
@@ -235,8 +235,8 @@ MeasuredValues measure_information(const Evidence& e) {
 }
 
 Finding judge_information(const MeasuredCase& m, const PublishedNumbers& p) {
-  const bool most = m["change"] <= threshold(p, "over_reduced"), half = m["change"] <= threshold(p, "most");
-  return {decide(most, half),
+  const bool majority = m["change"] <= threshold(p, "over_reduced"), half = m["change"] <= threshold(p, "most");
+  return {decide(majority, half),
           "three updates give different weights with all points and with the points that the reduction keeps"};
 }
 

@@ -34,11 +34,11 @@ constexpr double kStandardErrors = 2.0;  // stated in the rule's text
 using TargetTable = std::map<std::string, std::vector<double>>;
 
 /// Returns the mean of a column over the targets at a position, for each subject. Omits subjects without a value.
-std::map<double, double> subject_means(const TargetTable& targets, const char* column, double place) {
+std::map<double, double> subject_means(const TargetTable& targets, const char* column, double position) {
   std::map<double, std::vector<double>> values;
   for (std::size_t i = 0; i < targets.at("place").size(); ++i) {
     const double value = targets.at(column)[i];
-    if (targets.at("place")[i] != place || std::isnan(value)) continue;
+    if (targets.at("place")[i] != position || std::isnan(value)) continue;
     values[targets.at("subject")[i]].push_back(value);
   }
   std::map<double, double> means;
@@ -47,13 +47,13 @@ std::map<double, double> subject_means(const TargetTable& targets, const char* c
 }
 
 /// Returns one case for each measure, with the means of the subjects that have values with both algorithms.
-Measured measure(const Evidence& e, const std::string& task, double place) {
+Measured measure(const Evidence& e, const std::string& task, double position) {
   const TargetTable original = e.table(task + "_original_averaging", "targets.csv"),
                     shaped = e.table(task + "_shaped_stiffness", "targets.csv");
   Measured measured;
   for (const MeasuredColumn& column : kMeasures) {
     MeasuredCase& m = measured.emplace_back(MeasuredCase{column.name, {}});
-    const auto a = subject_means(original, column.column, place), b = subject_means(shaped, column.column, place);
+    const auto a = subject_means(original, column.column, position), b = subject_means(shaped, column.column, position);
     std::vector<double>&of_original = m.values["original"], &of_shaped = m.values["shaped"];
     for (const auto& [subject, value] : a) {
       if (!b.contains(subject)) continue;
@@ -176,8 +176,8 @@ Finding judge_wall(const Measured& measured, const PublishedNumbers& published) 
 // ---- D6: success rates at the target positions of the pilot experiments. One case for each position, with the mean
 // over the subjects for both algorithms.
 
-constexpr double kHardlyAnyTarget = 0.1;  ///< largest success rate that counts as "hardly any target is removed"
-constexpr double kMostTargets = 0.5;      ///< smallest success rate that counts as "most targets are removed"
+constexpr double kHardlyAnyTarget = 0.1;    ///< largest success rate that counts as "hardly any target is removed"
+constexpr double kMajorityOfTargets = 0.5;  ///< smallest success rate that counts as "most targets are removed"
 constexpr double kOffsets[] = {0.4e-3,  0.46e-3, 0.52e-3,
                                0.58e-3, 0.64e-3, 0.7e-3};                  ///< distance from the hole's axis [m]
 constexpr double kHeights[] = {2e-3, 2.5e-3, 3e-3, 3.5e-3, 4e-3, 4.5e-3};  ///< height above the hole's bottom [m]
@@ -185,20 +185,20 @@ constexpr double kHoleDepth = 5e-3;                                        ///< 
 
 /// Returns the mean success rate of the subjects at one position [m], with four targets for each subject. Each position
 /// has a run of its own, because a subject who loses the drill misses all remaining targets.
-double success_rate(const Evidence& e, const std::string& scenario, const Vec3& place) {
+double success_rate(const Evidence& e, const std::string& scenario, const Vec3& position) {
   const Result run =
-      e.run(scenario, {fmt::format("hand.task.places_m=[[{},{},{}]]", place.x(), place.y(), place.z()),
+      e.run(scenario, {fmt::format("hand.task.places_m=[[{},{},{}]]", position.x(), position.y(), position.z()),
                        fmt::format("hand.task.targets_per_place={}", e.reduced ? 1 : 4), "hand.trials=1"});
-  return place_metrics(run.targets).at(0).success_rate.mean;
+  return position_metrics(run.targets).at(0).success_rate.mean;
 }
 
 Measured measure_pilots(const Evidence& e) {
   Measured measured;
-  const auto add = [&](const char* name, const std::string& task, double value, const Vec3& place) {
+  const auto add = [&](const char* name, const std::string& task, double value, const Vec3& position) {
     measured.push_back({name,
                         {{"value", {value}},
-                         {"original", {success_rate(e, task + "_original_averaging", place)}},
-                         {"shaped", {success_rate(e, task + "_shaped_stiffness", place)}}}});
+                         {"original", {success_rate(e, task + "_original_averaging", position)}},
+                         {"shaped", {success_rate(e, task + "_shaped_stiffness", position)}}}});
   };
   // A reduced measurement has the easiest position and one position beyond the published position.
   const auto is_measured = [&e](double value, double easiest, double hard) {
@@ -243,9 +243,9 @@ Finding judge_pilots(const Measured& measured, const PublishedNumbers& published
           ", ");
     easiest = std::max(easiest, m["original"]);
     if (hard) beyond = std::max(beyond, m["original"]);
-    pilot.easy = pilot.easy || m["original"] >= kMostTargets;
+    pilot.easy = pilot.easy || m["original"] >= kMajorityOfTargets;
     pilot.beyond = pilot.beyond || (hard && !hardly_any);
-    pilot.somewhere = pilot.somewhere || (hardly_any && m["shaped"] >= kMostTargets);
+    pilot.somewhere = pilot.somewhere || (hardly_any && m["shaped"] >= kMajorityOfTargets);
   }
   return {
       in_simulation(offset.as_published() && height.as_published()),

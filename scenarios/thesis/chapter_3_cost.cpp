@@ -144,12 +144,12 @@ MeasuredValues measure_proxy_cost(const Evidence& e) {
 
 MeasuredValues measure_tandpasta_cost(const Evidence& e) {
   const Scenario scenario = e.load("task2_rotate_signed_distance").scenario;
-  const std::vector<ContactBuffer> most = {largest_of(contact_sets(scenario, 64))};
-  MeasuredValues values = {{"points", {static_cast<double>(most.front().size())}}};
+  const std::vector<ContactBuffer> largest_set = {largest_of(contact_sets(scenario, 64))};
+  MeasuredValues values = {{"points", {static_cast<double>(largest_set.front().size())}}};
   for (const auto& [name, value] : {std::pair("tandpasta", "other"), std::pair(kProposedLaw, "shaped")}) {
     const auto law = make_law(name, scenario.rendering);
-    law->prepare(most.front().size());
-    values[value] = {seconds_with(most, 100, [&](ContactBuffer& contacts) { law->evaluate(contacts); }) /
+    law->prepare(largest_set.front().size());
+    values[value] = {seconds_with(largest_set, 100, [&](ContactBuffer& contacts) { law->evaluate(contacts); }) /
                      scenario.time.step};
   }
   return values;

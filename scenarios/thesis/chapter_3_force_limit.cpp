@@ -139,8 +139,8 @@ MeasuredValues measure_saturated_motion(const Evidence& e) {
 
 Finding judge_saturated_motion(const MeasuredCase& m, const PublishedNumbers& p) {
   // With NaN a comparison is false.
-  const double most = threshold(p, "around") * m["limit"];
-  const bool held = m["p99"] <= most, median = m["median"] <= most;
+  const double bound = threshold(p, "around") * m["limit"];
+  const bool held = m["p99"] <= bound, median = m["median"] <= bound;
   return {decide(held, median), held ? "the reaction stays at the limit for every force of the hand"
                                      : "the reaction exceeds the limit while the hand pushes on"};
 }

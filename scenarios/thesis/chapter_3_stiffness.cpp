@@ -118,13 +118,13 @@ double largest(const Measured& measured, const std::string& value) {
 /// of the inner product of the two directions, the ratio of the single contact is 1 / (1 + k x) + k x / (k + x).
 double smallest_after_one_update(int parallel) {
   const double k = parallel;
-  double least = 1.0;
+  double smallest_ratio = 1.0;
   constexpr int kSamples = 10000;
   for (int i = 0; i <= kSamples; ++i) {
     const double x = static_cast<double>(i) / kSamples;
-    least = std::min(least, 1.0 / (1.0 + k * x) + k * x / (k + x));
+    smallest_ratio = std::min(smallest_ratio, 1.0 / (1.0 + k * x) + k * x / (k + x));
   }
-  return least;
+  return smallest_ratio;
 }
 
 /// Judges the range of the stiffness ratios after `updates` updates: the averages over the tasks if `averaged`,
@@ -170,10 +170,10 @@ std::string of_tasks(const Measured& measured, const char* value, const char* fo
 }
 
 Finding judge_bound_in_tasks(const Measured& measured, const PublishedNumbers& p) {
-  const double most = largest(measured, "any_max"), bound = p["R1.bound"].at_most;
-  return {decide(most <= bound, false), "the bound (1 + √3)/2 = 1.366 of R2 is proved for all contacts",
+  const double largest_ratio = largest(measured, "any_max"), bound = p["R1.bound"].at_most;
+  return {decide(largest_ratio <= bound, false), "the bound (1 + √3)/2 = 1.366 of R2 is proved for all contacts",
           "largest ratio after any update: " + of_tasks(measured, "any_max", "{:.3f}"),
-          fmt::format("largest ratio {:.3f}", most)};
+          fmt::format("largest ratio {:.3f}", largest_ratio)};
 }
 
 Finding judge_relative_damping_of_tasks(const Measured& measured, const PublishedNumbers& p) {

@@ -369,9 +369,9 @@ Finding judge_turn_into_wall(const Measured& measured, const PublishedNumbers& p
 
 Finding judge_slow_turn(const Measured& measured, const PublishedNumbers& p) {
   Finding finding = judge_turn_into_wall(measured, p);
-  const bool calm = measured.at(0)["force_reversals"] <= measured.at(1)["force_reversals"];
+  const bool reverses_no_more = measured.at(0)["force_reversals"] <= measured.at(1)["force_reversals"];
   const bool same = measured.at(0)["velocity_variation"] < threshold(p, "turn") * measured.at(1)["velocity_variation"];
-  finding.verdict = decide(same && calm, same || calm);
+  finding.verdict = decide(same && reverses_no_more, same || reverses_no_more);
   return finding;
 }
 

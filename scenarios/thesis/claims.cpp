@@ -32,7 +32,7 @@ std::vector<Claim> all_claims() {
     const Json json = read_json(file);
     for (const Json& row : json.at("claims")) {
       Claim& claim = claims.emplace_back(Claim{.id = text(row, "id"),
-                                               .place = text(row, "place"),
+                                               .location = text(row, "place"),
                                                .claim = text(row, "claim"),
                                                .published = row.value("published", ""),
                                                .rule = text(row, "rule"),

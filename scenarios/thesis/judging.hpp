@@ -123,7 +123,7 @@ inline void append_item(std::string& list, std::string_view item, std::string_vi
 /// influences the claim.
 struct Claim {
   std::string id = {};
-  std::string place = {};      ///< section of the thesis
+  std::string location = {};   ///< section of the thesis
   std::string claim = {};      ///< statement of the claim, in our words
   std::string published = {};  ///< published numbers, as text
   std::string rule = {};       ///< rule of the verdict with its thresholds, as text

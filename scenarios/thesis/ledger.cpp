@@ -34,19 +34,19 @@ bool failed(const Json& claim) {
          verdict == Verdict::not_judged;
 }
 
-/// Returns the first figure that a place names, such as "Fig. A.2"; empty if it names none.
-std::string figure_of(const std::string& place) {
+/// Returns the first figure that a location in the thesis names, such as "Fig. A.2"; empty if it names none.
+std::string figure_of(const std::string& location) {
   static const std::regex kFigure(R"(Fig\. ((?:[A-F]\.)?\d+))");
   std::smatch found;
-  return std::regex_search(place, found, kFigure) ? found[0].str() : "";
+  return std::regex_search(location, found, kFigure) ? found[0].str() : "";
 }
 
 /// Returns the chapter or appendix of a claim's first numbered section, such as "C" for "abstract, C.2".
 std::string chapter_of(const Json& claim) {
-  const std::string place = text_at(claim, "place");
-  const std::size_t number = place.find_first_of("0123456789");
-  const bool appendix = number >= 2 && place[number - 1] == '.';
-  return std::string(1, place.at(appendix ? number - 2 : number));
+  const std::string location = text_at(claim, "place");
+  const std::size_t number = location.find_first_of("0123456789");
+  const bool appendix = number >= 2 && location[number - 1] == '.';
+  return std::string(1, location.at(appendix ? number - 2 : number));
 }
 
 std::string link_to(const Json& claim) {
@@ -55,14 +55,15 @@ std::string link_to(const Json& claim) {
 }
 
 /// Returns the robustness of a claim with its assumptions as code: "sensitive to `local.average`". Names the first
-/// `most` assumptions and counts the others.
-std::string decided_by(const Json& claim, std::size_t most) {
+/// `max_names` assumptions and counts the others.
+std::string decided_by(const Json& claim, std::size_t max_names) {
   auto deciders = claim.at("deciders").get<std::vector<std::string>>();
   if (deciders.empty()) return text_at(claim, "robustness");
   const std::size_t count = deciders.size();
-  if (count > most) deciders.resize(most);
+  if (count > max_names) deciders.resize(max_names);
   return fmt::format("{} `{}`{}", count == 1 ? kSensitiveVerdict : std::string(kSeveralVerdict) + ":",
-                     fmt::join(deciders, "`, `"), count > most ? fmt::format(" and {} more", count - most) : "");
+                     fmt::join(deciders, "`, `"),
+                     count > max_names ? fmt::format(" and {} more", count - max_names) : "");
 }
 
 std::string decided_by(const Json& claim) {
@@ -113,9 +114,9 @@ std::string abstract_table(const Json& ledger) {
           if (figure.empty()) figure = text_at(claim, "figure");
           seconds += claim.at("seconds").get<double>();
         }
-    if (claims.empty()) continue;          // a run with --only may not have judged the claim
-    constexpr std::size_t kMostNames = 2;  // the page of the claim names all assumptions
-    const auto deciders = [](const Json& claim) { return decided_by(claim, kMostNames); };
+    if (claims.empty()) continue;         // a run with --only may not have judged the claim
+    constexpr std::size_t kMaxNames = 2;  // the page of the claim names all assumptions
+    const auto deciders = [](const Json& claim) { return decided_by(claim, kMaxNames); };
     const auto member = [](const char* key) { return [key](const Json& claim) { return text_at(claim, key); }; };
     text += fmt::format("| {} | {} | {} | {} | {} | {} | `hapbench reproduce --only {}` ({:.0f} s) |\n",
                         text_at(sentence, "sentence"), joined(claims, member("published_short")), joined(claims, ours),
@@ -289,7 +290,7 @@ Json ledger_json(const std::vector<JudgedClaim>& judged, const PublishedNumbers&
     const std::string full = published.fill(j.claim.published);
     Json& claim = claims.emplace_back(
         Json{{"id", j.claim.id},
-             {"place", j.claim.place},
+             {"place", j.claim.location},
              {"claim", j.claim.claim},
              {"published", full},
              {"published_short", j.claim.published_short.empty() ? full : published.fill(j.claim.published_short)},
@@ -298,7 +299,7 @@ Json ledger_json(const std::vector<JudgedClaim>& judged, const PublishedNumbers&
              {"rule", published.fill(j.claim.rule)},
              {"verdict", verdict_name(j.finding.verdict)},
              {"why", j.finding.why},
-             {"figure", figure_of(j.claim.place)},
+             {"figure", figure_of(j.claim.location)},
              {"scenarios", j.scenarios},
              {"command", "hapbench reproduce --only " + j.claim.id},
              {"seconds", std::round(10.0 * j.seconds) / 10.0},

@@ -47,8 +47,9 @@ std::string switching_reason(std::span<const LevelResult> last) {
     const auto& [name, coarse] = last.front().contacts[i];
     for (const LevelResult& level : last.subspan(1)) {
       if (level.contacts[i].second == coarse) continue;
-      return fmt::format("contacts change between the last {} levels ({} is {:.10g} at {}, {:.10g} at {})", last.size(),
-                         name, coarse, last.front().setting, level.contacts[i].second, level.setting);
+      return fmt::format(
+          "contacts change between the last {} levels ({} is {:.10g} at {}, {:.10g} at {}; counted in recorded steps)",
+          last.size(), name, coarse, last.front().setting, level.contacts[i].second, level.setting);
     }
   }
   return "";
@@ -61,13 +62,13 @@ std::string incredible_reason(std::span<const double> f, std::span<const std::op
   const std::size_t last = f.size() - 1, from = f.size() >= count ? f.size() - count : 0;
   // The largest credible order. It allows the same relative deviation of the differences as the asymptotic range,
   // beyond twice the formal order.
-  const double most = 2.0 * formal + math::log(1.0 + kAsymptoticWithin) / math::log(ratio);
+  const double largest_credible = 2.0 * formal + math::log(1.0 + kAsymptoticWithin) / math::log(ratio);
   for (std::size_t i = from + 2; i <= last; ++i) {
     const double coarse = f[i - 2] - f[i - 1], fine = f[i - 1] - f[i];
     if (coarse * fine < 0.0) return "the differences between the last levels change sign";
     if (!orders[i]) return "some of the last levels differ by rounding only";
     if (*orders[i] <= 0.0) return fmt::format("the differences do not shrink (order {:.2g})", *orders[i]);
-    if (*orders[i] > most)
+    if (*orders[i] > largest_credible)
       return fmt::format("the order {:.3g} is not credible: it is more than twice the formal order {:g}", *orders[i],
                          formal);
   }

@@ -63,10 +63,10 @@ std::vector<ComparedDevice> compared_devices() {
 
 ComparedDevice device_of_file(const std::filesystem::path& file) {
   const ScenarioText text = read_scenario_text(file);
-  LoadedScenario place;
-  place.file = file;
-  place.layers = text.layers;
-  const DeviceFields device = with_file(place, [&text] { return read_device(text.json); });
+  LoadedScenario source;
+  source.file = file;
+  source.layers = text.layers;
+  const DeviceFields device = with_file(source, [&text] { return read_device(text.json); });
   return {file.stem().string(), written(device), handle_moves_tool(device)};
 }
 

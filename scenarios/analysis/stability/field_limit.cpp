@@ -225,12 +225,12 @@ static bool tighten_bounds(const LimitQuestion& question, double value, Stabilit
   bool is_tighter = false;
   for (const auto& [name, error] : refined.errors) {
     errors[name] = std::max(errors[name], error);
-    const MetricBound& asked = question.rule.bounds.at(name);
+    const MetricBound& bound_of_user = question.rule.bounds.at(name);
     MetricBound& bound = rule.bounds[name];
-    const bool is_above = asked.max && metrics[name] + error > *asked.max;
-    const bool is_below = asked.min && metrics[name] - error < *asked.min;
-    if (is_above) bound.max = *asked.max - error;
-    if (is_below) bound.min = *asked.min + error;
+    const bool is_above = bound_of_user.max && metrics[name] + error > *bound_of_user.max;
+    const bool is_below = bound_of_user.min && metrics[name] - error < *bound_of_user.min;
+    if (is_above) bound.max = *bound_of_user.max - error;
+    if (is_below) bound.min = *bound_of_user.min + error;
     is_tighter = is_tighter || is_above || is_below;
   }
   return is_tighter;

@@ -75,7 +75,7 @@ struct FieldLimit {
   std::size_t undecided = 0;              ///< number of runs that were too short to judge (RunStability::undecided)
 
   /// Returns the linear limit: `theory` if it has a value, otherwise `linear`.
-  const std::optional<double>& linear_edge() const { return theory ? theory : linear; }
+  const std::optional<double>& known_linear_limit() const { return theory ? theory : linear; }
   /// Returns the width of the interval that encloses the quoted limit, if it is the simulated limit; empty if it is the
   /// linear limit, which is known to many digits.
   std::optional<double> quoted_tolerance() const { return quoted.value == end.value ? end.tolerance() : std::nullopt; }

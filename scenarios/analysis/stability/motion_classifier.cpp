@@ -6,8 +6,8 @@
 namespace hapbench {
 namespace {
 
-// Ratios of amplitudes: growth from quarter to quarter, remainder of a decayed motion, smallest sustained amplitude,
-// and speed at rest relative to the largest speed.
+// Ratios of amplitudes: growth from one quarter of the run to the next, remainder of a decayed motion, smallest
+// sustained amplitude, and speed at rest relative to the largest speed.
 constexpr double kGrowth = 1.01, kLeft = 0.01, kSustained = 0.9, kRest = 1e-12;
 constexpr double kFelt = 1e-3;  // smallest speed that a hand can feel [m/s]
 

@@ -39,7 +39,7 @@ std::string stable_beyond(const LimitQuestion& question, const FieldLimit& limit
   };
   const auto stable = std::ranges::count_if(limit.runs, is_stable_beyond);
   if (stable == 0) return "";
-  return fmt::format("; {} of {} runs farther beyond are stable", stable, std::ranges::count_if(limit.runs, is_beyond));
+  return fmt::format("; {} of {} runs beyond it are stable", stable, std::ranges::count_if(limit.runs, is_beyond));
 }
 
 /// Names the unstable run next to the simulated limit.
@@ -51,7 +51,7 @@ std::string next_run(const LimitQuestion& question, const FieldLimit& limit) {
 /// Returns the reason why there is no linear limit within the range.
 std::string without_linear(const FieldLimit& limit) {
   if (!limit.no_linear.empty()) return fmt::format("there is no linear limit: {}", limit.no_linear);
-  const auto& linear = limit.linear_edge();
+  const auto& linear = limit.known_linear_limit();
   if (linear && (std::isinf(*linear) || *linear == 0.0))
     return "the linear loop is stable beyond it, to the end of the range";
   return "no linear limit applies";
@@ -67,7 +67,7 @@ QuotedLimit quoted_limit(const LimitQuestion& question, const FieldLimit& limit)
   if (!value) return {{}, "no interval of values is stable"};
   // Returns true if the field reaches a before b on its way to the limit.
   const auto is_first = [smallest](double a, double b) { return smallest ? a > b : a < b; };
-  const auto& linear = limit.linear_edge();
+  const auto& linear = limit.known_linear_limit();
   if (limit.linear == 0.0) return {{}, "by the eigenvalues of the loop in contact, no value of the range is stable"};
   const bool has_linear = linear && std::isfinite(*linear) && *linear > 0.0;
   const std::string name = limit.theory ? "theoretical limit (eigenvalues, contact cannot be lost)"
@@ -88,12 +88,11 @@ QuotedLimit quoted_limit(const LimitQuestion& question, const FieldLimit& limit)
   if (agree)
     return {is_first(*value, *linear) ? *value : *linear, name + "; the runs agree" + stable_beyond(question, limit)};
   if (is_first(*value, *linear) && beyond)
-    return {value, fmt::format("simulated limit: {}; it is reached before the {}, {}", next_run(question, limit), name,
-                               number(*linear))};
+    return {value, fmt::format("simulated limit: {}; it is reached before the {}", next_run(question, limit), name)};
   if (is_first(*value, *linear))
     return {{},
-            fmt::format("every run up to {}, the end of the range, is stable; the {} is {}", number(*value), name,
-                        number(*linear))};
+            fmt::format("every run up to {}, the end of the range, is stable; the {} is beyond the range",
+                        number(*value), name)};
   if (limit.other.value && is_first(*linear, *limit.other.value))
     return {{},
             fmt::format("no value is stable both in runs (from {}) and by the {} (up to {})",

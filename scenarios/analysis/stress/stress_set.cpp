@@ -60,7 +60,7 @@ Draw positions(Random& random, const ContactSet& set) {
   const double radius = set.tool.radius(), length = set.tool.length();
   switch (random.below(5)) {
     case 0:  // coincident
-      return [place = in_tool(random, set)] { return place; };
+      return [point = in_tool(random, set)] { return point; };
     case 1: {  // on the axis, where the radial direction is undefined, or all in the tip centre
       const double height = chance(random, 0.3) ? 0.0 : length;
       return [&, height] { return Vec3(set.pose.position - height * random.uniform() * set.pose.axis); };

@@ -72,7 +72,7 @@ Trials::Trials(const TuneQuestion& question, const std::string& algorithm)
       limits_{question.limits, question.allow_vibration},
       variants_({{"the scene's own run"}}) {
   for (const Diagnosed& rule : diagnosis_rules(/*low_vibration=*/true)) rules_[rule.rule] = rule.threshold;
-  // Collect the variants and the stiffness of springs in permanent contact.
+  // Build the surface, and collect the variants and the largest stiffness eigenvalue of springs in permanent contact.
   const LoadedScenario own = load({}, ranges_.stiffness.from);
   shell_ = make_shell(own.scenario, own.files);
   for (const std::string& family : question_.families) {
@@ -309,7 +309,8 @@ void Trials::judge(TuneTrial& trial, Need need) {
   if (const Refutation* refuted = refutation_of(trial)) trial.fail(refuted->constraint, refuted->reason);
 }
 
-/// Runs the scene itself: its loop, its motion, its metrics.
+/// Evaluates the scene without variants: checks the linear loop of permanent springs, judges the motion, and measures
+/// the metrics. Stops at the first failure.
 void Trials::evaluate_motion(TuneTrial& trial) {
   if (trial.judged == 0 && !trial.failure) {
     if (springs_lambda_) trial.failure = loop_failure(trial, 0, {});
@@ -358,12 +359,12 @@ bool Trials::needs_depth(const TuneTrial& trial, Need need) const {
   return false;
 }
 
-/// Returns the first hand with which the loop in contact is unstable at a stiffness between K and `most` [N/m]; empty
-/// if all loops are stable. Samples the stiffness in steps of 10 %.
+/// Returns the first hand with which the loop in contact is unstable at a stiffness between K and `highest` [N/m];
+/// empty if all loops are stable. Samples the stiffness in steps of 10 %.
 std::optional<std::string> Trials::unstable_loop(Scenario scenario, const ContactOfTrial& contact, double K,
-                                                 double most, bool over_hands) const {
+                                                 double highest, bool over_hands) const {
   constexpr double kStiffnessStep = 1.1;
-  for (double at = most; at * kStiffnessStep > K; at /= kStiffnessStep) {
+  for (double at = highest; at * kStiffnessStep > K; at /= kStiffnessStep) {
     scenario.rendering.stiffness = at;
     const std::vector<NamedLoop> loops = loops_in_contact(scenario, contact, over_hands);
     if (loops.empty()) return std::nullopt;
@@ -519,7 +520,8 @@ void Trials::refine(TuneTrial& trial, Refinement refinement) {
   report_runs();
 }
 
-/// Fails the trial at the first violated limit. Precondition: the metrics of the scene were measured.
+/// Fails the trial at the first violated limit; limits of the user come before rules of the diagnosis. Precondition:
+/// the metrics of the scene were measured.
 void Trials::judge_limits(TuneTrial& trial) const {
   const MetricValues violated = violated_limits(trial);
   trial.limits_alone = !violated.empty();

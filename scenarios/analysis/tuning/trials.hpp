@@ -172,7 +172,7 @@ class Trials {
   void in_parallel(TuneTrial* trial, std::size_t count, const std::function<void(std::size_t)>& job);
   MetricValues metrics_of(const Result& run) const;
   ContactOfTrial contact_of(const CheckedScenario& scene, const RunStability& run) const;
-  std::optional<std::string> unstable_loop(Scenario scenario, const ContactOfTrial& contact, double K, double most,
+  std::optional<std::string> unstable_loop(Scenario scenario, const ContactOfTrial& contact, double K, double highest,
                                            bool over_hands) const;
   std::optional<TuneFailure> loop_failure(const TuneTrial& trial, std::size_t variant,
                                           const ContactOfTrial& contact) const;

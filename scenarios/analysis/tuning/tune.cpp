@@ -67,7 +67,7 @@ void explain_or_find(Trials& trials, TunedLaw& law) {
     return;
   }
   law.verified = 0;
-  law.edge = {};
+  law.limits = {};
   if (was_exhausted) {
     law.why =
         fmt::format("none was found in {} runs, the largest number of a search; nearest: {}", kMaxTuneRuns, law.why);

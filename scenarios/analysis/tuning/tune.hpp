@@ -24,7 +24,7 @@ struct TunedLaw {
   std::string why;    ///< reason of the violation, for the user
   std::string relax;  ///< without a choice: which limit to relax, and by how much; or which option to change
   TuneMargins margins;
-  FieldLimit edge;  ///< stability limits of K in the scene with the choice and the scene's hand
+  FieldLimit limits;  ///< stability limits of K in the scene with the choice and the scene's hand
   /// Error estimates: largest change of each metric of the scene's run if the step is halved, the point spacing is
   /// halved, or depth is evaluated at every step. A metric that one of these runs lacks has no entry.
   MetricValues error;

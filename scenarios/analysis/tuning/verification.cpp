@@ -43,15 +43,15 @@ bool scene_limit_is_near(Trials& trials, const TuneTrial& choice, TunedLaw& law)
   LimitQuestion question = limit_question(scene, chosen, kStiffnessPath, {});
   question.rule = rule_of(load_scenario(scene, chosen).scenario);
   question.threads = trials.question().threads;
-  law.edge = field_limit(question);
-  trials.count_runs(law.edge.runs.size());
+  law.limits = field_limit(question);
+  trials.count_runs(law.limits.runs.size());
   const double G_K = trials.question().margin * choice.stiffness;
   // Reject a choice without a contiguous stable interval, or with a limit below G K.
-  if (!law.edge.end.value) return refute(trials, choice, G_K, "stable and unstable values alternate");
-  if (law.edge.linear && *law.edge.linear < G_K)
-    return refute(trials, choice, *law.edge.linear, "the contact loop is unstable");
-  if (!law.edge.end.beyond) return false;
-  const auto& [K, verdict] = *law.edge.end.beyond;
+  if (!law.limits.end.value) return refute(trials, choice, G_K, "stable and unstable values alternate");
+  if (law.limits.linear && *law.limits.linear < G_K)
+    return refute(trials, choice, *law.limits.linear, "the contact loop is unstable");
+  if (!law.limits.end.beyond) return false;
+  const auto& [K, verdict] = *law.limits.end.beyond;
   if (K < G_K) return refute(trials, choice, K, std::string(run_verdict_name(verdict)));
   trials.note_unstable(K);
   return false;

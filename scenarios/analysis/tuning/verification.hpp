@@ -5,8 +5,8 @@
 #include "scenarios/analysis/tuning/trials.hpp"
 #include "scenarios/analysis/tuning/tune.hpp"
 
-/// Verifies a choice before it is recommended: between the evaluated gains, in longer runs, and against the stability
-/// limit of the scene.
+/// Verifies a choice before it is recommended: at gains that lie between the evaluated gains, in longer runs, and
+/// against the stability limit of the scene.
 namespace hapbench {
 
 /// Returns the override that sets the stiffness to the trial's K times `gain`.
@@ -17,7 +17,7 @@ std::string with_gain(const TuneTrial& trial, double gain);
 /// - the stability limit of K in the scene itself, found by field_limit(), is beyond G K;
 /// - it is settled in runs twice as long, unless a script would move on after the scene's end.
 ///
-/// If a verification fails, refutes the choice in `trials` (Trials::refute). Writes TunedLaw::verified and edge.
+/// If a verification fails, refutes the choice in `trials` (Trials::refute). Writes TunedLaw::verified and limits.
 bool is_verified(Trials& trials, const TuneTrial& choice, TunedLaw& law);
 
 }  // namespace hapbench

@@ -31,11 +31,11 @@ constexpr std::string_view kComparedMetrics =
 /// Returns the error of the mean: the largest of three numbers: the error of the single values, the standard error
 /// over seeds, and a tenth of the difference up to which two means share a rank. Without a spread, returns the error
 /// of the single values.
-std::optional<double> error_of_mean(const RankingEntry& standing) {
-  if (!standing.spread) return standing.tolerance;
-  const double of_seeds = *standing.spread / std::sqrt(static_cast<double>(standing.common_seeds));
+std::optional<double> error_of_mean(const RankingEntry& entry) {
+  if (!entry.spread) return entry.tolerance;
+  const double of_seeds = *entry.spread / std::sqrt(static_cast<double>(entry.common_seeds));
   return std::max(
-      {standing.tolerance, std::optional(of_seeds), std::optional(0.1 * kRankResolution * std::abs(*standing.mean))});
+      {entry.tolerance, std::optional(of_seeds), std::optional(0.1 * kRankResolution * std::abs(*entry.mean))});
 }
 
 }  // namespace

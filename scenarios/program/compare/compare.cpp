@@ -110,24 +110,24 @@ void write_runs(const Comparison& comparison, const std::vector<Result>& reports
 }
 
 /// Reports the ranking in ranking.csv, in the printed text and in the JSON.
-void report_ranking(const Ranking& league, const Layout& layout, Report& report) {
-  report.write("ranking.csv", ranking_columns(false), league.standings);
-  report_ranking_text(league, layout, report);
-  report.json()["standings"] = ranking_columns(false).json_list(league.standings);
-  Json& laws = report.json()["laws"] = law_ranking_columns().json_list(league.laws);
-  for (std::size_t i = 0; i < laws.size(); ++i) laws[i]["fails"] = league.laws[i].fails;
+void report_ranking(const Ranking& ranking, const Layout& layout, Report& report) {
+  report.write("ranking.csv", ranking_columns(false), ranking.entries);
+  report_ranking_text(ranking, layout, report);
+  report.json()["ranking"] = ranking_columns(false).json_list(ranking.entries);
+  Json& laws = report.json()["laws"] = law_ranking_columns().json_list(ranking.laws);
+  for (std::size_t i = 0; i < laws.size(); ++i) laws[i]["fails"] = ranking.laws[i].fails;
 }
 
 /// Reports the table of the runs of one scene. `errors`: errors are reported, so that the sentence on vibration
 /// is omitted.
-void report_runs(const std::vector<Result>& reports, const Ranking& league, bool errors, const Layout& layout,
+void report_runs(const std::vector<Result>& reports, const Ranking& ranking, bool errors, const Layout& layout,
                  Report& report) {
-  report.say(reports.front().name + "\n\n");
+  report.add_text(reports.front().name + "\n\n");
   report.show(run_table(reports, false, layout));
   report_fidelity(reports, layout, report);
-  report.say(unranked_text(league, layout));
-  if (!errors) report.say(vibration_text(league, layout));
-  if (layout.in_full()) report.say(step_time_text(reports, layout));
+  report.add_text(unranked_text(ranking, layout));
+  if (!errors) report.add_text(vibration_text(ranking, layout));
+  if (layout.in_full()) report.add_text(step_time_text(reports, layout));
 }
 
 /// Throws InputError for options that have no meaning with --replay.
@@ -184,20 +184,20 @@ int compare(const CompareOptions& given, ProgramContext& context) {
     estimated_error = [&finer](std::size_t run, const std::string& metric) {
       return finer->known_error(run, metric).sum();
     };
-  const Ranking league =
+  const Ranking ranking =
       rank_comparison(comparison, reports, ranks ? options.metrics : printed_metrics(reports), estimated_error);
   write_runs(comparison, reports, context, report);
   report.json() = summaries_json(comparison, reports, ranks);
   if (ranks || options.errors) report.json() = {{"runs", std::move(report.json())}};
   if (ranks) {
-    report_ranking(league, layout, report);
+    report_ranking(ranking, layout, report);
   } else {
-    report_runs(reports, league, options.errors, layout, report);
+    report_runs(reports, ranking, options.errors, layout, report);
   }
-  for (std::size_t s = 0; finer && s < league.scenarios.size(); ++s)
-    report_errors(league, *finer, s, ranks || layout.in_full(), report, layout);
+  for (std::size_t s = 0; finer && s < ranking.scenarios.size(); ++s)
+    report_errors(ranking, *finer, s, ranks || layout.in_full(), report, layout);
   if (options.time) report_times(comparison, reports, jobs, layout, report);
-  report.say(fmt::format("\nresults in {}\n", out.string()));
+  report.add_text(fmt::format("\nresults in {}\n", out.string()));
   judge(comparison, reports, report);
   return report.finish();
 }
@@ -209,7 +209,7 @@ void add_compare(CommandLine& line) {
       "compare", "Run scenarios with several force laws and show the results side by side, or rank the laws.", compare,
       "the folders of finished runs are kept, but no table is written");
   command.add("scenarios <scenario>...", options.scenarios,
-              "scenario files, names of bundled scenarios, or of groups of scenarios");
+              "scenario files, names of bundled scenarios, or of groups of scenarios (hapbench describe scenarios)");
   add_algorithms(command, options.question.algorithms, "all");
   command.add("--seeds <n>", options.question.seeds,
               "repeat each run n times, with the scenario's seed, seed + 1, and so on (default: 1)",
@@ -242,6 +242,8 @@ void add_compare(CommandLine& line) {
       "of laws whose mean is better by more than 0.1 % and by more than the sum of the errors of both means (the "
       "errors that the definitions of the metrics allow); the spread over seeds does not count. Laws with a failed "
       "run rank last.\n\n"
+      "Other comparisons: compare varies only the law. \"hapbench sweep\" runs a scenario with several values of any "
+      "field, such as two stiffnesses.\n\n"
       "Failed run: it diverges, passes through the surface, loses contact or never touches, sticks, is not dragged "
       "along, or does not end as its scenario expects. A run that diverges, passes through the surface or leaves it "
       "for good ends early, at this moment, and its metrics are empty (hapbench describe \"early end\").\n\n"

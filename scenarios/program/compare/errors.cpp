@@ -15,15 +15,15 @@ namespace hapbench {
 namespace {
 
 /// Returns the mean of an algorithm's errors over the common seeds, which bounds the error of the mean value.
-KnownError mean_error(const Ranking& league, const FinerRuns& finer, std::size_t scenario, std::size_t algorithm,
+KnownError mean_error(const Ranking& ranking, const FinerRuns& finer, std::size_t scenario, std::size_t algorithm,
                       const std::string& metric) {
-  const std::vector<std::size_t>& seeds = league.common[scenario];
+  const std::vector<std::size_t>& seeds = ranking.common[scenario];
   KnownError mean{.step = 0.0, .spacing = 0.0};
   const auto add = [&seeds](std::optional<double>& sum, const std::optional<double>& error) {
     sum = sum && error ? std::optional(*sum + *error / static_cast<double>(seeds.size())) : std::nullopt;
   };
   for (const std::size_t seed : seeds) {
-    const KnownError known = finer.known_error(league.first_run(scenario, algorithm) + seed, metric);
+    const KnownError known = finer.known_error(ranking.first_run(scenario, algorithm) + seed, metric);
     add(mean.step, known.step);
     add(mean.spacing, known.spacing);
     mean.has_points = known.has_points;
@@ -34,16 +34,16 @@ KnownError mean_error(const Ranking& league, const FinerRuns& finer, std::size_t
 
 /// Returns the mean of a metric in a scenario for each algorithm, empty for algorithms with failures. Adds the
 /// means and the significant order of the algorithms to `json`.
-std::vector<NumberWithError> numbers_of(const Ranking& league, const FinerRuns& finer, std::size_t scenario,
+std::vector<NumberWithError> numbers_of(const Ranking& ranking, const FinerRuns& finer, std::size_t scenario,
                                         std::size_t metric, Json& json) {
   std::vector<NumberWithError> numbers;
   Json rows = Json::array(), order = Json::array();
-  for (std::size_t a = 0; a < league.algorithms.size(); ++a) {
-    const RankingEntry& standing = league.at(scenario, a, metric);
-    const KnownError known = mean_error(league, finer, scenario, a, standing.metric);
+  for (std::size_t a = 0; a < ranking.algorithms.size(); ++a) {
+    const RankingEntry& entry = ranking.at(scenario, a, metric);
+    const KnownError known = mean_error(ranking, finer, scenario, a, entry.metric);
     const auto& [value, error] =
-        numbers.emplace_back(NumberWithError{standing.failed > 0 ? std::nullopt : standing.mean, known.sum()});
-    rows.push_back({{"algorithm", standing.algorithm},
+        numbers.emplace_back(NumberWithError{entry.failed > 0 ? std::nullopt : entry.mean, known.sum()});
+    rows.push_back({{"algorithm", entry.algorithm},
                     {"value", cell_json(cell_of(value))},
                     {"error_estimate", cell_json(cell_of(error))},
                     {"error_of_step", cell_json(cell_of(known.step))},
@@ -51,7 +51,7 @@ std::vector<NumberWithError> numbers_of(const Ranking& league, const FinerRuns& 
   }
   for (const auto& group : significant_order(numbers).groups) {
     Json& names = order.emplace_back(Json::array());
-    for (const std::size_t a : group) names.push_back(league.algorithms[a]);
+    for (const std::size_t a : group) names.push_back(ranking.algorithms[a]);
   }
   json["order"] = std::move(order);
   json["numbers"] = std::move(rows);
@@ -60,20 +60,20 @@ std::vector<NumberWithError> numbers_of(const Ranking& league, const FinerRuns& 
 
 }  // namespace
 
-void report_errors(const Ranking& league, const FinerRuns& finer, std::size_t scenario, bool all, Report& report,
+void report_errors(const Ranking& ranking, const FinerRuns& finer, std::size_t scenario, bool all, Report& report,
                    const Layout& layout) {
   Table table{{{"algorithm", false}}};
   bool has_order = false, has_ties = false, has_unknown = false;  // true if the signs <, ~ and ? are printed
-  for (const std::string& algorithm : league.algorithms) table.rows.push_back({algorithm});
+  for (const std::string& algorithm : ranking.algorithms) table.rows.push_back({algorithm});
   std::string sentences;
   // Evaluate each metric. The JSON has all metrics. Unless `all` is true, the printed table has only the
   // metrics of the table of runs.
-  for (std::size_t m = 0; m < league.metrics.size(); ++m) {
-    const std::string& metric = league.metrics[m];
+  for (std::size_t m = 0; m < ranking.metrics.size(); ++m) {
+    const std::string& metric = ranking.metrics[m];
     Json& json =
-        report.json()["errors"].emplace_back(Json{{"scenario", league.scenarios[scenario]}, {"metric", metric}});
-    const std::vector<NumberWithError> numbers = numbers_of(league, finer, scenario, m, json);
-    const std::string says = significant_order_text(numbers, league.algorithms);
+        report.json()["errors"].emplace_back(Json{{"scenario", ranking.scenarios[scenario]}, {"metric", metric}});
+    const std::vector<NumberWithError> numbers = numbers_of(ranking, finer, scenario, m, json);
+    const std::string says = significant_order_text(numbers, ranking.algorithms);
     json["says"] = says;
     const auto* heading = std::ranges::find(kRunHeadings, metric, &RunHeading::metric);
     const bool known = heading != std::end(kRunHeadings);
@@ -97,45 +97,44 @@ void report_errors(const Ranking& league, const FinerRuns& finer, std::size_t sc
   if (has_order) signs += "\n<: smaller by more than the sum of both errors";
   if (has_ties) signs += "\n~: the difference is within the sum of both errors";
   if (has_unknown) signs += "\n?: unknown, because a finer run has another outcome";
-  table.caption = fmt::format("error estimates: {}", league.scenarios[scenario]);
-  report.say(fmt::format("\n{}\n\n", table.caption));
+  table.caption = fmt::format("error estimates: {}", ranking.scenarios[scenario]);
+  report.add_text(fmt::format("\n{}\n\n", table.caption));
   report.show(std::move(table), layout.prose_width());
-  report.say(fmt::format("\n{}\n{}", sentences, layout.wrapped(signs, 0)));
+  report.add_text(fmt::format("\n{}\n{}", sentences, layout.wrapped(signs, 0)));
 }
 
-std::string vibration_text(const Ranking& league, const Layout& layout) {
+std::string vibration_text(const Ranking& ranking, const Layout& layout) {
   struct VibrationMetric {
     const char *of, *metric;
     double threshold;  ///< largest vibration that a hand cannot feel [unit of the metric]
   };
   constexpr VibrationMetric kVibrations[] = {{"force", "force_rms_above_30Hz_N", 1e-4},
                                              {"tool", kToolVibrationPower, 1e-10}};
-  if (league.algorithms.size() < 2) return "";
+  if (ranking.algorithms.size() < 2) return "";
   std::string says;
   // Algorithms with a failed run have no vibration to compare.
   std::vector<std::string> failing;
-  for (std::size_t a = 0; a < league.algorithms.size(); ++a)
-    if (league.failures(0, a) > 0) failing.push_back(league.algorithms[a]);
-  if (failing.size() == league.algorithms.size())
+  for (std::size_t a = 0; a < ranking.algorithms.size(); ++a)
+    if (ranking.failures(0, a) > 0) failing.push_back(ranking.algorithms[a]);
+  if (failing.size() == ranking.algorithms.size())
     return "\n" + layout.wrapped("every run failed: there is no vibration to compare", 0);
   // Compare the vibration of the force. If a law without failures has no value of this metric, compare the vibration of
   // the tool.
   for (const auto& [of, metric, threshold] : kVibrations) {
     const auto metric_index =
-        static_cast<std::size_t>(std::ranges::find(league.metrics, metric) - league.metrics.begin());
+        static_cast<std::size_t>(std::ranges::find(ranking.metrics, metric) - ranking.metrics.begin());
     std::vector<NumberWithError> numbers;
     std::size_t known = 0;
-    for (std::size_t a = 0; a < league.algorithms.size(); ++a) {
-      const RankingEntry& standing = league.at(0, a, metric_index);
-      numbers.push_back(
-          {standing.failed > 0 ? std::nullopt : standing.mean, standing.tolerance.value_or(0.0) + threshold});
+    for (std::size_t a = 0; a < ranking.algorithms.size(); ++a) {
+      const RankingEntry& entry = ranking.at(0, a, metric_index);
+      numbers.push_back({entry.failed > 0 ? std::nullopt : entry.mean, entry.tolerance.value_or(0.0) + threshold});
       known += numbers.back().value.has_value();
     }
-    says = fmt::format("vibration of the {} in these runs: {}", of, order_text(numbers, league.algorithms));
-    if (known + failing.size() == league.algorithms.size()) break;
+    says = fmt::format("vibration of the {} in these runs: {}", of, order_text(numbers, ranking.algorithms));
+    if (known + failing.size() == ranking.algorithms.size()) break;
   }
   if (!failing.empty()) says += fmt::format("; failed: {}", fmt::join(failing, ", "));
-  const bool has_order = failing.size() + 1 < league.algorithms.size();
+  const bool has_order = failing.size() + 1 < ranking.algorithms.size();
   return "\n" +
          layout.wrapped(
              says + (has_order ? "; --errors adds the errors of these numbers, from finer time steps and points" : ""),

@@ -28,12 +28,12 @@ bool precedes_in_table(const RankingEntry& a, const RankingEntry& b) {
 }
 
 /// Returns the rankings by scenario and metric, each with the best algorithm first.
-std::vector<RankingEntry> ranked(const Ranking& league) {
+std::vector<RankingEntry> ranked(const Ranking& ranking) {
   std::vector<RankingEntry> all;
-  for (std::size_t s = 0; s < league.scenarios.size(); ++s) {
-    for (std::size_t m = 0; m < league.metrics.size(); ++m) {
+  for (std::size_t s = 0; s < ranking.scenarios.size(); ++s) {
+    for (std::size_t m = 0; m < ranking.metrics.size(); ++m) {
       const auto first = static_cast<std::ptrdiff_t>(all.size());
-      for (std::size_t a = 0; a < league.algorithms.size(); ++a) all.push_back(league.at(s, a, m));
+      for (std::size_t a = 0; a < ranking.algorithms.size(); ++a) all.push_back(ranking.at(s, a, m));
       std::stable_sort(all.begin() + first, all.end(), precedes_in_table);
     }
   }
@@ -41,43 +41,42 @@ std::vector<RankingEntry> ranked(const Ranking& league) {
 }
 
 /// Returns the number of pairs of scenario and metric in which a law has a rank.
-std::size_t ranking_count(const Ranking& league) {
+std::size_t ranking_count(const Ranking& ranking) {
   std::set<std::pair<std::string, std::string>> rankings;
-  for (const RankingEntry& standing : league.standings)
-    if (standing.rank) rankings.emplace(standing.scenario, standing.metric);
+  for (const RankingEntry& entry : ranking.entries)
+    if (entry.rank) rankings.emplace(entry.scenario, entry.metric);
   return rankings.size();
 }
 
 /// Returns the number of rankings in which a law is first.
-std::size_t first_ranks(const Ranking& league, const std::string& algorithm) {
-  return static_cast<std::size_t>(std::ranges::count_if(league.standings, [&](const RankingEntry& standing) {
-    return standing.algorithm == algorithm && standing.rank == 1;
-  }));
+std::size_t first_ranks(const Ranking& ranking, const std::string& algorithm) {
+  return static_cast<std::size_t>(std::ranges::count_if(
+      ranking.entries, [&](const RankingEntry& entry) { return entry.algorithm == algorithm && entry.rank == 1; }));
 }
 
-bool is_ranked(const Ranking& league) {
-  return league.laws.front().mean_rank.has_value();
+bool is_ranked(const Ranking& ranking) {
+  return ranking.laws.front().mean_rank.has_value();
 }
 
 /// Returns why no algorithm has a rank.
-const char* no_ranks_reason(const Ranking& league) {
-  if (std::ranges::count(league.failed, false) == 0) return "every run failed";
-  if (league.algorithms.size() == 1) return "there is only one law";
+const char* no_ranks_reason(const Ranking& ranking) {
+  if (std::ranges::count(ranking.failed, false) == 0) return "every run failed";
+  if (ranking.algorithms.size() == 1) return "there is only one law";
   const auto has_direction = [](Better better) { return better != Better::none; };
-  if (std::ranges::none_of(league.better, has_direction)) return "none of these metrics has a better direction";
-  const auto has_mean = [](const RankingEntry& standing) { return standing.mean.has_value(); };
-  if (std::ranges::none_of(league.standings, has_mean)) return "no successful run has a value of these metrics";
+  if (std::ranges::none_of(ranking.better, has_direction)) return "none of these metrics has a better direction";
+  const auto has_mean = [](const RankingEntry& entry) { return entry.mean.has_value(); };
+  if (std::ranges::none_of(ranking.entries, has_mean)) return "no successful run has a value of these metrics";
   return "the differences are within the errors or 0.1 %";
 }
 
-std::string first_ranks_text(const Ranking& league) {
+std::string first_ranks_text(const Ranking& ranking) {
   constexpr std::size_t kMaxNamed = 5;
-  if (!is_ranked(league)) return std::string("nothing is ranked: ") + no_ranks_reason(league);
-  const std::size_t rankings = ranking_count(league);
+  if (!is_ranked(ranking)) return std::string("nothing is ranked: ") + no_ranks_reason(ranking);
+  const std::size_t rankings = ranking_count(ranking);
   std::vector<std::string> firsts;
   bool is_everywhere = true;  // true if a law alone is first in all rankings
-  for (const LawRankingEntry& law : league.laws) {
-    const std::size_t count = first_ranks(league, law.algorithm);
+  for (const LawRankingEntry& law : ranking.laws) {
+    const std::size_t count = first_ranks(ranking, law.algorithm);
     if (count > 0) firsts.push_back(fmt::format("{} in {}", law.algorithm, count));
     is_everywhere = is_everywhere && (count == 0 || count == rankings);
   }
@@ -85,16 +84,16 @@ std::string first_ranks_text(const Ranking& league) {
   const std::string where =
       rankings == 1 ? "" : fmt::format(" in each of the {} rankings (one per scenario and metric)", rankings);
   if (firsts.size() == 1 && is_everywhere)
-    return fmt::format("only {} has rank 1{}", league.laws.front().algorithm, where);
+    return fmt::format("only {} has rank 1{}", ranking.laws.front().algorithm, where);
   return fmt::format("no algorithm has rank 1 alone{}; rank 1: {}", where,
                      fmt::join(first_few(firsts, kMaxNamed), ", "));
 }
 
 /// Returns true if all values of a scenario agree over the seeds within the resolution of the ranks.
-bool seeds_agree(const Ranking& league, std::size_t scenario) {
-  for (std::size_t a = 0; a < league.algorithms.size(); ++a) {
-    for (std::size_t m = 0; m < league.metrics.size(); ++m) {
-      const RankingEntry& entry = league.at(scenario, a, m);
+bool seeds_agree(const Ranking& ranking, std::size_t scenario) {
+  for (std::size_t a = 0; a < ranking.algorithms.size(); ++a) {
+    for (std::size_t m = 0; m < ranking.metrics.size(); ++m) {
+      const RankingEntry& entry = ranking.at(scenario, a, m);
       if (entry.mean && entry.spread && *entry.spread > kRankResolution * std::abs(*entry.mean)) return false;
     }
   }
@@ -102,16 +101,16 @@ bool seeds_agree(const Ranking& league, std::size_t scenario) {
 }
 
 /// Summarizes which algorithms are first, and whether the seeds give a spread.
-std::string verdict(const Ranking& league, const std::string& folder, const Layout& layout) {
-  std::string text = layout.wrapped(first_ranks_text(league), 0);
-  if (league.seeds < 2)
-    return is_ranked(league) ? text + "one seed: the spread is unknown; --seeds K estimates it\n" : text;
+std::string verdict(const Ranking& ranking, const std::string& folder, const Layout& layout) {
+  std::string text = layout.wrapped(first_ranks_text(ranking), 0);
+  if (ranking.seeds < 2)
+    return is_ranked(ranking) ? text + "one seed: the spread is unknown; --seeds K estimates it\n" : text;
   std::vector<std::string> alike, agreeing;
-  for (std::size_t s = 0; s < league.scenarios.size(); ++s) {
-    if (!league.depends_on_seed[s])
-      alike.push_back(league.scenarios[s]);
-    else if (seeds_agree(league, s))
-      agreeing.push_back(league.scenarios[s]);
+  for (std::size_t s = 0; s < ranking.scenarios.size(); ++s) {
+    if (!ranking.depends_on_seed[s])
+      alike.push_back(ranking.scenarios[s]);
+    else if (seeds_agree(ranking, s))
+      agreeing.push_back(ranking.scenarios[s]);
   }
   if (!agreeing.empty())
     text += layout.wrapped(
@@ -119,7 +118,7 @@ std::string verdict(const Ranking& league, const std::string& folder, const Layo
                     "about the error of the numbers, and --errors estimates it",
                     fmt::join(agreeing, ", ")),
         0);
-  if (alike.empty() && !is_ranked(league)) return text;
+  if (alike.empty() && !is_ranked(ranking)) return text;
   if (alike.empty())
     return text + layout.wrapped(fmt::format("\"hapbench report {}\" compares the algorithms in pairs, seed by seed",
                                              shell_file(folder)),
@@ -135,9 +134,9 @@ std::string verdict(const Ranking& league, const std::string& folder, const Layo
 
 }  // namespace
 
-std::string unranked_text(const Ranking& league, const Layout& layout) {
-  const bool has_unranked = std::ranges::count(league.algorithms, kSharesReference) > 0 &&
-                            std::ranges::count(league.is_rigid_reference, true) > 0;
+std::string unranked_text(const Ranking& ranking, const Layout& layout) {
+  const bool has_unranked = std::ranges::count(ranking.algorithms, kSharesReference) > 0 &&
+                            std::ranges::count(ranking.is_rigid_reference, true) > 0;
   if (!has_unranked) return "";
   return layout.wrapped(
       fmt::format(
@@ -146,27 +145,28 @@ std::string unranked_text(const Ranking& league, const Layout& layout) {
       0);
 }
 
-void report_ranking_text(const Ranking& league, const Layout& layout, Report& report) {
-  if (report.prints_tables()) return report.show(law_metric_table(league));
+void report_ranking_text(const Ranking& ranking, const Layout& layout, Report& report) {
+  if (report.prints_tables()) return report.show(law_metric_table(ranking));
   constexpr std::size_t kMaxPrinted = 60;
-  if (league.standings.size() <= kMaxPrinted || layout.in_full()) {
-    report.show(ranking_columns(league.seeds > 1).table(ranked(league), "ranks", layout.in_full()));
+  if (ranking.entries.size() <= kMaxPrinted || layout.in_full()) {
+    report.show(ranking_columns(ranking.seeds > 1).table(ranked(ranking), "ranks", layout.in_full()));
   } else {
-    report.say(fmt::format("{} ranks are in ranking.csv; --wide prints them\n", league.standings.size()));
+    report.add_text(fmt::format("{} ranks are in ranking.csv; --wide prints them\n", ranking.entries.size()));
   }
-  report.say("\n");
-  report.show(law_ranking_columns().table(league.laws, "mean ranks", layout.in_full()));
-  report.say("\n");
-  if (is_ranked(league))
-    report.say(layout.wrapped(
+  report.add_text("\n");
+  report.show(law_ranking_columns().table(ranking.laws, "mean ranks", layout.in_full()));
+  report.add_text("\n");
+  if (is_ranked(ranking))
+    report.add_text(layout.wrapped(
         fmt::format("rank: 1 is best; algorithms share a rank if their means differ by at most 0.1 % or by at most the "
                     "sum of their errors{}; no rank (-): the error is not smaller than the number (<=) or unknown, or "
                     "all ranks would be equal{}",
-                    league.estimated_error ? ", which are estimated below" : "",
-                    league.seeds > 1 ? "; the spread over the seeds does not count" : ""),
+                    ranking.estimated_error ? ", which are estimated below" : "",
+                    ranking.seeds > 1 ? "; the spread over the seeds does not count" : ""),
         0));
-  report.say(unranked_text(league, layout));
-  report.say(verdict(league, report.folder().string(), layout));
+  if (ranking.seeds > 1) report.add_text("spread: standard deviation over the seeds\n");
+  report.add_text(unranked_text(ranking, layout));
+  report.add_text(verdict(ranking, report.folder().string(), layout));
 }
 
 }  // namespace hapbench

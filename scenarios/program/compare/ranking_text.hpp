@@ -10,8 +10,8 @@ namespace hapbench {
 
 /// Reports the ranking in each scenario by each metric, the table of the algorithms over all scenarios and
 /// metrics, and sentences that summarize them. With --table, law_metric_table() replaces the two tables.
-void report_ranking_text(const Ranking& league, const Layout& layout, Report& report);
+void report_ranking_text(const Ranking& ranking, const Layout& layout, Report& report);
 /// Returns a note on the algorithm whose fidelity is not ranked (Ranking::shares_reference); empty if there is none.
-std::string unranked_text(const Ranking& league, const Layout& layout);
+std::string unranked_text(const Ranking& ranking, const Layout& layout);
 
 }  // namespace hapbench

@@ -76,9 +76,9 @@ void report_times(const Comparison& comparison, const std::vector<Result>& repor
   }
   const Columns<LawTime> columns = time_columns(scenes > 1);
   report.write(kTimesFile, columns, rows);
-  report.say("\n");
+  report.add_text("\n");
   report.show(columns.table(rows, "processor time of the laws", layout.in_full()));
-  report.say(
+  report.add_text(
       layout.wrapped("processor time in runs without observers and files, one run at a time: smallest of five "
                      "repetitions; equal ranks mean that the difference is within the spreads",
                      0));

@@ -55,7 +55,7 @@ TEST_F(ComparisonOf, SeveralScenesNumbersRunsSceneByScene) {
   EXPECT_EQ(planned(one).folder(1), "summation");
 }
 
-TEST_F(ComparisonOf, JitteredScenesStartFromOnePlaceForEachSeed) {
+TEST_F(ComparisonOf, JitteredScenesStartFromOnePositionForEachSeed) {
   ComparisonQuestion question = two_scenes();
   question.jitter = 1e-4;
   const Comparison comparison = planned(question);
@@ -93,7 +93,7 @@ TEST_F(ComparisonOf, JitterShiftsAPrescribedPathAsAWhole) {
   }
 }
 
-TEST_F(ComparisonOf, WhatCannotBeComparedSaysWhichFile) {
+TEST_F(ComparisonOf, WhatCannotBeComparedNamesTheFile) {
   ComparisonQuestion question = two_scenes();
   Json script = test::minimal_scenario("plane");
   script["motion"] = {{"position", {{"type", "prescribed"}, {"x_m", 0.0}, {"y_m", 0.0}, {"z_m", 0.0}}}};

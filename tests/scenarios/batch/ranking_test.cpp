@@ -15,42 +15,42 @@ using Values = std::vector<std::optional<double>>;
 /// diverged. The error of each number is `error`, unless `estimated` returns one.
 Ranking rank_comparison(const Values& values, Better better = Better::less, std::size_t seeds = 1, double error = 0.0,
                         const EstimatedError& estimated = {}) {
-  Ranking league{{"scene"}, {}, {"force_max_N"}, {better}, seeds, {}, {}};
-  for (std::size_t a = 0; a < values.size() / seeds; ++a) league.algorithms.push_back("law_" + std::to_string(a));
+  Ranking ranking{{"scene"}, {}, {"force_max_N"}, {better}, seeds, {}, {}};
+  for (std::size_t a = 0; a < values.size() / seeds; ++a) ranking.algorithms.push_back("law_" + std::to_string(a));
   std::vector<Result> runs;
   for (const auto& value : values) {
-    league.failed.push_back(value && *value < 0.0);
+    ranking.failed.push_back(value && *value < 0.0);
     Result& run = runs.emplace_back();
-    run.end.outcome = league.failed.back() ? Outcome::diverges : Outcome::completes;
+    run.end.outcome = ranking.failed.back() ? Outcome::diverges : Outcome::completes;
     run.state_hash = runs.size();
     Section(run.metrics, "").metric("force_max_N", "N", "", value, better).within(0.0, error);
   }
-  league.runs = runs;
-  league.estimated_error = estimated;
-  league.rank();
-  league.runs = {};
-  return league;
+  ranking.runs = runs;
+  ranking.estimated_error = estimated;
+  ranking.rank();
+  ranking.runs = {};
+  return ranking;
 }
 
 /// The proxy renders by the constraints of rigid contact, which also define the reference. Its fidelity therefore has
 /// no rank and does not change the ranks of other laws.
 TEST(Ranking, DoesNotRankTheFidelityOfTheReferencesOwnConstraints) {
   for (const bool is_rigid : {true, false}) {
-    Ranking league{{"scene"},
-                   {"proxy", "mean", "summation"},
-                   {"fidelity.force_error_rms_N", "force_max_N"},
-                   {Better::less, Better::less},
-                   1,
-                   {},
-                   {false, false, false},
-                   {is_rigid}};
+    Ranking ranking{{"scene"},
+                    {"proxy", "mean", "summation"},
+                    {"fidelity.force_error_rms_N", "force_max_N"},
+                    {Better::less, Better::less},
+                    1,
+                    {},
+                    {false, false, false},
+                    {is_rigid}};
     std::vector<Result> runs(3);
     for (std::size_t a = 0; a < 3; ++a)
-      for (const std::string& name : league.metrics)
+      for (const std::string& name : ranking.metrics)
         Section(runs[a].metrics, "").metric(name, "N", "", static_cast<double>(a + 1), Better::less).within(0.0, 0.0);
-    league.runs = runs;
-    league.rank();
-    const auto rank = [&](std::size_t a, std::size_t m) { return league.at(0, a, m).rank.value_or(0); };
+    ranking.runs = runs;
+    ranking.rank();
+    const auto rank = [&](std::size_t a, std::size_t m) { return ranking.at(0, a, m).rank.value_or(0); };
     EXPECT_EQ(rank(0, 0), is_rigid ? 0u : 1u);
     EXPECT_EQ(rank(1, 0), is_rigid ? 1u : 2u);
     EXPECT_EQ(rank(0, 1), 1u) << "other metrics are ranked";
@@ -58,9 +58,9 @@ TEST(Ranking, DoesNotRankTheFidelityOfTheReferencesOwnConstraints) {
   }
 }
 
-std::vector<std::size_t> ranks(const Ranking& league) {
+std::vector<std::size_t> ranks(const Ranking& ranking) {
   std::vector<std::size_t> ranks;
-  for (const RankingEntry& standing : league.standings) ranks.push_back(standing.rank.value_or(0));
+  for (const RankingEntry& entry : ranking.entries) ranks.push_back(entry.rank.value_or(0));
   return ranks;
 }
 
@@ -100,14 +100,14 @@ TEST(Ranking, RanksByMeansThenThoseWithoutOneThenByFailedSeeds) {
   EXPECT_EQ(of_one_seed({-1.0, kNone}), (Ranks{0, 0})) << "nobody has a number that counts";
   // An algorithm that fails for one of three seeds ranks before an algorithm that fails for two, whatever their other
   // values are.
-  const Ranking league = rank_comparison({9.0, 9.0, -1.0, 1.0, -1.0, -1.0, 50.0, 60.0, 70.0}, Better::less, 3);
-  EXPECT_EQ(ranks(league), (Ranks{2, 3, 1}));
-  EXPECT_EQ(league.at(0, 0, 0).mean, 9.0) << "of those that did not fail";
-  EXPECT_EQ(league.at(0, 1, 0).outcome, "completes 1; diverges 2");
+  const Ranking ranking = rank_comparison({9.0, 9.0, -1.0, 1.0, -1.0, -1.0, 50.0, 60.0, 70.0}, Better::less, 3);
+  EXPECT_EQ(ranks(ranking), (Ranks{2, 3, 1}));
+  EXPECT_EQ(ranking.at(0, 0, 0).mean, 9.0) << "of those that did not fail";
+  EXPECT_EQ(ranking.at(0, 1, 0).outcome, "completes 1; diverges 2");
   // No seed is common to both laws: the law that never failed is ranked by all seeds.
-  const Ranking apart = rank_comparison({-1.0, 2.0, 3.0, -1.0, 4.0, 6.0}, Better::less, 2);
-  EXPECT_EQ(apart.at(0, 2, 0).common_seeds, 2u);
-  EXPECT_EQ(apart.at(0, 2, 0).mean, 5.0);
+  const Ranking without_common = rank_comparison({-1.0, 2.0, 3.0, -1.0, 4.0, 6.0}, Better::less, 2);
+  EXPECT_EQ(without_common.at(0, 2, 0).common_seeds, 2u);
+  EXPECT_EQ(without_common.at(0, 2, 0).mean, 5.0);
 }
 
 /// The page of tests/scripts/ranking_test.py has the same ranks.

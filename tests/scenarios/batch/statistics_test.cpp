@@ -12,7 +12,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// Table A.3 of appendix D prints 0.004 ± 0.004 for a success rate. It also prints t = -21.5 for the comparison with a
 /// rate of 1 for all subjects, which shows that a digit of the rate is missing.
-TEST(PairedT, TellsThatAPrintedSuccessRateLacksADigit) {
+TEST(PairedT, ShowsThatAPrintedSuccessRateLacksADigit) {
   const std::vector<double> rates = {4.0 / 15.0, 0, 0, 0, 0, 0}, all(6, 1.0);
   EXPECT_NEAR(mean_of(rates), 0.0444, 5e-5);
   EXPECT_NEAR(standard_error(rates), 0.0444, 5e-5);

@@ -42,7 +42,7 @@ SweepPlan plan_of(const Json& scenario, const std::vector<std::string>& vary,
   return plan_sweep(grid(vary, {file, scenario}), {2, ""});
 }
 
-TEST(RunsToCheck, AreAllOfAFewAndTheEdgesOfMany) {
+TEST(RunsToCheck, AreAllOfAFewAndTheExtremesOfMany) {
   EXPECT_EQ(runs_to_check(grid({"a=1,2,3", "b=1,2"})), (Numbers{0, 1, 2, 3, 4, 5}));
   const Cases many = grid({"a=1:100:100", "b=1:100:100", "c=x,y,z"});
   const Numbers checked = runs_to_check(many);
@@ -50,7 +50,7 @@ TEST(RunsToCheck, AreAllOfAFewAndTheEdgesOfMany) {
   EXPECT_LE(checked.size(), 2u * (100 + 100 + 3));
   for (std::size_t axis = 0; axis < 3; ++axis) {
     std::set<std::size_t> seen;
-    for (const std::size_t run : checked) seen.insert(many.place(run, axis));
+    for (const std::size_t run : checked) seen.insert(many.value_index(run, axis));
     EXPECT_EQ(seen.size(), many.axes()[axis].size());
   }
   EXPECT_EQ(runs_to_check(grid({"a=1:1e6:1000000"})).size(), kMaxChecked);
@@ -200,11 +200,11 @@ class SweepPromises : public testing::Test {
  protected:
   /// Runs a sweep that is interrupted after some rows: killed, stopped by a signal, or killed within a line.
   void interrupt(const SweepPlan& plan, SweepOptions options) {
-    const std::uint64_t way = random_.below(3);
+    const std::uint64_t kind_of_end = random_.below(3);
     std::uint64_t rows = random_.below(plan.cases.size());
-    options.added = [&rows, way] {
+    options.added = [&rows, kind_of_end] {
       if (rows-- != 0) return;
-      if (way == 0) throw Killed();
+      if (kind_of_end == 0) throw Killed();
       stop_work(SIGTERM);
     };
     try {
@@ -214,7 +214,7 @@ class SweepPromises : public testing::Test {
     }
     stop_work(0);
     const fs::path file = options.table().string() + ".part";
-    if (way != 2 || !fs::exists(file)) return;
+    if (kind_of_end != 2 || !fs::exists(file)) return;
     std::string text = read_file(file);
     test::write_plainly(file, text.substr(0, text.size() - std::min<std::size_t>(random_.below(9), text.size())));
   }

@@ -29,7 +29,7 @@ TEST(InputError, AboutAnOptionHasItAsDataAndBeginsWithIt) {
   ASSERT_TRUE(error);
   EXPECT_STREQ(error->what(), "--between: got \"2:1\"");
   EXPECT_EQ(error->location().about_options, std::vector<std::string>{"--between"});
-  EXPECT_EQ(error->place(), "") << "a file in front of the error stands before the option";
+  EXPECT_EQ(error->location_text(), "") << "a file in front of the error stands before the option";
 }
 
 TEST(InputError, KeepsItsLocationAsDataAmongSeveral) {

@@ -33,7 +33,7 @@ TEST(ParseJson, IgnoresAByteOrderMark) {
   EXPECT_EQ(parse_json("\xef\xbb\xbf{\"a\": 1}"), parse_json("{\"a\": 1}"));
 }
 
-TEST(ParseJson, SaysWhereTheSyntaxIsWrongAndWhatWasExpected) {
+TEST(ParseJson, ReportsWhereTheSyntaxIsWrongAndWhatWasExpected) {
   EXPECT_EQ(
       refusal_of("{\n\"a\": 1,}"),
       "is not JSON: parse error at line 2, column 8: syntax error while parsing object key - unexpected '}'; expected "

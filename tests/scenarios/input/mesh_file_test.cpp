@@ -397,7 +397,7 @@ TEST_F(MeshFile, KeepsOneOfSeveralEqualFaces) {
 
 /// Both sides of a plane quadrilateral, which the readers divide along different diagonals. Its corners are rounded to
 /// six digits, so that the sides enclose a small volume. Both sides have their own vertices.
-TEST_F(MeshFile, NamesASheetWhoseSidesAreDividedInDifferentWays) {
+TEST_F(MeshFile, NamesASheetWhoseSidesAreDividedDifferently) {
   const std::string corners = "0.123456 0 0\n1.123456 0.3 0.7\n0.423456 1.3 0.912346\n-0.576544 1 0.212346\n";
   std::string vertices = "v " + corners;
   for (std::size_t at = 2; (at = vertices.find('\n', at)) + 1 < vertices.size(); at += 3) vertices.insert(at + 1, "v ");

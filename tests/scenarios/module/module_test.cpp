@@ -208,7 +208,7 @@ TEST_F(AModuleLaw, OfAForceAnswersThatForce) {
   EXPECT_TRUE(state.moment.isApprox((-kTip).cross(force.spring)));
 }
 
-TEST_F(AModuleLaw, SaysWhatIsNoForce) {
+TEST_F(AModuleLaw, ReportsWhatIsNoForce) {
   EXPECT_EQ(fault_of(kMean), "");
   EXPECT_EQ(fault_of(kForce), "");
   script = {.weight_scale = 1e306};  // with depths of 1 mm the force stays finite
@@ -312,7 +312,7 @@ std::string problem_of_file(const fs::path& file) {
   return what.substr(start.size());
 }
 
-TEST(LoadModule, SaysWhatIsWrongWithAFile) {
+TEST(LoadModule, ReportsWhatIsWrongWithAFile) {
   const std::size_t before = algorithms().size();
   EXPECT_EQ(problem_of_file("no/such.so"), "cannot be loaded as a module: No such file or directory");
   EXPECT_EQ(problem_of_file(fs::canonical(HAPBENCH_TEST_MODULES)), "is a directory, not a file");
@@ -330,7 +330,7 @@ TEST(LoadModule, SaysWhatIsWrongWithAFile) {
   EXPECT_EQ(algorithms().size(), before);
 }
 
-TEST(LoadModule, SaysWhatIsWrongWithALaw) {
+TEST(LoadModule, ReportsWhatIsWrongWithALaw) {
   const std::size_t before = algorithms().size();
   const test::TemporaryDirectory directory;
   const fs::path file = fs::canonical(directory.path()) / "not_loaded_yet.so";

@@ -123,7 +123,7 @@ TEST_F(TuneCommand, ItsScenarioGivesTheMetricsThatWerePrinted) {
 
 /// For one scene and device, the recommended stiffness, linear limit and simulated limit are the same in tune, limit
 /// and the device table.
-TEST_F(TuneCommand, SaysTheEdgesThatLimitSays) {
+TEST_F(TuneCommand, PrintsTheLimitsThatLimitPrints) {
   const Json law = tune({"--device", "touch", "--json"}).json()["algorithms"][0];
   ASSERT_TRUE(law["simulated_limit_N_per_m"].is_number() && law["linear_limit_N_per_m"].is_number()) << law.dump(1);
   const std::string tuned = file("out/tap_wall_tuned.json");
@@ -201,11 +201,11 @@ TEST_F(ConvergeCommand, WritesTheSameBytesHoweverManyJobs) {
 
 /// The error of an extreme includes the difference between assumptions of the first counted step.
 TEST_F(ConvergeCommand, NamesTheCoarsestLevelThatIsEnough) {
-  for (const auto& [to, said] :
+  for (const auto& [to, expected] :
        {std::pair{"0.03", "\nerror below 3 %: time.step_s = 0.00025 ("},
         {"1%", "\nerror below 1 %: not reached by any level; extrapolated: time.step_s = 3.8e-05"}}) {
     const std::string out = converge({"--metric", "force_max_N", "--to", to}).out;
-    EXPECT_NE(out.find(said), std::string::npos) << out;
+    EXPECT_NE(out.find(expected), std::string::npos) << out;
   }
 }
 
@@ -305,7 +305,7 @@ TEST(Ledger, IsNotWrittenOfSingleClaimsUnlessItIsSaidWhere) {
   test::write_plainly(directory / "out/claims.json", "mine");
   const test::ProgramRun run = hapbench({"reproduce", "--only", "b3", "--out", out});
   ASSERT_EQ(run.status, 0) << run.err;
-  EXPECT_NE(run.out.find("\nB3   two more points"), std::string::npos) << run.out;
+  EXPECT_NE(run.out.find("\nB3   claim: two more points"), std::string::npos) << run.out;
   EXPECT_NE(run.out.find("\n     why: "), std::string::npos) << run.out;
   EXPECT_EQ(test::read_file(directory / "out/claims.json"), "mine");
   EXPECT_FALSE(std::filesystem::exists(directory / "out/claims.md"));

@@ -112,7 +112,7 @@ class Stopped : public testing::Test {
   }
   void TearDown() override { ::close(writer_); }
   /// Returns standard error without progress lines. A progress line is due when the program ends itself.
-  std::string said() {
+  std::string message() {
     std::string text;
     for (const std::string& line : test::lines_of(reader_->err()))
       if (line.find("scenario.json ... ") == std::string::npos) text += line + "\n";
@@ -130,7 +130,7 @@ TEST_F(Stopped, WithinTwoSecondsWhereverItIs) {
   const auto sent = std::chrono::steady_clock::now();
   EXPECT_EQ(reader_->end_by(SIGTERM), -SIGTERM);
   EXPECT_LT(std::chrono::steady_clock::now() - sent, std::chrono::seconds(5)) << "the machine may be busy";
-  EXPECT_EQ(said(), kEndedAmidWork);
+  EXPECT_EQ(message(), kEndedAmidWork);
 }
 
 TEST_F(Stopped, NotAtOnceByASignalThatIsDeliveredTwice) {
@@ -140,14 +140,14 @@ TEST_F(Stopped, NotAtOnceByASignalThatIsDeliveredTwice) {
   reader_->send(SIGTERM);
   if (std::chrono::steady_clock::now() - first > std::chrono::milliseconds(100)) GTEST_SKIP() << "the machine is busy";
   EXPECT_EQ(reader_->wait(), -SIGTERM);
-  EXPECT_EQ(said(), kEndedAmidWork);
+  EXPECT_EQ(message(), kEndedAmidWork);
 }
 
 TEST_F(Stopped, AtOnceByASecondSignal) {
   reader_->send(SIGTERM);
   std::this_thread::sleep_for(std::chrono::milliseconds(500));
   EXPECT_EQ(reader_->end_by(SIGINT), -SIGINT);
-  EXPECT_EQ(said(), "");
+  EXPECT_EQ(message(), "");
 }
 
 /// Commands that Ctrl-C ends while they compute.

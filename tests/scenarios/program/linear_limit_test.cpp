@@ -41,7 +41,7 @@ class LinearLimitOfCommands : public testing::Test {
     return linear.is_number() ? std::optional(linear.get<double>()) : std::nullopt;
   }
   /// Returns K divided by the linear limit that the rule edge of `run` reports at K [N/m]; empty without the rule.
-  std::optional<double> edge_at(const std::string& scene, double K) const {
+  std::optional<double> limit_ratio_at(const std::string& scene, double K) const {
     const auto run = hapbench(
         {"run", scene, "--set", fmt::format("rendering.stiffness_N_per_m={}", K), "--out", folder_ / "run", "--json"});
     const Json results = run.json();
@@ -62,11 +62,11 @@ TEST_F(LinearLimitOfCommands, IsOneInRunAndLimit) {
         const auto linear = limit_of(scene);
         if (!linear) continue;
         for (const double factor : {1.2, 1.6}) {
-          const auto edge = edge_at(scene, factor * *linear);
-          if (!edge) continue;  // the run does not vibrate
+          const auto ratio = limit_ratio_at(scene, factor * *linear);
+          if (!ratio) continue;  // the run does not vibrate
           // Both compute the limit to 1e-7 from derivatives with an error of 1e-7. A nonlinear contact has another
           // slope at another equilibrium, and `edge` is printed with six digits.
-          EXPECT_NEAR(*edge, factor, 1e-4 * factor) << law << " " << device << " " << tip;
+          EXPECT_NEAR(*ratio, factor, 1e-4 * factor) << law << " " << device << " " << tip;
           ++compared;
         }
       }

@@ -118,11 +118,11 @@ TEST_F(RunCommand, ExpectsOfTheIdealTrajectoryWhatTheRecordedRowsAre) {
 }
 
 TEST_F(RunCommand, KeepsItsWarnings) {
-  const std::string said =
+  const std::string text =
       hapbench({"run", "mesh_molar", "--out", out(), "--set", "environment.scale=1e-6", "--set", "expect={}"}).err;
   const Json warnings = summary()["warnings"];
   ASSERT_EQ(warnings.size(), 1u);
-  EXPECT_NE(said.find(warnings[0].get<std::string>()), std::string::npos) << said;
+  EXPECT_NE(text.find(warnings[0].get<std::string>()), std::string::npos) << text;
 }
 
 /// `hapbench run --latency` and record.timing.
@@ -160,13 +160,13 @@ TEST_F(Latency, IsPartOfTheJsonAndOfNoOtherFile) {
 /// Processor time within which bad input must be rejected. The optimized program takes less than a tenth of it; code
 /// that is not optimized or is sanitized is up to thirty times slower.
 #if defined(__OPTIMIZE__) && !HAPBENCH_TEST_SANITIZED
-constexpr double kMostSeconds = 10.0;
+constexpr double kMaxSeconds = 10.0;
 #else
-constexpr double kMostSeconds = 100.0;
+constexpr double kMaxSeconds = 100.0;
 #endif
 /// Maximum address space of the program: the largest file read has 64 MiB, and 16 bytes for each value of it are a
 /// gigabyte.
-constexpr std::size_t kMostMemory = HAPBENCH_TEST_SANITIZED ? 0 : std::size_t{3} << 30;
+constexpr std::size_t kMaxMemory = HAPBENCH_TEST_SANITIZED ? 0 : std::size_t{3} << 30;
 
 struct BadInput {
   std::string name;
@@ -286,14 +286,14 @@ TEST_P(BadInputs, AreRefusedInOneLineAndNothingIsWritten) {
   const auto before = test::names_below(directory.path());
 
   test::ProgramOptions options;
-  options.memory_limit = kMostMemory;
+  options.memory_limit = kMaxMemory;
   const test::ProgramRun run =
       test::hapbench({"run", scenario.string(), "--out", (directory / "out/below").string()}, options);
 
   EXPECT_EQ(run.signal, 0);
   EXPECT_EQ(run.status, 2);
   EXPECT_EQ(run.out, "");
-  EXPECT_LT(run.cpu_seconds, kMostSeconds);
+  EXPECT_LT(run.cpu_seconds, kMaxSeconds);
   EXPECT_LT(run.err.size(), 10'000u);
   const std::vector<std::string> lines = test::lines_of(run.err);
   ASSERT_FALSE(lines.empty());

@@ -117,11 +117,11 @@ class Session {
     options.directory = directory_.path();
     const bool keys = words.at(0) == "keys";
     const test::ProgramRun run = test::hapbench({words.begin() + (keys ? 2 : 1), words.end()}, options);
-    return marked(without_places(keys ? keys_of(run.out) : run.out), "  ") + marked(without_places(run.err), "! ") +
+    return marked(without_paths(keys ? keys_of(run.out) : run.out), "  ") + marked(without_paths(run.err), "! ") +
            (run.status == 0 ? "" : "= " + std::to_string(run.status) + "\n");
   }
 
-  std::string without_places(std::string text) const {
+  std::string without_paths(std::string text) const {
     text = replaced(std::move(text), directory_.path().string(), "<here>");
     text = replaced(std::move(text), fs::canonical(test::hapbench_program()).string(), "<program>");
     text = replaced(std::move(text), fs::canonical(HAPBENCH_SCENARIOS).string(), "<scenarios>");

@@ -150,13 +150,13 @@ class NewOnASheet : public NewCommand {
     test::write_plainly(directory_ / "down.obj", test::obj_text(test::reversed(up)));
   }
   /// Returns the written scenario after checking that it runs and touches.
-  Json made(std::vector<std::string> words, std::string* said = nullptr) const {
+  Json made(std::vector<std::string> words, std::string* output = nullptr) const {
     words.insert(words.begin(), "new");
     words.insert(words.end(), {"--out", path("made.json")});
     fs::remove(path("made.json"));
     const ProgramRun written = hapbench(words);
     EXPECT_EQ(written.status, 0) << written.err;
-    if (said != nullptr) *said = written.out + written.err;
+    if (output != nullptr) *output = written.out + written.err;
     const ProgramRun run = hapbench({"run", path("made.json"), "--out", path("run"), "--json"});
     EXPECT_EQ(run.status, 0) << run.err;
     EXPECT_GT(run.json()[0]["metrics"]["contact_share"], 0.3);
@@ -167,10 +167,10 @@ class NewOnASheet : public NewCommand {
 TEST_F(NewOnASheet, TurnsNormalsThatPointAwayFromTheTool) {
   const std::string as_it_is = made({"bur", "--from", path("up.obj"), "--extent", "8mm"}).dump();
   EXPECT_EQ(as_it_is.find("flip_normals"), std::string::npos) << as_it_is;
-  std::string said;
-  const Json turned = made({"bur", "--from", path("down.obj"), "--extent", "8mm"}, &said);
+  std::string output;
+  const Json turned = made({"bur", "--from", path("down.obj"), "--extent", "8mm"}, &output);
   EXPECT_EQ(turned["environment"]["flip_normals"], true);
-  EXPECT_NE(said.find("its normals point away from side z and are inverted"), std::string::npos) << said;
+  EXPECT_NE(output.find("its normals point away from side z and are inverted"), std::string::npos) << output;
   // Without reversed normals, the tool starts behind the surface.
   const std::string behind = hapbench({"validate", path("made.json"), "--set", "environment.flip_normals=false"}).err;
   EXPECT_NE(behind.find("1.5 mm behind the surface"), std::string::npos) << behind;
@@ -179,12 +179,12 @@ TEST_F(NewOnASheet, TurnsNormalsThatPointAwayFromTheTool) {
   const auto at = turned["initial"]["position_m"].get<std::array<double, 3>>();
   Vec3 touching(at[0], at[1], at[2]);
   touching.z() -= 0.0013;
-  const std::string place = "initial.position_m=" + Json({touching.x(), touching.y(), touching.z()}).dump();
+  const std::string point = "initial.position_m=" + Json({touching.x(), touching.y(), touching.z()}).dump();
   for (const bool flip : {false, true}) {
-    const std::string said_of_it = hapbench({"validate", path("made.json"), "--set", place, "--set",
-                                             std::string("environment.flip_normals=") + (flip ? "true" : "false")})
-                                       .err;
-    EXPECT_EQ(said_of_it.find("behind the surface") != std::string::npos, !flip) << said_of_it;
+    const std::string warnings = hapbench({"validate", path("made.json"), "--set", point, "--set",
+                                           std::string("environment.flip_normals=") + (flip ? "true" : "false")})
+                                     .err;
+    EXPECT_EQ(warnings.find("behind the surface") != std::string::npos, !flip) << warnings;
   }
   // Commands that run the scene ask the same question about a tool that begins inside.
   for (const char* command : {"run", "compare"}) {
@@ -200,7 +200,7 @@ TEST_F(NewOnASheet, TurnsNormalsThatPointAwayFromTheTool) {
             std::string::npos);
 }
 
-TEST_F(NewOnASheet, StartsWhereItIsTold) {
+TEST_F(NewOnASheet, StartsAtTheGivenPoint) {
   const Json below =
       made({"mesh", "--from", path("down.obj"), "--extent", "8mm", "--side=-z", "--at", "0.002,-0.001,0.0006"});
   EXPECT_FALSE(below["environment"].contains("flip_normals"));

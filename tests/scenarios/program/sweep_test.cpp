@@ -264,16 +264,16 @@ TEST_F(CompareCommand, EqualsARunOfEachAlgorithmAlone) {
 }
 
 /// A round tip is pressed onto a plane from two heights.
-TEST_F(CompareCommand, SaysThatEveryRunFailed) {
+TEST_F(CompareCommand, ReportsThatEveryRunFailed) {
   // 100 mm above the tooth, no law touches the tooth.
   const Words words = {"compare",       "mesh_molar", "--algorithms", "mean,summation", "--set",
                        "time.steps=20", "--set",      "expect={}",    "--set",          "initial.position_m=[0,0,0.1]",
                        "--out",         at("out")};
   Words ranked = words;
   ranked.insert(ranked.end(), {"--by", "force_max_N"});
-  const std::string said = hapbench(ranked).out;
-  EXPECT_NE(said.find("nothing is ranked: every run failed"), std::string::npos) << said;
-  EXPECT_EQ(said.find("rank: 1 is best"), std::string::npos) << said;
+  const std::string message = hapbench(ranked).out;
+  EXPECT_NE(message.find("nothing is ranked: every run failed"), std::string::npos) << message;
+  EXPECT_EQ(message.find("rank: 1 is best"), std::string::npos) << message;
   EXPECT_NE(hapbench(words).out.find("every run failed: there is no vibration"), std::string::npos);
 }
 

@@ -47,9 +47,9 @@ std::vector<std::string> command_names() {
 }
 
 std::size_t widest(const std::string& text) {
-  std::size_t most = 0;
-  for (const std::string& line : lines_of(text)) most = std::max(most, line.size());
-  return most;
+  std::size_t longest = 0;
+  for (const std::string& line : lines_of(text)) longest = std::max(longest, line.size());
+  return longest;
 }
 
 ProgramRun in_terminal(const std::vector<std::string>& arguments, std::size_t columns) {
@@ -214,7 +214,7 @@ TEST(DescribeCommand, ExplainsTheWordsAndHeadingsThatResultsHave) {
   for (const std::string& word : words) EXPECT_EQ(hapbench_in_process({"describe", word}).status, 0) << word;
 }
 
-TEST(DescribeCommand, ShowsWhatNamesAPlaceOfTheThesis) {
+TEST(DescribeCommand, ShowsWhatNamesALocationInTheThesis) {
   const auto claims = [](const char* name) {
     return hapbench_in_process({"describe", name, "--json"}).json()["claims"];
   };
@@ -228,15 +228,15 @@ TEST(DescribeCommand, ShowsWhatNamesAPlaceOfTheThesis) {
 
 /// Every figure, table and equation that the thesis prints. Two tables have the same number.
 TEST(DescribeCommand, ExplainsEveryNumberThatTheThesisPrints) {
-  const Json places =
+  const Json locations =
       read_json(fs::path(HAPBENCH_SCENARIOS) / "../../results/reference/thesis_places.json").at("places");
-  EXPECT_GT(places.size(), 70u);
-  for (const Json& place : places) {
-    const std::string name = place.at("place").get<std::string>();
+  EXPECT_GT(locations.size(), 70u);
+  for (const Json& location : locations) {
+    const std::string name = location.at("place").get<std::string>();
     const ProgramRun run = hapbench_in_process({"describe", name, "--json"});
     ASSERT_EQ(run.status, 0) << name << run.err;
     const Json contents = run.json()["contents"];
-    EXPECT_NE(std::ranges::find(contents, place), contents.end()) << name;
+    EXPECT_NE(std::ranges::find(contents, location), contents.end()) << name;
   }
   EXPECT_EQ(hapbench_in_process({"describe", "Table A. 1", "--json"}).json()["contents"].size(), 2u);
   for (const char* name : {"Eq. (4)", "eq 4", "equation 4", "Fig. F4"})

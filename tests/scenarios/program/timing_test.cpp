@@ -51,7 +51,7 @@ TEST(Timing, IsAMetricOfARanking) {
   ASSERT_EQ(run.status, 0) << run.err;
   const json answer = json::parse(run.out);
   EXPECT_EQ(answer["times"].size(), 2u);
-  for (const json& standing : answer["standings"]) EXPECT_EQ(standing["metric"], "force_max_N");
+  for (const json& entry : answer["ranking"]) EXPECT_EQ(entry["metric"], "force_max_N");
 }
 
 TEST(Timing, OfSettingsHasErrorsThatDoNotDependOnTheRun) {

@@ -67,7 +67,7 @@ TEST(StrokeClock, IsNamedIfItEndsEarly) {
   EXPECT_TRUE(contains(text, "time.steps=101 ends the run with the stroke")) << text;
 }
 
-TEST(StrokeClock, IsNamedIfItStartsLate) {
+TEST(StrokeClock, IsNamedIfItStartsAfterTheRun) {
   const std::string text = stroke_warning(times(0.05, 0.002, 26));
   EXPECT_TRUE(contains(text, "covers 50 % of the steps; the tool stays at the first sample for 0.05 s")) << text;
   EXPECT_TRUE(contains(text, "subtract its first time")) << text;

@@ -174,9 +174,9 @@ TEST(ContactPlugin, IsRefusedWithoutPermission) {
   EXPECT_NE(std::string(error->what()).find("is not a shared library"), std::string::npos) << error->what();
 }
 
-TEST(ContactPlugin, SaysWhatItMisses) {
+TEST(ContactPlugin, NamesWhatItMisses) {
   const ModulePermission permission(true);
-  const auto said = [](const std::string& file, const std::string& config) -> std::string {
+  const auto message = [](const std::string& file, const std::string& config) -> std::string {
     try {
       assemble(bundled("plane_wiped_round", {"rendering.contact_source={\"type\":\"plugin\",\"file\":\"" + file +
                                              "\",\"config\":" + config + "}"}));
@@ -186,13 +186,13 @@ TEST(ContactPlugin, SaysWhatItMisses) {
     return "";
   };
   const std::string folder = HAPBENCH_TEST_MODULES "/";
-  EXPECT_EQ(said(folder + "sphere.so", "{\"radius\":1}"),
+  EXPECT_EQ(message(folder + "sphere.so", "{\"radius\":1}"),
             "sphere (sphere.so) fails in create: its config has no number radius_m");
-  EXPECT_NE(said(folder + "none.so", "{}").find("cannot be loaded as a module: No such file"), std::string::npos);
-  EXPECT_NE(
-      said(folder + "depth_weighted.so", "{}").find("holds a law, not a source of contacts; name it in --module and"),
-      std::string::npos);
-  EXPECT_NE(said(folder + "sphere.so", "3").find("config: got 3; allowed: an object"), std::string::npos);
+  EXPECT_NE(message(folder + "none.so", "{}").find("cannot be loaded as a module: No such file"), std::string::npos);
+  EXPECT_NE(message(folder + "depth_weighted.so", "{}")
+                .find("holds a law, not a source of contacts; name it in --module and"),
+            std::string::npos);
+  EXPECT_NE(message(folder + "sphere.so", "3").find("config: got 3; allowed: an object"), std::string::npos);
 }
 
 // Tests that skipped work does not change results: without skips, a run writes the same bytes, except the work

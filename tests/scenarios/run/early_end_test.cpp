@@ -41,13 +41,13 @@ void compare(const CheckedScenario& scene, std::map<Outcome, int>& early) {
 /// diverge.
 TEST(EarlyEnd, HasTheOutcomeOfTheFullRun) {
   // Runs that are cut off before their failure must also have the same outcome.
-  constexpr std::int64_t kMostSteps = 1500;
+  constexpr std::int64_t kMaxSteps = 1500;
   std::map<Outcome, int> early;
   for (const auto& [name, group, file] : bundled_scenarios()) {
     const LoadedScenario own = load_scenario(file);
     // Many trials: such a run never ends early.
     if (std::holds_alternative<TrackingHandFields>(own.scenario.hand)) continue;
-    const std::string steps = "time.steps=" + std::to_string(std::min(kMostSteps, own.scenario.time.steps));
+    const std::string steps = "time.steps=" + std::to_string(std::min(kMaxSteps, own.scenario.time.steps));
     const double K = own.scenario.rendering.stiffness;
     for (const double factor : {1.0, 0.01, 300.0}) {
       SCOPED_TRACE(name + ", K times " + std::to_string(factor));

@@ -84,7 +84,7 @@ TEST(Outcome, NoContactIsMeasuredToTheSurface) {
   EXPECT_TRUE(run.warnings[0].text.ends_with("; nothing pushes the tool: is hand missing?")) << run.warnings[0].text;
 }
 
-TEST(Outcome, NoContactTellsTheLikelyCause) {
+TEST(Outcome, NoContactNamesTheLikelyCause) {
   for (const auto& [patch, cause] : {
            std::pair{R"({"hand": {"z_N": 1}})", "; are initial.position_m and the hand's direction right?"},
            {R"({"hand": {"type": "impedance", "z_N": null, "stiffness_N_per_m": 300, "damping_N_s_per_m": 6,
@@ -202,7 +202,7 @@ TEST(Drag, IsJudgedAlongItsPathAlsoWhereThePathReturns) {
   }
 }
 
-TEST(Drag, WithoutAWayIsNotDraggedAndToldOfBeforeItRuns) {
+TEST(Drag, WithoutAPathIsNotDraggedAndIsWarnedOfBeforeItRuns) {
   Json json = scene();
   json["hand"]["direction"] = {0, 0, 1};
   json["tool"] = {{"diameter_m", 0.0005}};
@@ -376,7 +376,7 @@ TEST(Diagnosis, NamesNoOutcomeThatTheSceneExpects) {
 
 /// An undamped spring of 20 000 N/m and 0.1 kg oscillates at 71.2 Hz. The last quarter takes half a second, so an error
 /// of half an oscillation is 1 Hz.
-TEST(Diagnosis, TellsTheFrequencyOfABuzz) {
+TEST(Diagnosis, ReportsTheFrequencyOfABuzz) {
   const Result result = run({"single_spring", {"rendering.damping_ratio=0.0005", "time.steps=4000"}});
   const Diagnosed* buzz = finding(result, "buzz");
   ASSERT_NE(buzz, nullptr);

@@ -44,16 +44,16 @@ struct Table {
   const MemoryTable& table;
 };
 
-struct Place {
+struct Surface {
   const char* environment;
   double height;  ///< initial height of the tip [m]
 };
-constexpr Place kPlane = {R"({"type": "plane", "size_m": 0.004, "spacing_m": 0.0002})", 0.0001};
-constexpr Place kSlot = {
+constexpr Surface kPlane = {R"({"type": "plane", "size_m": 0.004, "spacing_m": 0.0002})", 0.0001};
+constexpr Surface kSlot = {
     R"({"type": "slot", "gap_m": 0.0011, "depth_m": 0.005, "length_m": 0.004, "spacing_m": 0.0002})", -0.0006};
 
 /// Returns a drill that leans and that a script pushes into its environment.
-Json pressed_drill(const Place& place, std::string_view algorithm) {
+Json pressed_drill(const Surface& surface, std::string_view algorithm) {
   Json json = Json::parse(R"({
     "time": {"step_s": 0.0005, "steps": 40},
     "motion": {
@@ -62,14 +62,14 @@ Json pressed_drill(const Place& place, std::string_view algorithm) {
       "position": {"type": "prescribed", "x_m": 0, "y_m": 0,
         "z_m": {"type": "ramp", "start": 0.0001, "rate_per_s": -0.02}}},
     "record": {"contacts": true, "torque": true, "energy": true}})");
-  json["environment"] = Json::parse(place.environment);
-  json["motion"]["position"]["z_m"]["start"] = place.height;
+  json["environment"] = Json::parse(surface.environment);
+  json["motion"]["position"]["z_m"]["start"] = surface.height;
   json["rendering"] = {{"algorithm", algorithm}};
   return json;
 }
 
 struct Contact {
-  Vec3 place, gradient;  ///< position relative to the tip centre [m]; gradient u_i
+  Vec3 position, gradient;  ///< position relative to the tip centre [m]; gradient u_i
   double depth, weight;
 };
 
@@ -93,8 +93,8 @@ constexpr std::string_view kWeighted[] = {
     "summation",         "mean",  "shaped_stiffness", "tandpasta", "exact_shaping", "continuous_normal_projection",
     "normal_projection", "proxy", "merged_shaping",   "mcneely"};
 
-void expect_torques(std::string_view algorithm, const Place& place) {
-  const LoadedScenario loaded = read_scenario(pressed_drill(place, algorithm), ".");
+void expect_torques(std::string_view algorithm, const Surface& surface) {
+  const LoadedScenario loaded = read_scenario(pressed_drill(surface, algorithm), ".");
   const RenderingConfig& rendering = loaded.scenario.rendering;
   RunTables tables;
   const Result report = run_scenario(checked(loaded), std::nullopt, false, &tables);
@@ -120,7 +120,7 @@ void expect_torques(std::string_view algorithm, const Place& place) {
       const Vec3 f = unweighted.value_or(-rendering.stiffness * c.weight * c.depth * c.gradient);
       is_known |= unweighted.has_value();
       force += f;
-      torque += c.place.cross(f);
+      torque += c.position.cross(f);
       magnitude += f.norm() + rendering.stiffness * c.depth + spring.norm();
     }
     // A hundred sums; for least_squares, the rounding of a residual is multiplied by 1 / eps = 100.
@@ -239,13 +239,13 @@ TEST(ScenarioTool, WithoutATypeIsTheCylinderOfThatType) {
 /// The tool's frame has its origin at the tip, whichever face of the cube has the tip; in this frame the box lies
 /// behind the tip centre.
 TEST(ScenarioTool, OfAMeshHasItsTipWhereItsFieldsSay) {
-  for (const auto& [place, axis] : {std::pair{"[0.0005, 0, 0]", "[2, 0, 0]"},
-                                    {"[0, -0.0005, 0]", "[0, -1, 0]"},
-                                    {"[0, 0, 0.0005]", "[0, 0, 1]"},
-                                    {"[0, 0, -0.0005]", "[0, 0, -1]"}}) {
+  for (const auto& [surface, axis] : {std::pair{"[0.0005, 0, 0]", "[2, 0, 0]"},
+                                      {"[0, -0.0005, 0]", "[0, -1, 0]"},
+                                      {"[0, 0, 0.0005]", "[0, 0, 1]"},
+                                      {"[0, 0, -0.0005]", "[0, 0, -1]"}}) {
     const auto tool = tool_of(fmt::format(
         R"({{"type": "mesh", "file": "cube.obj", "scale": 0.0001, "tip_m": {}, "tip_axis": {}, "grid_m": 0.00005}})",
-        place, axis));
+        surface, axis));
     Vec3 low = Vec3::Zero(), high = Vec3::Zero();
     for (const Vec3& vertex : dynamic_cast<const MeshTool&>(*tool).grid().vertices()) {
       low = low.cwiseMin(vertex);

@@ -267,7 +267,7 @@ TEST(DeviceLoop, OfTheAdmittanceDeviceIsTheSimulationsLinearMap) {
   }
 }
 
-TEST(DeviceLoop, SaysWhatIsNotLinear) {
+TEST(DeviceLoop, NamesWhatIsNotLinear) {
   const Scenario linear = wall_on_handle(0.0, 1000.0);
   EXPECT_EQ(device_loop(linear, 1.0).no_theory, "");
   Scenario scenario = linear;
@@ -286,8 +286,8 @@ TEST(ContactLoops, HaveThatOfAToolHeldByFriction) {
   for (const double factor : {0.99, 1.01}) {
     Scenario scenario = test::bundled("drag_molar_dry");
     scenario.hand = NoHandFields{};  // the loop would contain the spring of the hand
-    const double edge = 4.0 * scenario.rendering.mass / (scenario.time.step * scenario.time.step);
-    scenario.rendering.dry_friction = DryFrictionConfig{0.3, factor * edge, 0.0};
+    const double limit = 4.0 * scenario.rendering.mass / (scenario.time.step * scenario.time.step);
+    scenario.rendering.dry_friction = DryFrictionConfig{0.3, factor * limit, 0.0};
     LinearContact contact;
     contact.rendered.stiffness = Vec3(0.0, 0.0, scenario.rendering.stiffness).asDiagonal();
     contact.rendered.assumed.stiffness = contact.rendered.stiffness;

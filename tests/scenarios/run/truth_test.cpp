@@ -114,9 +114,9 @@ std::string led(const std::string& points) {
 }
 /// Returns a hand's spring whose target follows points over time.
 std::string spring(const std::string& x, const std::string& z) {
-  const auto way = [](const std::string& points) { return R"({"type":"waypoints","points":)" + points + "}"; };
-  return R"(hand={"type":"impedance","stiffness_N_per_m":300,"damping_N_s_per_m":6,"target":{"y_m":0,"x_m":)" + way(x) +
-         R"(,"z_m":)" + way(z) + "}}";
+  const auto waypoints = [](const std::string& points) { return R"({"type":"waypoints","points":)" + points + "}"; };
+  return R"(hand={"type":"impedance","stiffness_N_per_m":300,"damping_N_s_per_m":6,"target":{"y_m":0,"x_m":)" +
+         waypoints(x) + R"(,"z_m":)" + waypoints(z) + "}}";
 }
 
 const std::string kSubject =
@@ -311,12 +311,12 @@ void expect_true_depths(const Case& c, const MemoryTable& rows, std::optional<do
   double deepest = 0.0;
   for (std::size_t i = 0; i < rows.rows(); ++i) {
     const double* row = rows.numbers().data() + i * columns;
-    const double truth = c.depth({row[2], row[3], row[4]}), said = row[inside];
+    const double truth = c.depth({row[2], row[3], row[4]}), recorded = row[inside];
     if (truth == kUnknown) {
-      EXPECT_TRUE(std::isnan(said)) << "row " << i << ": " << said;
+      EXPECT_TRUE(std::isnan(recorded)) << "row " << i << ": " << recorded;
       continue;
     }
-    ASSERT_NEAR(said, truth, c.tolerance) << "row " << i << " at z = " << row[4];
+    ASSERT_NEAR(recorded, truth, c.tolerance) << "row " << i << " at z = " << row[4];
     deepest = std::max(deepest, truth);
   }
   if (c.depth({0.0, 0.0, 0.0}) != kUnknown) {
@@ -419,10 +419,10 @@ TEST(SettledDepth, OfEveryRowIsKnownToTheTolerance) {
   const LoadedScenario loaded = load_scenario(find_scenario("task3_spin_signed_distance"), changes);
   const InsideDepths few = depths_of(loaded, 0), all = depths_of(loaded, 1);
   const double half_width = make_tool(loaded.scenario, loaded.files)->half_width();
-  const double least = *std::min_element(all.settled.begin(), all.settled.end());
-  ASSERT_GT(least, 1.5 * InsideSearch::kTolerance * half_width);
+  const double smallest = *std::min_element(all.settled.begin(), all.settled.end());
+  ASSERT_GT(smallest, 1.5 * InsideSearch::kTolerance * half_width);
   EXPECT_GE(*std::min_element(few.settled.begin(), few.settled.end()),
-            least - InsideSearch::kTolerance * (least + half_width));
+            smallest - InsideSearch::kTolerance * (smallest + half_width));
   EXPECT_EQ(few.settled_within, InsideSearch::kTolerance * half_width);
 }
 

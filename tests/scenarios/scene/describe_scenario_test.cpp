@@ -57,7 +57,7 @@ TEST(Defaults, OfTheSceneAreThoseOfTheThesis) {
   }
 }
 
-TEST(Defaults, GiveWayToWhatIsGiven) {
+TEST(Defaults, AreReplacedByGivenValues) {
   expect_fields(effective(patched("hole_2d", R"({
                   "rendering": {"mass_kg": 1, "reduction": {"max_points": 5}, "friction": {"mu_s_N_s_per_m": 1}},
                   "tool": {"length_m": 1, "tip": "flat"}})")),

@@ -113,7 +113,7 @@ TEST_F(Extends, AcceptsItselfInNoJsonInMemory) {
   json["extends"] = "poke_plane";
   const auto error = test::input_error_of([&] { read_scenario(json, ""); });
   ASSERT_TRUE(error);
-  EXPECT_EQ(error->place(), "/extends");
+  EXPECT_EQ(error->location_text(), "/extends");
 }
 
 constexpr const char* kScenario = R"({

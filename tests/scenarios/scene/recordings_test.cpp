@@ -89,7 +89,7 @@ TEST(TraceFile, HasContactsByTime) {
   ASSERT_EQ(trace.times.size(), 2u);
   EXPECT_EQ(trace.times[1].time, 0.25);
   EXPECT_EQ(trace.times[1].first, 2u);
-  EXPECT_EQ(trace.most(), 2u);
+  EXPECT_EQ(trace.max_contacts(), 2u);
   ASSERT_EQ(trace.contacts.size(), 3u);
   EXPECT_EQ(trace.contacts[0].point, Vec3(1, 2, 3));
   EXPECT_EQ(trace.contacts[2].gradient, Vec3(0, 0.6, 0.8));

@@ -123,7 +123,7 @@ void expect_agreement(const test::Mutation& mutant, const std::optional<InputErr
   EXPECT_NE(message.find("allowed"), std::string::npos) << name << " " << mutant.change << ": " << message;
   // The pointer exists in the document, unless it refers to a field with its default value that contradicts given
   // fields.
-  EXPECT_TRUE(!wrong_shape || mutant.document.contains(Json::json_pointer(objection->place()))) << message;
+  EXPECT_TRUE(!wrong_shape || mutant.document.contains(Json::json_pointer(objection->location_text()))) << message;
 }
 
 TEST(ScenarioSchema, RejectsExactlyTheMutantsWhoseShapeTheReaderRefuses) {

@@ -183,7 +183,7 @@ Mutation mutated(const Json& document, Random& random) {
 
 std::string mutated_text(std::string text, Random& random) {
   // Bytes that have a meaning for the parsers find more errors than random bytes.
-  static const std::string kTelling = "{}[]\",:.-+eE0123456789 \n\r\t\\/\0\x80\xff\xc3\xed";
+  static const std::string kSyntax = "{}[]\",:.-+eE0123456789 \n\r\t\\/\0\x80\xff\xc3\xed";
   const std::uint64_t changes = 1 + random.below(4);
   for (std::uint64_t c = 0; c < changes; ++c) {
     const std::size_t i = text.empty() ? 0 : random.below(text.size());
@@ -196,7 +196,7 @@ std::string mutated_text(std::string text, Random& random) {
         text.insert(i, text.substr(i, length));
         break;
       case 2:
-        text.insert(i, 1, kTelling[random.below(kTelling.size())]);
+        text.insert(i, 1, kSyntax[random.below(kSyntax.size())]);
         break;
       case 3:
         text.insert(i, text.substr(random.below(text.size() + 1), length));
@@ -206,7 +206,7 @@ std::string mutated_text(std::string text, Random& random) {
         break;
       default:
         if (!text.empty())
-          text[i] = random.below(2) == 0 ? kTelling[random.below(kTelling.size())]
+          text[i] = random.below(2) == 0 ? kSyntax[random.below(kSyntax.size())]
                                          : static_cast<char>(text[i] ^ (1 << random.below(8)));
     }
   }

@@ -233,9 +233,10 @@ TEST_F(AssumptionsFile, NamesTheAssumptionThatLacksAPart) {
   without.erase("value");
   const auto error = test::input_error_of([&] { read(file({factor(), without})); });
   ASSERT_TRUE(error);
-  const std::string said = error->what();
-  EXPECT_NE(said.find("assumptions.json: /assumptions/1: "), std::string::npos) << said;
-  EXPECT_NE(said.find("'value' not found; allowed: what assumptions.schema.json says"), std::string::npos) << said;
+  const std::string message = error->what();
+  EXPECT_NE(message.find("assumptions.json: /assumptions/1: "), std::string::npos) << message;
+  EXPECT_NE(message.find("'value' not found; allowed: what assumptions.schema.json says"), std::string::npos)
+      << message;
 }
 
 }  // namespace

@@ -20,7 +20,7 @@ SetFinding found(Verdict verdict, const std::string& number = "1") {
 JudgedClaim judged(const std::string& id, const std::string& reach) {
   JudgedClaim claim;
   claim.claim.id = id;
-  claim.claim.place = "3.3";
+  claim.claim.location = "3.3";
   claim.finding.verdict = Verdict::replicated;
   claim.reach = reach;
   return claim;

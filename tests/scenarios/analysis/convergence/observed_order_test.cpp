@@ -40,8 +40,8 @@ Convergence judged(const std::vector<LevelResult>& levels, double formal_order, 
 
 /// Checks that there is no order, with a reason that contains these words, and that numbers that require an order are
 /// empty.
-void expect_no_order(const Convergence& c, const std::string& said) {
-  EXPECT_NE(c.reason.find(said), std::string::npos) << c.reason;
+void expect_no_order(const Convergence& c, const std::string& expected) {
+  EXPECT_NE(c.reason.find(expected), std::string::npos) << c.reason;
   EXPECT_FALSE(c.order || c.extrapolated || c.gci || c.asymptotic) << c.reason;
 }
 
@@ -81,7 +81,7 @@ TEST(ObservedOrder, IsNotStatedWhereTheDifferencesShowNone) {
       {{0.0, 0.0, 0.0}, "rounding"},
       {{1.1, 1.0 + 16 * ulp, 1.0 + 4 * ulp, 1.0 + 2 * ulp, 1.0 + ulp}, "rounding"},
       {{1.0, 2.0, 2.0, 3.0, 3.5}, "some of the last levels"}};
-  for (const auto& [results, said] : kCases) expect_no_order(judged(levels_with(results), 1.0), said);
+  for (const auto& [results, expected] : kCases) expect_no_order(judged(levels_with(results), 1.0), expected);
 }
 
 TEST(ObservedOrder, IsNotStatedWhereContactsSwitch) {

@@ -9,7 +9,7 @@
 namespace hapbench::significant_order_test {
 namespace {
 
-TEST(SignificantOrder, SaysWhatHoldsAndOfWhatNoErrorIsKnown) {
+TEST(SignificantOrder, ReportsTheOrderAndWhatHasNoKnownError) {
   const auto says = [](const std::vector<NumberWithError>& numbers) {
     const std::vector<std::string> names = {"a", "b", "c", "d"};
     return significant_order_text(numbers, names);

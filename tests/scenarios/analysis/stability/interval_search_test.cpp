@@ -14,32 +14,32 @@ using Stable = std::function<bool(double value)>;
 
 /// Returns the last stable value between 1e4 and 1e6 according to find_verified_interval. Returns 0 without a stability
 /// limit, and -1 if stable and unstable values alternate.
-double tried_edge(const Stable& stable) {
-  const IntervalSearchOptions way{.range = {1e4, 1e6, true}};
-  const auto holds = [&](double part) { return stable(way.value_at(part)); };
+double tried_limit(const Stable& stable) {
+  const IntervalSearchOptions options{.range = {1e4, 1e6, true}};
+  const auto holds = [&](double part) { return stable(options.value_at(part)); };
   std::map<double, bool> tried = evaluate_scan(kScanIntervals, holds);
-  const StableInterval edge = find_verified_interval(way, tried, holds, true, [](std::span<const double>) {});
-  return edge.stable ? way.value_at(*edge.stable) : edge.scattered ? -1.0 : 0.0;
+  const StableInterval found = find_verified_interval(options, tried, holds, true, [](std::span<const double>) {});
+  return found.stable ? options.value_at(*found.stable) : found.scattered ? -1.0 : 0.0;
 }
 
-TEST(TriedEdge, IsBelowAnIslandThatBisectionDoesNotMeet) {
+TEST(TriedLimit, IsBelowAnIslandThatBisectionDoesNotMeet) {
   const Stable islands = [](double K) { return K < 3e5 && !(K > 1.05e5 && K < 1.2e5); };
-  const IntervalSearchOptions way{.range = {1e4, 1e6, true}};
-  const auto holds = [&](double part) { return islands(way.value_at(part)); };
+  const IntervalSearchOptions options{.range = {1e4, 1e6, true}};
+  const auto holds = [&](double part) { return islands(options.value_at(part)); };
   std::map<double, bool> tried = evaluate_scan(kScanIntervals, holds);
-  EXPECT_NEAR(way.value_at(find_stable_interval(way, tried, holds, true).stable.value()), 3e5, 300.0);
-  EXPECT_NEAR(tried_edge(islands), 1.05e5, 105.0);
+  EXPECT_NEAR(options.value_at(find_stable_interval(options, tried, holds, true).stable.value()), 3e5, 300.0);
+  EXPECT_NEAR(tried_limit(islands), 1.05e5, 105.0);
 }
 
-TEST(TriedEdge, IsOfAStretchOfTwoPercent) {
+TEST(TriedLimit, IsOfAStretchOfTwoPercent) {
   // 56 234 and 237 137 are values of the scan.
-  EXPECT_EQ(tried_edge([](double K) { return K > 56000.0 && K < 56500.0; }), -1.0);
-  EXPECT_NEAR(tried_edge([](double K) { return (K > 56000.0 && K < 56500.0) || (K > 2e5 && K < 3e5); }), 3e5, 300.0);
-  EXPECT_EQ(tried_edge([](double K) { return std::fmod(std::sqrt(K) + 0.5, 1.0) < 0.5; }), -1.0) << "by chance";
-  EXPECT_EQ(tried_edge([](double) { return false; }), 0.0);
+  EXPECT_EQ(tried_limit([](double K) { return K > 56000.0 && K < 56500.0; }), -1.0);
+  EXPECT_NEAR(tried_limit([](double K) { return (K > 56000.0 && K < 56500.0) || (K > 2e5 && K < 3e5); }), 3e5, 300.0);
+  EXPECT_EQ(tried_limit([](double K) { return std::fmod(std::sqrt(K) + 0.5, 1.0) < 0.5; }), -1.0) << "by chance";
+  EXPECT_EQ(tried_limit([](double) { return false; }), 0.0);
 }
 
-TEST(TriedEdge, LeavesAShareThatMayFail) {
+TEST(TriedLimit, LeavesAShareThatMayFail) {
   EXPECT_NEAR(std::pow(1.0 - may_fail_share(48), 48.0), 0.05, 1e-12);
   EXPECT_NEAR(may_fail_share(48), 0.0605, 1e-4);
 }

@@ -14,7 +14,7 @@
 namespace hapbench::run_stability_test {
 namespace {
 
-/// A tool that keeps bouncing below 30 Hz is not at rest, however little it vibrates.
+/// A tool that keeps bouncing below 30 Hz is not at rest, even if its vibration above 30 Hz is allowed by the rule.
 TEST(StabilityOf, OfSlowBouncesThatGoOnIsVibrating) {
   const ScenarioText plane = read_scenario_text(find_scenario("poke_plane"));
   const StabilityRule any_vibration{.max_vibration = 1.0};

@@ -35,7 +35,7 @@ constexpr double kWithin = 0.03;
 
 /// A hand holds a handle whose loop is stable up to twice K with the worst of the typical hands. A known answer for a
 /// handle without a hand tests that tune finds the largest K over damping ratios.
-TEST(Tune, OfAHeldHandleIsTheEdgeOfTheWorstHand) {
+TEST(Tune, OfAHeldHandleIsTheLimitOfTheWorstHand) {
   constexpr double kMass = 0.1;  // mass of the scene, by which zeta is defined
   const Words device = {
       R"(device={"type":"impedance","handle_mass_kg":0.3,"viscous_N_s_per_m":0.5,"delay_samples":1.5})",
@@ -57,7 +57,7 @@ TEST(Tune, OfAHeldHandleIsTheEdgeOfTheWorstHand) {
 
 /// Returns the smallest limit of the loop of virtual mass, wall and servo, over the scene's own hand and the typical
 /// hands.
-double worst_edge_at_wall(const Scenario& scenario, double zeta, double mass) {
+double worst_limit_at_wall(const Scenario& scenario, double zeta, double mass) {
   AdmittanceLoop loop;
   loop.servo = std::get<AdmittanceDeviceConfig>(scenario.device).servo;
   loop.hand_damping = 6.0;
@@ -75,7 +75,7 @@ double worst_edge_at_wall(const Scenario& scenario, double zeta, double mass) {
 /// A tool with little damping bounces off a wall that only pushes, and the bounces do not decay within the run. From
 /// zeta = 0.5 on, the result is the limit of the worst hand at the best zeta and mass. The run takes four seconds, so
 /// that the landing, which decays slowly near the limit, is a small part of the judged steps.
-TEST(Tune, OfTheDeviceAtAWallIsTheEdgeOfTheWorstHand) {
+TEST(Tune, OfTheDeviceAtAWallIsTheLimitOfTheWorstHand) {
   TuneQuestion asked = question("device_at_wall", {"device.force_limit_N=null", "time.steps=8000"});
   asked.threads = 2;
   asked.damping_ratio = {0.5, 3.0};
@@ -87,11 +87,11 @@ TEST(Tune, OfTheDeviceAtAWallIsTheEdgeOfTheWorstHand) {
   double best = 0.0;
   for (double zeta = 0.5; zeta < 3.0; zeta *= 1.05)
     for (const double mass : {0.1, 0.14, 0.2, 0.28, 0.4})
-      best = std::max(best, worst_edge_at_wall(scenario, zeta, mass));
+      best = std::max(best, worst_limit_at_wall(scenario, zeta, mass));
   EXPECT_NEAR(2.0 * law.choice->stiffness / best, 1.0, kWithin);
 }
 
-TEST(Tune, KeepsLimitsAndSaysWhatBinds) {
+TEST(Tune, KeepsLimitsAndNamesTheBindingConstraint) {
   TuneQuestion asked = question("tap_wall", {});
   asked.threads = 2;
   asked.damping_ratio = {0.1, 0.3};
@@ -121,7 +121,7 @@ TEST(Tune, IsNotBoundByAHandThatIsTooSoftToPullTheToolOn) {
   EXPECT_GT(law.choice->stiffness, 36000.0);
 }
 
-TEST(Tune, SaysWhichLimitToRelaxAndByHowMuch) {
+TEST(Tune, NamesTheLimitToRelaxAndByHowMuch) {
   TuneQuestion asked = question("tap_wall", {});
   asked.threads = 2;
   asked.damping_ratio = {0.1, 0.3};
