@@ -132,7 +132,7 @@ void report_assumption_sets(const std::vector<Claim>& claims, const fs::path& fi
   Json& json = report.json() = {{"assumption_sets", Json::array()}};
   const Layout layout = context.layout();
   for (std::size_t i = 0; i < sets.size(); ++i) {
-    report.say((i == 0 ? "" : "\n") + set_text(i + 1, inputs[i], sets[i], assumptions, judged[i], layout));
+    report.add_text((i == 0 ? "" : "\n") + set_text(i + 1, inputs[i], sets[i], assumptions, judged[i], layout));
     Json differing = Json::object(), missed = Json::array(), moved = Json::array();
     for (std::size_t a = 0; a < assumptions.all().size(); ++a) {
       const Assumption& assumption = assumptions.all()[a];
@@ -210,8 +210,8 @@ void record_sensitivity(const std::vector<Claim>& claims, const std::vector<Clai
                     {"deciders", robustness.deciders}});
   }
   report.json() = {{"new_cases", cases.size()}, {"claims", std::move(json)}};
-  report.say(decided_columns().text(decided, context.layout()));
-  report.say(fmt::format("\n{} new cases; record in {}\n", cases.size(), file.string()));
+  report.add_text(decided_columns().text(decided, context.layout()));
+  report.add_text(fmt::format("\n{} new cases; record in {}\n", cases.size(), file.string()));
 }
 
 std::vector<DescribedTable> assumption_tables() {

@@ -42,8 +42,8 @@ constexpr const char *kOrders = "converge.csv", *kLevels = "converge_levels.csv"
                      *kTimes = "converge_levels_timing.csv";
 constexpr double kLargestRatio = 10.0;
 constexpr int kLevelsOfMetrics = 5, kLevelsOfSettings = 4;  ///< numbers of levels by default
-constexpr double kLargestErrorAskedFor = 0.01;              ///< [m]; beyond it, --to is a number in another unit
-constexpr double kErrorAskedFor = 1e-6;                     ///< default of --to with --over [m]
+constexpr double kMaxRequestedError = 0.01;                 ///< [m]; beyond it, --to is a number in another unit
+constexpr double kRequestedError = 1e-6;                    ///< default of --to with --over [m]
 
 struct ConvergeOptions : CommonOptions {
   std::string scenario;
@@ -202,7 +202,11 @@ std::string verdict_text(const ConvergeStudy& study) {
   if (!study.band) return fmt::format("no order: {}", study.reason);
   const auto [low, high] = *study.band;
   if (low == high) return fmt::format("no order: {}; the last levels give {}", study.reason, significant(low, 6));
-  return fmt::format("no order: {}; the last levels give {} ... {}", study.reason, number_text(low, high - low),
+  // The band of an extreme value is wider than its levels, because the extreme lies between two steps.
+  const bool has_spread =
+      std::ranges::none_of(study.levels, [low](const LevelRow& level) { return level.result && *level.result <= low; });
+  return fmt::format("no order: {}; the last levels{} give {} ... {}", study.reason,
+                     has_spread ? ", with the sampling error of this metric," : "", number_text(low, high - low),
                      number_text(high, high - low));
 }
 
@@ -268,13 +272,13 @@ LevelSweep levels_of(const ConvergeOptions& options, const ScenarioText& scenari
 
 /// Returns the error of --to for a work-precision study [m].
 double parse_position_error(const std::string& text) {
-  if (text.empty()) return kErrorAskedFor;
+  if (text.empty()) return kRequestedError;
   const auto number = finite_number(text);
-  if (!number || *number <= 0.0 || *number > kLargestErrorAskedFor)
+  if (!number || *number <= 0.0 || *number > kMaxRequestedError)
     fail_in_option("--to",
                    fmt::format("got \"{}\"; allowed with --over: an error of the tip's position in metres, such "
                                "as 1e-6, at most {}",
-                               text, kLargestErrorAskedFor));
+                               text, kMaxRequestedError));
   return *number;
 }
 
@@ -301,16 +305,16 @@ int study_settings(const ConvergeOptions& options, ProgramContext& context) {
     const Cases cases({question.scenario}, options.overrides, question.over);
     Report report(options, "converge", "converge_" + file.stem().string(), context);
     report_model_errors(cases, job_options(options, "converge", context), context.layout(), report);
-    report.say(fmt::format("\nresults in {}\n\"hapbench plot {}\" draws them\n", report.folder().string(),
-                           shell_file(report.folder())));
+    report.add_text(fmt::format("\nresults in {}\n\"hapbench plot {}\" draws them\n", report.folder().string(),
+                                shell_file(report.folder())));
     return report.finish();
   }
   Report report(options, "converge", "converge_" + file.stem().string(), context);
   const auto problems = work_precision(question, job_options(options, "converge", context));
   report.json() = Json::array();
   report_work_precision(problems, max_error, context.layout(), report);
-  report.say(fmt::format("results in {}\n\"hapbench plot {}\" draws them\n", report.folder().string(),
-                         shell_file(report.folder())));
+  report.add_text(fmt::format("results in {}\n\"hapbench plot {}\" draws them\n", report.folder().string(),
+                              shell_file(report.folder())));
   return report.finish();
 }
 
@@ -334,26 +338,26 @@ int converge(const ConvergeOptions& options, ProgramContext& context) {
   // Run all levels.
   std::vector<LevelRun> runs(plan.cases.size());
   for_each_job(runs.size(), jobs, [&](std::size_t i) { runs[i] = run_of(checked(plan.cases.load(i))); });
-  report.say(fmt::format("{}: {} refined from {} by a factor of {:g} per level, formal order {:g}\n\n",
-                         runs.front().result.name, levels.axis.path, level_text(levels, 0), levels.ratio,
-                         levels.formal_order));
+  report.add_text(fmt::format("{}: {} refined from {} by a factor of {:g} per level, formal order {:g}\n\n",
+                              runs.front().result.name, levels.axis.path, level_text(levels, 0), levels.ratio,
+                              levels.formal_order));
   std::vector<ConvergeStudy> studies;
   std::vector<LevelRow> rows;
   for (const std::string& metric : metrics) {
     const ConvergeStudy& study = studies.emplace_back(convergence_study(levels, runs, metric));
     rows.insert(rows.end(), study.levels.begin(), study.levels.end());
     report.show(level_columns(study).table(study.levels, fmt::format("convergence of {}", metric), layout.in_full()));
-    report.say("\n" + layout.wrapped(verdict_text(study), 0));
-    if (max_error) report.say(layout.wrapped(sufficient_level_text(study, *max_error), 0));
-    report.say("\n");
+    report.add_text("\n" + layout.wrapped(verdict_text(study), 0));
+    if (max_error) report.add_text(layout.wrapped(sufficient_level_text(study, *max_error), 0));
+    report.add_text("\n");
     report.json().push_back(study_json(study));
   }
   if (studies.size() == 1) report.json() = Json(report.json().front());
   report.write(kOrders, order_columns(), studies);
   report.write(kLevels, level_columns({}), rows);
   report.write(kTimes, time_columns(), studies.front().levels);
-  report.say(fmt::format("results in {}\n\"hapbench plot {}\" draws them\n", report.folder().string(),
-                         shell_file(report.folder())));
+  report.add_text(fmt::format("results in {}\n\"hapbench plot {}\" draws them\n", report.folder().string(),
+                              shell_file(report.folder())));
   return report.finish();
 }
 
@@ -402,7 +406,8 @@ void add_converge(CommandLine& line) {
       "order, the extrapolated value and the relative error of the finest level (the grid convergence index of "
       "Roache).\n\n"
       "No order: if the contacts differ between levels or the differences do not shrink regularly, the text names "
-      "the reason. Take the range of the finest levels as the answer, printed as \"the last levels give A ... B\".\n\n"
+      "the reason. Take the range of the finest levels as the answer, printed as \"the last levels ... give A ... "
+      "B\".\n\n"
       "Files: converge.csv (one row per metric: order, extrapolated value, range), converge_levels.csv (one row per "
       "metric and level: value, error_estimate), converge_levels_timing.csv (run times). They replace earlier "
       "files.\n\n"

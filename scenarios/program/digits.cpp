@@ -33,23 +33,23 @@ int deserved_digits(double value, const std::optional<double>& tolerance, int ma
 namespace {
 
 /// Returns a number rounded to the decimal place 10^last, without an exponent.
-std::string to_place(double value, int last) {
+std::string to_digit(double value, int last) {
   const double unit = math::pow(10.0, last);
   return last < 0 ? fmt::format("{:.{}f}", value, -last) : fmt::format("{:.0f}", std::round(value / unit) * unit);
 }
 
 /// Returns the decimal exponent of the leading digit.
-int leading_place(double value) {
+int leading_digit(double value) {
   return static_cast<int>(std::floor(math::log10(value)));
 }
 
 constexpr double kSmallest = 1e-4;  ///< smaller numbers have an exponent
-constexpr int kLastPlace = -12;     ///< last decimal place of a number without an exponent
+constexpr int kLastDigit = -12;     ///< last decimal place of a number without an exponent
 
 }  // namespace
 
 std::string bound_text(double value, double tolerance) {
-  const double bound = std::abs(value) + tolerance, unit = math::pow(10.0, leading_place(bound));
+  const double bound = std::abs(value) + tolerance, unit = math::pow(10.0, leading_digit(bound));
   // The factor keeps the rounding error of a bound such as 0.3 from giving 0.4.
   const double rounded_up = std::ceil(bound / unit * (1.0 - 1e-12)) * unit;
   return (value < 0.0 ? "0 +- " : "<= ") + significant(rounded_up, 1);
@@ -58,10 +58,10 @@ std::string bound_text(double value, double tolerance) {
 std::string deserved(double value, const std::optional<double>& tolerance, int digits) {
   if (is_only_bounded({value, tolerance})) return bound_text(value, *tolerance);
   if (!tolerance || !(*tolerance > 0.0) || !std::isfinite(value)) return significant(value, digits);
-  const int last = leading_place(*tolerance);
-  if (std::abs(value) < kSmallest || last < kLastPlace)
-    return significant(value, deserved_digits(value, tolerance, -kLastPlace));
-  return to_place(value, last);
+  const int last = leading_digit(*tolerance);
+  if (std::abs(value) < kSmallest || last < kLastDigit)
+    return significant(value, deserved_digits(value, tolerance, -kLastDigit));
+  return to_digit(value, last);
 }
 
 std::string with_spread(double mean, const std::optional<double>& spread, const std::optional<double>& tolerance,
@@ -69,11 +69,11 @@ std::string with_spread(double mean, const std::optional<double>& spread, const 
   if (!spread || is_only_bounded({mean, tolerance})) return deserved(mean, tolerance, digits);
   const double error = std::max(*spread, tolerance.value_or(0.0));
   if (!(error > 0.0)) return significant(mean, digits) + " +- " + significant(*spread, 2);
-  const int last = leading_place(error) - 1;
-  if (std::max(std::abs(mean), error) >= kSmallest && last >= kLastPlace)
-    return fmt::format("{} +- {}", to_place(mean, last), to_place(*spread, last));
-  const int places = std::max(0, leading_place(std::max(std::abs(mean), error)) - last);
-  return fmt::format("{:.{}e} +- {}", mean, places, significant(*spread, 2));
+  const int last = leading_digit(error) - 1;
+  if (std::max(std::abs(mean), error) >= kSmallest && last >= kLastDigit)
+    return fmt::format("{} +- {}", to_digit(mean, last), to_digit(*spread, last));
+  const int decimals = std::max(0, leading_digit(std::max(std::abs(mean), error)) - last);
+  return fmt::format("{:.{}e} +- {}", mean, decimals, significant(*spread, 2));
 }
 
 }  // namespace hapbench

@@ -36,7 +36,9 @@ struct ImportKind {
 };
 
 const ImportKind kImportKinds[] = {
-    {"stroke", "a recorded tool motion, with or without forces, becomes a stroke, which scenarios play back",
+    {"stroke",
+     "a recorded tool motion, with or without forces, becomes RECORDING_stroke.csv, for \"hapbench new stroke --from "
+     "RECORDING_stroke.csv\"",
      "hapbench_import"},
     {"device",
      "a log of time, commanded force and position of a handle becomes LOG_device.json, for --device of limit, tune "
@@ -78,13 +80,13 @@ int run_captured(CapturedOutput& host, const std::string& line) {
   // Sort the lines by their prefixes into errors, warnings and text.
   std::vector<InputError> faults;
   LineReader lines(text);
-  while (const auto said = lines.next()) {
-    if (said->starts_with(kError)) {
-      faults.emplace_back(std::string(said->substr(kError.size())));
-    } else if (said->starts_with(kWarning)) {
-      host.warnings.emplace_back(said->substr(kWarning.size()));
-    } else if (!said->starts_with("hapbench: ")) {  // skips notes on progress
-      host.text.append(*said).append("\n");
+  while (const auto message = lines.next()) {
+    if (message->starts_with(kError)) {
+      faults.emplace_back(std::string(message->substr(kError.size())));
+    } else if (message->starts_with(kWarning)) {
+      host.warnings.emplace_back(message->substr(kWarning.size()));
+    } else if (!message->starts_with("hapbench: ")) {  // skips notes on progress
+      host.text.append(*message).append("\n");
     }
   }
   if (status == kBadInput && !faults.empty()) throw InputError::all(faults);

@@ -121,10 +121,10 @@ int replay_loop(const std::string& given, const std::string& log_file, const Com
   const ReplayRow row = replay_row(scenario.scenario().rendering.algorithm, outputs, log);
   const std::string other = other_scenario_note(scenario, log);
   const Layout layout = context.layout();
-  report.say(summary_text(row, log, log_file, scenario.scenario().time.step) + "\n");
+  report.add_text(summary_text(row, log, log_file, scenario.scenario().time.step) + "\n");
   report.show(replay_columns().table(std::vector{row}, "forces along the log " + log_file, layout.in_full()));
-  if (!other.empty()) report.say("\n" + layout.wrapped(other, 0));
-  report.say(fmt::format("\nresults in {}\n", report.folder().string()));
+  if (!other.empty()) report.add_text("\n" + layout.wrapped(other, 0));
+  report.add_text(fmt::format("\nresults in {}\n", report.folder().string()));
   report.json() = replay_columns().json(row);
   report.json()["is_recorded_scenario"] = other.empty();
   if (other.empty() && row.compared.equal != row.compared.calls)
@@ -152,12 +152,12 @@ int compare_replays(const std::string& given, const std::string& log_file, const
     rows.push_back(replay_row(scenario.scenario().rendering.algorithm, rendered(scenario, log).first, log));
   report.write("replay_comparison.csv", replay_columns(), rows);
   const Layout layout = context.layout();
-  report.say(
+  report.add_text(
       layout.wrapped(
           fmt::format("forces of each law along the motion in {}, recorded with {}", log_file, log.scenario.name), 0) +
       "\n");
   report.show(replay_columns().table(rows, "forces of each law along the log " + log_file, layout.in_full()));
-  report.say(fmt::format("\nresults in {}\n", report.folder().string()));
+  report.add_text(fmt::format("\nresults in {}\n", report.folder().string()));
   report.json() = replay_columns().json_list(rows);
   return report.finish();
 }

@@ -35,7 +35,7 @@ class Report {
 
   const std::filesystem::path& folder() const { return folder_; }
   /// Appends printed text. It is not printed with --table.
-  void say(std::string_view text) { text_ += text; }
+  void add_text(std::string_view text) { text_ += text; }
   /// Appends a table to the printed text and to the tables of --table. `max_width`: largest width in the text
   /// [characters], if the output is wider.
   void show(Table table, std::size_t max_width = std::string::npos) {

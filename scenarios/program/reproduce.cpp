@@ -140,7 +140,7 @@ std::vector<JudgedClaim> judge(const std::vector<Claim>& claims, const Published
 std::string claims_text(const std::vector<JudgedClaim>& judged, const Layout& layout) {
   std::string text;
   for (const JudgedClaim& j : judged) {
-    text += "\n" + layout.entry(j.claim.id, j.claim.claim, 0, 5);
+    text += "\n" + layout.entry(j.claim.id, "claim: " + j.claim.claim, 0, 5);
     if (!j.finding.why.empty()) text += layout.entry("", "why: " + j.finding.why, 0, 5);
   }
   return text;
@@ -204,16 +204,20 @@ int reproduce(const ReproduceOptions& options, ProgramContext& context) {
   const std::vector<JudgedClaim> judged = judge(claims, published, assumptions, runs, options, context);
   report.json() = ledger_json(judged, published, SensitivityRecord(reference / "sensitivity.json"));
   const Json& json = report.json();
-  if (options.only.empty()) report.say(layout.wrapped(json.at("headline").get<std::string>()) + "\n\n");
+  if (options.only.empty()) report.add_text(layout.wrapped(json.at("headline").get<std::string>()) + "\n\n");
   report.show(claim_columns().table(json.at("claims").get<std::vector<Json>>(), "claims", layout.in_full()));
-  if (!options.only.empty()) report.say(claims_text(judged, layout));
+  report.add_text(layout.wrapped(
+      "robustness: the assumptions that change the verdict, each alone at another plausible value; \"hapbench describe "
+      "assumptions\" lists them",
+      0));
+  if (!options.only.empty()) report.add_text(claims_text(judged, layout));
   if (!ledger.empty()) {
     report.files().write(ledger, json_text(json));
     report.files().write(fs::path(ledger).replace_extension(".md"), ledger_markdown(json));
     report.files().write(ledger.parent_path() / "claim_pages.md", claim_pages(json));
-    report.say(fmt::format("\nledger in {}\n", ledger.string()));
+    report.add_text(fmt::format("\nledger in {}\n", ledger.string()));
   } else {
-    report.say("\nno ledger is written of single claims without --ledger FILE\n");
+    report.add_text("\nno ledger is written; for single claims, --ledger FILE writes one\n");
   }
   for (const ThesisRun& run : runs)
     for (const std::string& problem : run.unmet)
@@ -249,6 +253,7 @@ void add_reproduce(CommandLine& line) {
   command.footer(
       "Files: claims.json, claims.md and claim_pages.md (the ledger: claim, published and measured value, verdict) "
       "and the runs in OUT/thesis.\n\n"
+      "Figures: the script scripts/reproduce runs this command and also draws the figures of the thesis.\n\n"
       "Assumptions: the thesis leaves them open; \"hapbench describe assumptions\" lists them. --assumptions "
       "prints, for each set, the verdicts and numbers of the claims that the set can change, and the recorded "
       "verdicts that differ. --sensitivity continues an interrupted record; every ledger uses the record "

@@ -45,20 +45,20 @@ std::vector<fs::path> output_directories(const std::string& out, const std::vect
 }
 
 /// Returns the columns of the table of section D.4 of the thesis: means over subjects for each target.
-Columns<PlaceMetrics> target_columns() {
-  const auto mean = [](SubjectMean PlaceMetrics::*of, double factor = 1.0) {
-    return [=](const PlaceMetrics& p) {
+Columns<PositionMetrics> target_columns() {
+  const auto mean = [](SubjectMean PositionMetrics::*of, double factor = 1.0) {
+    return [=](const PositionMetrics& p) {
       const SubjectMean& m = p.*of;
       if (m.subjects == 0) return std::string("-");
       return with_spread(factor * m.mean, factor * m.standard_error, std::nullopt, 3);
     };
   };
-  return {
-      {"place", "1", "index of the target position, from 0", &PlaceMetrics::place, only_printed()},
-      {"success rate", "1", "targets.0.success_rate.mean", mean(&PlaceMetrics::success_rate), only_printed()},
-      {"completion [s]", "1", "targets.0.completion_time_s.mean", mean(&PlaceMetrics::completion_time), only_printed()},
-      {"model force [N]", "1", "targets.0.model_force_N.mean", mean(&PlaceMetrics::model_force), only_printed()},
-      {"speed [mm/s]", "1", "targets.0.speed_m_per_s.mean", mean(&PlaceMetrics::speed, 1e3), only_printed()}};
+  return {{"place", "1", "index of the target position, from 0", &PositionMetrics::position, only_printed()},
+          {"success rate", "1", "targets.0.success_rate.mean", mean(&PositionMetrics::success_rate), only_printed()},
+          {"completion [s]", "1", "targets.0.completion_time_s.mean", mean(&PositionMetrics::completion_time),
+           only_printed()},
+          {"model force [N]", "1", "targets.0.model_force_N.mean", mean(&PositionMetrics::model_force), only_printed()},
+          {"speed [mm/s]", "1", "targets.0.speed_m_per_s.mean", mean(&PositionMetrics::speed, 1e3), only_printed()}};
 }
 
 /// Returns the columns of the step times of --latency.
@@ -125,18 +125,18 @@ const char* expectation_source(const Scenario& scenario) {
 void report_results(const std::vector<Result>& results, bool latency, const Layout& layout, Report& report) {
   report.show(run_table(results, true, layout));
   report_fidelity(results, layout, report);
-  report.say(step_time_text(results, layout));
+  report.add_text(step_time_text(results, layout));
   for (const Result& result : results) {
     if (!result.sections.contains("targets")) continue;
     const std::string caption = fmt::format("{}: targets, mean +- standard error over subjects", result.name);
-    report.say(fmt::format("\n{}\n\n", caption));
-    report.show(target_columns().table(place_metrics(result.targets), caption, layout.in_full()));
+    report.add_text(fmt::format("\n{}\n\n", caption));
+    report.show(target_columns().table(position_metrics(result.targets), caption, layout.in_full()));
   }
   if (latency) {
-    report.say("\n");
+    report.add_text("\n");
     report.show(latency_columns().table(results, "wall time of the time steps", layout.in_full()));
   }
-  report.say(diagnosis_text(results, layout));
+  report.add_text(diagnosis_text(results, layout));
 }
 
 /// Throws InputError for options that have no meaning with --replay.
@@ -191,7 +191,7 @@ int run(const RunOptions& options, ProgramContext& context) {
     }
   }
   report_results(results, options.latency, layout, report);
-  report.say(fmt::format("\nresults in {}\n", where.string()));
+  report.add_text(fmt::format("\nresults in {}\n", where.string()));
   return report.finish();
 }
 
@@ -206,7 +206,8 @@ void add_run(CommandLine& line) {
       line.command("run", "Run scenarios, write their results, and diagnose problems such as vibration.", run,
                    "nothing of the unfinished run is written; finished runs are kept");
   command.add("scenarios <scenario>...", options.scenarios,
-              "scenario files, names of bundled scenarios, or of groups of scenarios", {.required = true});
+              "scenario files, names of bundled scenarios, or of groups of scenarios (hapbench describe scenarios)",
+              {.required = true});
   command.add(
       "--out <dir>", options.out,
       "folder of the results (default: results/out/NAME, NAME of the scenario's file); several scenarios write to "
@@ -225,7 +226,8 @@ void add_run(CommandLine& line) {
   command.footer(
       "Files: trajectory.csv (pose, velocity and forces at every step), summary.json (outcome, metrics, warnings, "
       "diagnosis), scenario.effective.json (all fields; repeats the run), columns.json (units and meanings). "
-      "\"hapbench plot FOLDER\" draws them.\n\n"
+      "\"hapbench plot FOLDER\" draws them. With --set record.contacts=true also contacts.csv (depth and force of "
+      "every contact point).\n\n"
       "Diagnosis: each rule that applies is printed with its value and what to try, and is also in summary.json. "
       "For several scenarios, only the names of the rules are printed.\n\n"
       "Expectations: without the field expect, the outcomes completes, leaves_hole and tool_horizontal are "

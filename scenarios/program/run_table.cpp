@@ -117,7 +117,7 @@ void report_fidelity(std::span<const Result> reports, const Layout& layout, Repo
   Columns<Result> columns = {{name == &Result::algorithm ? "algorithm" : "scenario", "", "", name, only_printed()}};
   add_metrics(columns, kFidelityHeadings);
   const char* caption = "rendered force compared with the reference force (measured, or given by reference_force)";
-  report.say(fmt::format("\n{}\n\n", caption));
+  report.add_text(fmt::format("\n{}\n\n", caption));
   report.show(columns.table(with_reference, caption, layout.in_full()));
 }
 

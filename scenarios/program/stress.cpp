@@ -38,8 +38,8 @@ int stress(const StressOptions& options, ProgramContext& context) {
   const Columns<StressCounts> columns = stress_columns();
   report.write("stress.csv", columns, all);
   report.show(columns.table(all, "forces in degenerate contact sets", layout.in_full()));
-  report.say("\n");
-  report.say(layout.wrapped(
+  report.add_text("\n");
+  report.add_text(layout.wrapped(
       "every force must be finite and within the bound that its algorithm guarantees: non-finite and out of bound "
       "must be 0. points dropped: contacts beyond the largest number of points of the reduction",
       0));

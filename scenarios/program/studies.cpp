@@ -62,7 +62,8 @@ std::string values_text(const Json& values) {
   return values.is_array() ? fmt::format("{}", fmt::join(names_of(values, text_of), ",")) : text_of(values);
 }
 
-/// Returns the arguments that give an option with this value. An object gives one option for each member.
+/// Returns the command-line arguments that set `option` to this value. An object repeats the option, once for each
+/// member.
 ProgramArguments option_arguments(const std::string& option, const Json& value) {
   if (value.is_boolean()) return ProgramArguments(value.get<bool>() ? 1 : 0, option);
   ProgramArguments arguments;

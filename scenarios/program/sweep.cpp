@@ -63,7 +63,7 @@ Columns<SweepRow> run_columns(const SweepTable& table, const std::string& metric
   std::vector<RunHeading> headings;
   for (RunHeading heading : kRunHeadings) {
     heading.wide = heading.wide && heading.metric != metric;
-    if (table.place(heading.metric) < table.columns.size()) headings.push_back(heading);
+    if (table.column_index(heading.metric) < table.columns.size()) headings.push_back(heading);
   }
   if (std::ranges::find(headings, metric, &RunHeading::metric) == headings.end())
     headings.push_back({metric.c_str(), metric.c_str(), 1.0, false});
@@ -88,11 +88,14 @@ Columns<OutcomeCount> count_columns() {
            [](const OutcomeCount& c) { return c.second.expected; }, only_printed()}};
 }
 
+/// Largest numbers of printed runs: of a sweep of one field, in the order of its values, and of other sweeps, by the
+/// metric.
+constexpr std::size_t kMaxShown = 100, kMaxListed = 20;
+
 /// Returns the table of the runs, followed by the counts of outcomes. With several fields, the runs are in
 /// ascending order of the metric, failures last.
 std::string summary_text(const SweepTable& table, const std::string& metric, const std::vector<RunCost>& costs,
                          const Layout& layout) {
-  constexpr std::size_t kMaxShown = 100, kMaxListed = 20;
   std::vector<SweepRow> rows = table.rows;
   const bool single = table.fields() == 1;
   const std::size_t shown = std::min(rows.size(), single ? kMaxShown : kMaxListed);
@@ -437,10 +440,12 @@ void add_sweep(CommandLine& line) {
   command.add(
       "--shard <i/n>", options.shard,
       "run only rows i, i+n, i+2n, ... (i from 0), for several machines; \"hapbench sweep FOLDER\" joins the shards");
-  command.footer(
+  command.footer(fmt::format(
       "Files: sweep.csv has one row per run: index, the varied fields, outcome, expected, steps, ended_at_s, all "
       "metrics, state_hash. A run that could not be computed has the outcome \"error\". Finished rows are kept in "
       "sweep.csv.part until the sweep ends.\n\n"
+      "Printed: of one varied field at most {} runs, in the order of its values; otherwise the {} runs with the "
+      "smallest --metric, failed runs last. sweep.csv has all runs.\n\n"
       "Fields: rendering.algorithm=all tries every law; scenario=v,w,... varies the scenario, without <scenario>.\n\n"
       "Earlier results: a finished sweep in the folder is replaced. If the folder has finished rows of an "
       "interrupted sweep, a command without --resume is refused with exit status 2, and the rows stay: use --resume "
@@ -450,7 +455,8 @@ void add_sweep(CommandLine& line) {
       "empty metrics. Failed runs alone do not change the exit status.\n\n"
       "Exit status: 0 success, 1 a run could not be computed, 2 bad input, 3 a run does not meet the field expect, "
       "130 stopped by Ctrl-C, after the current runs are finished. The field expect counts only if neither --set "
-      "nor --vary changes the run, or if one of them sets expect itself.");
+      "nor --vary changes the run, or if one of them sets expect itself.",
+      kMaxShown, kMaxListed));
 }
 
 }  // namespace hapbench

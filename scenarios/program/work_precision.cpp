@@ -136,15 +136,15 @@ void report_work_precision(const std::vector<WorkPrecisionProblem>& problems, do
   std::vector<Setting> all;
   for (const WorkPrecisionProblem& problem : problems) {
     all.insert(all.end(), problem.settings.begin(), problem.settings.end());
-    report.say(problem.name + "\n\n");
+    report.add_text(problem.name + "\n\n");
     report.show(error_columns(max_error).table(problem.settings, problem.name, layout.in_full()));
-    report.say("\n" + layout.wrapped(answer_text(problem, max_error), 0));
+    report.add_text("\n" + layout.wrapped(answer_text(problem, max_error), 0));
     const auto& first = problem.settings.front();
-    report.say(layout.wrapped(fmt::format("reference: {}; its error is about {} m and {} N", problem.reference,
-                                          significant(first.reference_error.position, 1),
-                                          significant(first.reference_error.force, 1)),
-                              0) +
-               "\n");
+    report.add_text(layout.wrapped(fmt::format("reference: {}; its error is about {} m and {} N", problem.reference,
+                                               significant(first.reference_error.position, 1),
+                                               significant(first.reference_error.force, 1)),
+                                   0) +
+                    "\n");
     Json json = {{"problem", problem.name}, {"predictable", problem.is_predictable}, {"reference", problem.reference}};
     json["settings"] = Json::array();
     for (const Setting& setting : problem.settings) {
@@ -271,14 +271,15 @@ void report_model_errors(const Cases& cases, const JobOptions& jobs, const Layou
   });
   const auto error = [](const ModelError& e) { return e.force.value_or(std::numeric_limits<double>::infinity()); };
   std::ranges::stable_sort(all, {}, error);
-  report.say("force compared with the reference force, and the time of a step\n\n" + model_columns().text(all, layout));
+  report.add_text("force compared with the reference force, and the time of a step\n\n" +
+                  model_columns().text(all, layout));
   if (std::ranges::count(all, true, &ModelError::shares_reference) > 0)
-    report.say(layout.wrapped(
+    report.add_text(layout.wrapped(
         fmt::format("{}: renders by the constraints of the reference force; its error says nothing", kSharesReference),
         0));
   for (const ModelError& row : all)
     if (!row.is_expected)
-      report.say(
+      report.add_text(
           layout.wrapped(fmt::format("{}: the run ends as {}, which the scene does not expect; no error is stated",
                                      row.problem, row.outcome),
                          0));

@@ -81,7 +81,7 @@ std::vector<Description> described_headings(const Index& index, const std::strin
 /// Returns the meanings of a name that the program itself does not define. Throws InputError if the name has no
 /// meaning.
 std::vector<Description> other_meanings(const Index& index, const std::string& name, const Layout& layout) {
-  if (const std::optional<Description> place = describe_thesis_location(name, layout)) return {*place};
+  if (const std::optional<Description> location = describe_thesis_location(name, layout)) return {*location};
   // Find fields with this name in any object: "torque" finds record.torque.
   std::vector<Description> found =
       described(index, [&](const IndexEntry& item) { return item.kind == "field" && item.name.ends_with("." + name); });
@@ -148,16 +148,16 @@ void add_describe(CommandLine& line) {
               "list only entries with this text in name, description or source: of the list <name>, or of all lists");
   add_table(command, options.output);
   command.footer(
-      "A list: algorithms, scenarios, studies, devices, metrics, columns, claims, assumptions, terms, or a group of "
-      "scenarios such as thesis.\n\n"
+      "A list: algorithms, scenarios, studies, devices, presets, metrics, columns, claims, assumptions, terms, or a "
+      "group of scenarios such as thesis.\n\n"
       "Scenario files: \"scenario\" (all fields), a field such as rendering.limits (unit, allowed values, default), "
       "or \"schema\".\n\n"
-      "Results: a file such as trajectory.csv (all its columns with units), a column, a metric, or the heading of a "
-      "table such as \">30Hz rms N\".\n\n"
+      "Results: a file such as trajectory.csv (all its columns with units), a column, a metric, an "
+      "outcome such as went_through, or the heading of a table such as \">30Hz rms N\".\n\n"
       "Concepts: \"stability\", \"diagnosis\", or a term of the glossary such as \"linear limit\".\n\n"
       "Models: the name of a force law, depth model, integrator, environment, hand, device, scenario or study.\n\n"
-      "Thesis: a claim such as C5, an assumption such as planar.first_tilt, a place such as \"Fig. A.2\", or "
-      "\"assumptions_schema\".\n\n"
+      "Thesis: a claim such as C5, an assumption such as planar.first_tilt, a figure, table or equation such as \"Fig. "
+      "A.2\", or \"assumptions_schema\".\n\n"
       "Unknown name: exit status 2, and a message with the nearest valid name, if a similar name exists.");
 }
 

@@ -82,10 +82,10 @@ Json contents_of(const ThesisLocation& location) {
   const std::filesystem::path file = installed_folder("results/reference") / "thesis_places.json";
   const std::string number = location.number.substr(0, location.number.find_last_not_of("abcd") + 1);
   Json contents = Json::array();
-  for (const Json& place : with_file(file, [&] { return read_json(file).at("places"); })) {
-    const std::string name = place.at("place").get<std::string>();
+  for (const Json& entry : with_file(file, [&] { return read_json(file).at("places"); })) {
+    const std::string name = entry.at("place").get<std::string>();
     if (location.kind.empty() ? name.ends_with(" " + number) : name == location.kind + " " + number)
-      contents.push_back(place);
+      contents.push_back(entry);
   }
   return contents;
 }
@@ -132,13 +132,13 @@ std::optional<Description> describe_thesis_location(const std::string& name, con
   }
   // Collect what the thesis has there.
   std::string contents;
-  const Json places = contents_of(*location);
-  for (const Json& place : places) {
-    const std::string see = place.value("see", "");
-    contents += layout.entry(place.at("place").get<std::string>(),
-                             place.at("what").get<std::string>() + (see.empty() ? "" : "; here: " + see), 4, 16);
+  const Json entries = contents_of(*location);
+  for (const Json& entry : entries) {
+    const std::string see = entry.value("see", "");
+    contents += layout.entry(entry.at("place").get<std::string>(),
+                             entry.at("what").get<std::string>() + (see.empty() ? "" : "; here: " + see), 4, 16);
   }
-  json["contents"] = places;
+  json["contents"] = entries;
   if (scenarios.empty() && claims.empty() && pictures.empty() && contents.empty())
     throw InputError(fmt::format("no bundled scenario and no claim refers to {} of the thesis", title));
   return Description{fmt::format("{} of the thesis\n\n{}{}  scenarios\n{}\n  claims\n{}", bold(stdout, title),

@@ -59,9 +59,9 @@ Cell class_beyond_limit(const LimitRow& row) {
 }
 
 std::string linear_limit_text(const LimitRow& row) {
-  const auto& edge = row.limit.linear_edge();
-  if (!edge) return "-";
-  return std::isinf(*edge) || *edge == 0.0 ? "none" : rounded_text(*edge, 6);
+  const auto& linear = row.limit.known_linear_limit();
+  if (!linear) return "-";
+  return std::isinf(*linear) || *linear == 0.0 ? "none" : rounded_text(*linear, 6);
 }
 
 /// Returns a function of a row that applies `get` to a part of the row.

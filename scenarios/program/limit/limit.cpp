@@ -73,7 +73,7 @@ int limit(const LimitOptions& options, ProgramContext& context) {
   find_limits(options, table.rows, context);
   add_ratios(table);
   report_limits(table, layout, report);
-  report.say(fmt::format("\nresults in {}\n", report.folder().string()));
+  report.add_text(fmt::format("\nresults in {}\n", report.folder().string()));
   return report.finish();
 }
 

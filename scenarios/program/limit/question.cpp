@@ -77,7 +77,7 @@ std::vector<ComparedDevice> device_variants(const LimitOptions& options) {
 InputError on_device(const ComparedDevice& device, const InputError& error) {
   std::vector<InputError> faults;
   for (const InputError& fault : error.faults()) {
-    if (fault.place().empty()) return error;  // the error is about an option, not a file
+    if (fault.location_text().empty()) return error;  // the error is about an option, not a file
     ErrorLocation location = fault.location();
     const bool is_of_type = location.pointer.starts_with("/device/") && !device.has_place_for_mass;
     location.option = fmt::format("--device {}", device.name);
@@ -154,7 +154,7 @@ LimitRow make_limit_row(const LimitOptions& options, const LimitTable& table, st
                         std::vector<std::string>& warnings) {
   LimitRow row;
   row.axis_values = table.cases.values(i);
-  if (!table.devices.empty()) row.device = &table.devices[table.cases.place(i, 0)];
+  if (!table.devices.empty()) row.device = &table.devices[table.cases.value_index(i, 0)];
   const ScenarioText& scene = table.cases.scene(i);
   try {
     std::vector<std::string> overrides = table.cases.overrides(i);

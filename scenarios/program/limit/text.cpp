@@ -42,8 +42,8 @@ std::string question_text(const LimitQuestion& question, const Scenario& scenari
   const IntervalSearchOptions& search = question.search;
   const std::string width = resolution_text(question);
   const auto end = [&search](double value) { return rounded_text(search.whole ? std::round(value) : value, 4); };
-  std::string text = fmt::format("{}: {} stable {} between {} and {}, resolution {}", scenario.name, question.side(),
-                                 question.path, end(search.range.from), end(search.range.to), width);
+  std::string text = fmt::format("{}: {} stable {}, searched between {} and {} with a resolution of {}", scenario.name,
+                                 question.side(), question.path, end(search.range.from), end(search.range.to), width);
   if (!over) text += fmt::format("; runs of {} steps", scenario.time.steps);
   if (!over && question.path != "time.step_s") text += fmt::format(" of {} s", significant(scenario.time.step));
   if (!over && question.path == kStiffnessPath) text += "; " + damping_text(scenario.rendering);
@@ -133,11 +133,16 @@ std::string notes_text(const LimitTable& table, const Layout& layout) {
        "quote: the value that a user may render, the linear or the simulated limit, whichever is reached first; -: "
        "there is none, because no value is stable or the values are stable to the end of the range. Column "
        "quoted_reason of limit.csv has the reason"},
+      {table.is_grid() && table.first().question.path == kStiffnessPath,
+       "a quote has no margin: \"hapbench tune\" recommends a stiffness with a margin"},
       {!table.is_grid(), fmt::format("stable {}: other end of the interval of stable values that contains the limit",
                                      table.first().question.search.smallest ? "to" : "from")},
+      {table.is_grid(),
+       "linear limit: limit by the eigenvalues of the loop of device, hand and contact, without dry friction and "
+       "encoder; -: this loop has no limit within the range"},
       {true,
-       "first unstable: class of motion (\"hapbench describe stability\") of the first unstable run beyond the limit; "
-       "if no value is stable, of the run at the low end of the range"},
+       "first unstable: class of motion (\"hapbench describe stability\") of the first unstable run beyond the "
+       "simulated limit; if no value is stable, of the run at the low end of the range"},
       {true,
        "non-monotonic: number of unstable runs on the stable side of the limit and of stable runs beyond it; "
        "limit_runs.csv has the class of each run"},
@@ -199,7 +204,7 @@ std::string limit_answer(const FieldLimit& found) {
   std::string text = quoted.value ? fmt::format("quote {}, the {}",
                                                 deserved(*quoted.value, found.quoted_tolerance(), 6), quoted.reason)
                                   : fmt::format("no limit to quote: {}", quoted.reason);
-  const auto& linear = found.linear_edge();
+  const auto& linear = found.known_linear_limit();
   // Name the limits that are not the quoted limit.
   if (linear && std::isfinite(*linear) && *linear > 0.0 && linear != quoted.value)
     text += fmt::format(". Linear limit {}", rounded_text(*linear, 6));
@@ -224,11 +229,11 @@ void report_limits_text(const LimitTable& table, const Columns<LimitRow>& column
     remarks += remarks_text(row, layout);
   }
   const LimitRow& first = table.first();
-  report.say(fmt::format("{}\n{}{}", text, answers, answers.empty() ? "" : "\n"));
+  report.add_text(fmt::format("{}\n{}{}", text, answers, answers.empty() ? "" : "\n"));
   const std::string caption = fmt::format("{} stable {}", first.question.side(), first.question.path);
   report.show(columns.table(table.rows, caption, layout.in_full()));
-  report.say("\n" + layout.wrapped(rule_text(first.question.rule, first.scenario), 0) + remarks +
-             notes_text(table, layout));
+  report.add_text("\n" + layout.wrapped(rule_text(first.question.rule, first.scenario), 0) + remarks +
+                  notes_text(table, layout));
 }
 
 }  // namespace hapbench

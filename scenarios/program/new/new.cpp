@@ -142,6 +142,8 @@ void add_new(CommandLine& line) {
   command.add("--out <file.json>", options.out,
               "scenario to write (default: KIND.json in the current folder; with --from my.stl: my_KIND.json)");
   command.footer(
+      "Tool: the tool of the kind, usually a drill of 1 mm; change its fields in the written file, such as "
+      "tool.diameter_m.\n\n"
       "Files: the scenario, and with --preview a picture next to it (mine.json: mine.svg) and the run in results/out. "
       "An existing scenario or picture is never overwritten: exit status 2.");
 }

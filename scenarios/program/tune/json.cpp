@@ -17,8 +17,8 @@ Json law_json(const TuneQuestion& question, const TunedLaw& law) {
   for (const Margin& margin : kMargins) json["margins"][margin.key] = cell_json(cell_of(law.margins.*margin.of));
   json["metrics"] = law.choice ? law.choice->metrics : MetricValues();
   json["error"] = law.error;
-  json["linear_limit_N_per_m"] = law.choice ? cell_json(cell_of(law.edge.linear_edge())) : Json();
-  json["simulated_limit_N_per_m"] = law.choice ? cell_json(cell_of(law.edge.end.value)) : Json();
+  json["linear_limit_N_per_m"] = law.choice ? cell_json(cell_of(law.limits.known_linear_limit())) : Json();
+  json["simulated_limit_N_per_m"] = law.choice ? cell_json(cell_of(law.limits.end.value)) : Json();
   return json;
 }
 

@@ -66,18 +66,20 @@ std::string recommendation_text(const Tuning& tuning, const Layout& layout) {
     line("runner-up", fmt::format("{}, {}: renders {} times the stiffness", next->algorithm, choice_text(*next->choice),
                                   significant(next->choice->rendered() / best->choice->rendered(), 2)));
   }
-  line("limit of K", fmt::format("without margin, and with the scenario's own hand: {}", limit_answer(best->edge)));
+  line("limit of K",
+       fmt::format("without margin, at this damping and with the scenario's own hand: {}", limit_answer(best->limits)));
   line("verified",
        fmt::format("by {} full-length runs between K and {:g} K, all settled: at most {:.0f} % of this interval may be "
                    "unstable (95 % confidence); {} runs in total",
                    best->verified, tuning.question.margin, 100.0 * may_fail_share(kVerificationSamples), tuning.runs));
-  line("diagnosis", tuning.findings.empty() ? "\"hapbench run\" reports no problem at K"
-                                            : "\"hapbench run\" reports at K, beside the requirements of tune:");
+  line("diagnosis", tuning.findings.empty()
+                        ? "\"hapbench run\" reports no problem at K"
+                        : "at K, \"hapbench run\" also reports what tune does not require to avoid:");
   for (const Diagnosed& found : tuning.findings)
-    line("", fmt::format("{} (rule {}). tune does not require this rule; try: {}", found.says, finding_text(found),
-                         found.attempt));
+    line("", fmt::format("{} (rule {}); try: {}, then tune again", found.says, finding_text(found), found.attempt));
   line("metrics at K",
-       "+-: change with half the time step, half the point spacing, and the depth evaluated at every step");
+       "+-: largest change with half the time step, half the point spacing, or the depth evaluated at every step; "
+       "0: no change");
   for (const auto& [name, value] : best->choice->metrics)
     line("", fmt::format("{} {}", name, with_error_text(value, value_in(best->error, name))));
   return text;
@@ -86,13 +88,13 @@ std::string recommendation_text(const Tuning& tuning, const Layout& layout) {
 }  // namespace
 
 void report_tuning(const Tuning& tuning, const Layout& layout, Report& report) {
-  report.say(layout.wrapped(fmt::format("{}: {}", tuning.scene, limits_text(tuning)), 0) + "\n" +
-             recommendation_text(tuning, layout) + "\n");
+  report.add_text(layout.wrapped(fmt::format("{}: {}", tuning.scene, limits_text(tuning)), 0) + "\n" +
+                  recommendation_text(tuning, layout) + "\n");
   report.show(tuned_columns(tuning.question).table(tuning.laws, tuning.scene, layout.in_full()));
-  report.say("\n");
+  report.add_text("\n");
   for (const TunedLaw& law : tuning.laws)
     if (!law.choice)
-      report.say(layout.wrapped(
+      report.add_text(layout.wrapped(
           fmt::format("{}: no stiffness keeps all constraints: {}; {}", law.algorithm, law.why, law.relax), 0));
 }
 

@@ -96,12 +96,12 @@ int tune(const TuneOptions& options, ProgramContext& context) {
     report.files().write(tuned, json_text(tuned_json));
   }
   report_tuning(tuning, layout, report);
-  if (const std::string delay = delay_note(loaded.scenario); !delay.empty()) report.say(layout.wrapped(delay, 0));
+  if (const std::string delay = delay_note(loaded.scenario); !delay.empty()) report.add_text(layout.wrapped(delay, 0));
   if (!tuned.empty()) {
-    report.say(fmt::format("\"hapbench run {}\" gives these metrics\n", shell_file(tuned)));
-    report.say(loop_lines(tuned_json, tuned, scale));
+    report.add_text(fmt::format("\"hapbench run {}\" gives these metrics\n", shell_file(tuned)));
+    report.add_text(loop_lines(tuned_json, tuned, scale));
   }
-  report.say(fmt::format("results in {}\n\"hapbench plot {}\" draws them\n", out.string(), shell_file(out)));
+  report.add_text(fmt::format("results in {}\n\"hapbench plot {}\" draws them\n", out.string(), shell_file(out)));
   report.json() = tuning_json(tuning, tuned);
   if (!tuned.empty() && scale != 1.0) report.json()["loop_overrides"] = overrides_for_scale(tuned_json, scale);
   return report.finish();
@@ -140,13 +140,17 @@ void add_tune(CommandLine& line) {
   add_common(command, options, "tune_NAME");
   add_table(command, options.output);
   command.footer(fmt::format(
+      "Time step: time.step_s of the scenario is the period of the loop; for a loop of 1 kHz, --set "
+      "time.step_s=0.001.\n\n"
       "Requirements: the scenario's run and the runs of each family are stable at K and at margin x K, the linear "
       "limit is at least margin x K, every --bound holds at K, and a force is rendered. Unless --allow-vibration is "
       "given, the scenario's run has low vibration: none of the rules {} applies (\"hapbench describe diagnosis\").\n\n"
       "Result: K, zeta and law, the binding constraint, the margins that are left, and the expected metrics with "
       "their errors. {} verification samples between K and margin x K must be stable; otherwise the search goes on "
       "with another K. If nothing is feasible, tune names the bound to relax, with a value that a second search "
-      "confirms, or the failing run and the option that can help.\n\n"
+      "confirms, or the failing run and the option that can help. Of several laws, the law with the smallest depth "
+      "of the tool in settled contact (inside_settled_m) is recommended; without such a depth, the law that renders "
+      "the largest stiffness.\n\n"
       "Files: NAME_tuned.json is the tuned scenario, for \"hapbench run\". tune.csv has one row per law, "
       "tune_trials.csv one row per trial. They replace the files of an earlier tune in the same folder; if nothing "
       "is feasible, an earlier NAME_tuned.json is removed.\n\n"
