@@ -42,7 +42,7 @@ Columns<MovedClaim> moved_columns() {
   return columns;
 }
 
-/// Robustness of the verdict on a claim.
+/// Verdict on a claim under the recorded assumptions, and the robustness of this verdict.
 struct DecidedClaim {
   std::string id, verdict, robustness;
 };
@@ -56,7 +56,7 @@ Columns<DecidedClaim> decided_columns() {
   return columns;
 }
 
-/// The recorded entry of each claim of the ledger, by id.
+/// Returns the entry of each claim in the recorded ledger, claims.json, by the claim's id.
 std::map<std::string, Json> ledger_on_record(const fs::path& reference) {
   std::map<std::string, Json> claims;
   const fs::path file = reference / "claims.json";
@@ -68,7 +68,7 @@ std::map<std::string, Json> ledger_on_record(const fs::path& reference) {
   return claims;
 }
 
-/// Returns true if an assumption that differs from the recorded value can change the claim.
+/// Returns true if an assumption whose value in the set differs from its recorded value can change the claim.
 bool reaches(const CalibratedSet& calibrated, const Assumptions& assumptions, const Claim& claim,
              const Json& recorded) {
   const auto scenarios = recorded.at("scenarios").get<std::vector<std::string>>();

@@ -10,24 +10,25 @@
 #include "scenarios/program/report.hpp"
 #include "scenarios/thesis/judging.hpp"
 
-/// The parts of `reproduce` that judge claims under other assumptions.
+/// Functions of the command `reproduce` that judge claims under other assumptions than the recorded assumptions.
 namespace hapbench {
 
-/// Judges the claims under the assumption sets of a file, and reports for each set the claims that its assumptions can
-/// change: verdict and number, the stored verdict and number, and the change. Uses `scratch` for results of runs and
-/// removes it.
+/// Judges the claims under each assumption set in a file. For each set, reports the claims that its assumptions can
+/// change: the verdict and the number under this set, the recorded verdict and number, and whether the verdict differs.
+/// Writes the results of runs into `scratch` and removes this folder at the end.
 void report_assumption_sets(const std::vector<Claim>& claims, const std::filesystem::path& file,
                             const std::filesystem::path& scratch, const CommonOptions& options, Report& report,
                             ProgramContext& context);
 
-/// Judges the claims with one assumption at a time at another value (sensitivity.hpp), and adds the verdicts to the
-/// record in a file after each case, so that an interrupted command continues. Reports the robustness of each verdict.
-/// Claims that are not among `claims` keep their entries; `all` is the list of all claims.
+/// Judges each claim of `claims` with one assumption at a time at another plausible value (sensitivity.hpp). Adds the
+/// verdicts to the record in a file after each case, so that a repeated command continues an interrupted command.
+/// Reports the robustness of each verdict. Of the other entries in the record, keeps only the entries of claims in
+/// `all`, the list of all claims.
 void record_sensitivity(const std::vector<Claim>& claims, const std::vector<Claim>& all,
                         const std::filesystem::path& file, const std::filesystem::path& scratch,
                         const CommonOptions& options, Report& report, ProgramContext& context);
 
-/// The printed tables, for `describe`.
+/// Returns the tables that these functions print, for `describe`.
 std::vector<DescribedTable> assumption_tables();
 
 }  // namespace hapbench

@@ -14,10 +14,10 @@
 namespace hapbench {
 namespace {
 
-constexpr const char *kPresets = "impedance", *kFile = ".json";  ///< kPresets: the type of all presets; kFile:
-                                                                 ///< extension of a file
+constexpr const char *kPresets = "impedance", *kFile = ".json";  ///< kPresets: text that selects all presets;
+                                                                 ///< kFile: ending of a device file's name
 
-/// Returns true for a file, and not the name of a preset. A pipe, such as /dev/fd/63, has no extension.
+/// Returns true if the text is the path of a device file. A pipe, such as /dev/fd/63, has no extension.
 bool is_file(const std::string& name) {
   std::error_code error;
   return name.ends_with(kFile) || name.find('/') != std::string::npos || std::filesystem::is_fifo(name, error);

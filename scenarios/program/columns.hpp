@@ -17,8 +17,8 @@
 #include "scenarios/program/layout.hpp"
 #include "scenarios/program/table.hpp"
 
-/// Tables of results. One list of columns gives the CSV file, the JSON, the printed table and the descriptions
-/// that `describe` prints.
+/// Tables of results. One list of columns generates the CSV file, the JSON, the printed table and the descriptions that
+/// `describe` prints.
 namespace hapbench {
 
 /// The outputs that include a column of a table.
@@ -30,30 +30,30 @@ struct Shown {
   bool varied = false;       ///< true: values of a varied field, printed with digits that distinguish the rows
 };
 inline const Shown kOnlyJson = {.csv = false}, kOnlyCsv = {.json = false};
-/// Returns `where` with the column also printed under a heading. With an empty heading the column is not
-/// printed.
+/// Returns `where`, changed so that the column is also printed, under `heading` and with `digits` significant digits.
+/// With an empty heading the column is not printed.
 Shown under(std::string heading, int digits = 4, Shown where = {});
-/// Returns the outputs of a column that is in no file and not in the JSON. It is printed unless its heading and
-/// name are empty. `wide`: printed only with --wide.
+/// Returns the outputs of a column that is in no CSV file and not in the JSON. The column is printed unless its heading
+/// and its name are both empty. `wide`: true if it is printed only with --wide.
 Shown only_printed(bool wide = false);
-/// Returns `where` if `has_it` is true, otherwise no output at all.
+/// Returns `where` if `has_it` is true. Otherwise returns the outputs of a column that appears nowhere.
 Shown when(bool has_it, Shown where = {});
 
 /// Returns `where` for values of a varied field (Shown::varied).
 Shown varied(Shown where);
 
-/// Returns a value of an axis as a cell: a number if the text is a finite number, else the text.
+/// Returns the value of a varied field as a cell: a number if the text is a finite number, otherwise the text.
 Cell axis_cell(const std::string& value);
 
 /// Returns the cells of a column as text. A number has the digits that are significant at its tolerance, or
-/// `shown.digits` without a tolerance; an empty cell is "-". Of a varied field, whole numbers and numbers of at most
-/// six digits are printed exactly; other numbers have four to six digits, as few as keep different numbers different.
-/// `tolerances` has an entry for each cell.
+/// `shown.digits` digits without a tolerance. An empty cell is "-". In the column of a varied field, whole numbers and
+/// numbers of at most six digits are printed exactly. The other numbers in this column have four to six digits, as few
+/// as keep different numbers different. `tolerances` has an entry for each cell.
 std::vector<std::string> printed(std::span<const Cell> cells, const Shown& shown,
                                  std::span<const std::optional<double>> tolerances);
 
-/// A table that `describe` explains. `file` is empty for a table that is only printed; `holds` describes its
-/// rows.
+/// A table that `describe` explains. `file` is empty for a table that is only printed. `holds` describes the rows of
+/// the table.
 struct DescribedTable {
   struct Entry {
     std::string name, unit, meaning;  ///< an empty unit marks text
@@ -89,7 +89,7 @@ class Columns {
   Columns(std::initializer_list<Entry> entries = {}) : entries_(entries) {}
   void add(const Columns& more) { entries_.insert(entries_.end(), more.entries_.begin(), more.entries_.end()); }
 
-  /// Writes the columns with `csv` to a CSV file, and adds the file to `files`.
+  /// Writes the columns whose member `csv` is true to a CSV file, and adds the file to `files`.
   void write(const std::filesystem::path& file, std::span<const Row> rows, FileSet& files) const {
     std::string header;
     for (const Entry& entry : entries_)
@@ -105,7 +105,7 @@ class Columns {
     csv.finish(&files);
   }
 
-  /// Returns the columns with `json` as an object with a member for each column.
+  /// Returns a row as a JSON object, with a member for each column whose member `json` is true.
   Json json(const Row& row) const {
     Json object = Json::object();
     for (const Entry& entry : entries_)
@@ -118,7 +118,8 @@ class Columns {
     return list;
   }
 
-  /// Returns the printed table. `rows` has rows or references to rows. `in_full` includes the columns for --wide.
+  /// Returns the printed table. `rows` contains rows or references to rows. `in_full`: true to include the columns that
+  /// are printed only with --wide.
   template <class Rows>
   Table table(const Rows& rows, std::string caption, bool in_full) const {
     Table table{headings(in_full), {}, std::move(caption)};
@@ -137,13 +138,14 @@ class Columns {
     return table;
   }
 
-  /// Returns the printed table as text in the width of the layout.
+  /// Returns the printed table as text, with lines of at most the layout's width.
   template <class Rows>
   std::string text(const Rows& rows, const Layout& layout) const {
     return table(rows, "", layout.in_full()).text(layout.width());
   }
 
-  /// Returns the columns of the printed table; `in_full` includes the columns for --wide.
+  /// Returns the columns of the printed table. `in_full`: true to include the columns that are printed only with
+  /// --wide.
   std::vector<Table::Column> headings(bool in_full = true) const {
     std::vector<Table::Column> headings;
     for (const Entry& entry : entries_)

@@ -20,7 +20,7 @@ void Command::add(const std::string& name, Variable variable, const std::string&
   if (rules.several) option->allow_extra_args(false)->take_all();
   if (rules.comma_separated)
     option->delimiter(',')->transform([](const std::string& value) { return CLI::detail::trim_copy(value); });
-  // The checks of CLI11 word their errors differently and add text to the help.
+  // Do not use the checks of CLI11: they word their errors differently and add text to the help.
   const auto problem = [range = rules.range, values = rules.one_of](const std::string& value) -> std::string {
     std::int64_t number = 0;
     if (range && !(CLI::detail::lexical_cast(value, number) && number >= range->first && number <= range->second))

@@ -42,7 +42,8 @@ class Command {
   /// Makes parsing fail if `option` is given without `other`. An option can require one other option at most.
   /// Precondition: both options were added.
   void needs(const std::string& option, const std::string& other);
-  /// Text between the options and the examples. Each line is a paragraph, which is wrapped.
+  /// Sets the text that the help prints between the options and the examples. Each line of the text is a paragraph,
+  /// which is wrapped.
   void footer(const std::string& text);
 
  private:

@@ -31,8 +31,8 @@ void load_modules(const std::vector<std::string>& files, const LoadingGuard& gua
   if (const char* folders = std::getenv(kFolders)) load_modules_in(kFolders, folders, guard);
 }
 
-/// Returns the exit status, changed from success to kUnexpectedOutcome if a module failed. A failed module
-/// makes its runs count as diverged, which alone need not be a failure. Prints the first failure.
+/// Returns the exit status, changed from success to kUnexpectedOutcome if a module failed. Without this change the
+/// command could succeed, because a failed module only makes its runs count as diverged. Prints the first failure.
 int status_with_faults(int status, ProgramContext& context) {
   const ModuleFaults faults = take_module_faults();
   if (faults.count == 0) return status;

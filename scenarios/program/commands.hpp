@@ -10,7 +10,7 @@ class CommandLine;
 
 using AddCommand = void(CommandLine& line);
 
-/// Texts about a command for the help of the program and of the command itself.
+/// A command: its group, its name, its texts in the help, and the function that adds it to the command line.
 struct CommandGuide {
   std::string_view group, name, purpose;
   AddCommand* add;                 ///< null if a Python package implements the command

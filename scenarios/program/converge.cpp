@@ -41,8 +41,8 @@ namespace {
 constexpr const char *kOrders = "converge.csv", *kLevels = "converge_levels.csv",
                      *kTimes = "converge_levels_timing.csv";
 constexpr double kLargestRatio = 10.0;
-constexpr int kLevelsOfMetrics = 5, kLevelsOfSettings = 4;  ///< numbers of levels by default
-constexpr double kMaxRequestedError = 0.01;                 ///< [m]; beyond it, --to is a number in another unit
+constexpr int kLevelsOfMetrics = 5, kLevelsOfSettings = 4;  ///< default numbers of levels, without and with --over
+constexpr double kMaxRequestedError = 0.01;                 ///< largest --to with --over [m]; more is a wrong unit
 constexpr double kRequestedError = 1e-6;                    ///< default of --to with --over [m]
 
 struct ConvergeOptions : CommonOptions {
@@ -210,8 +210,8 @@ std::string verdict_text(const ConvergeStudy& study) {
                      number_text(high, high - low));
 }
 
-/// Returns a sentence that names the coarsest level for which it and all finer levels have relative errors below
-/// `max_error`, and the cost of this level.
+/// Returns a sentence that names the coarsest level from which on all levels have relative errors below `max_error`,
+/// and the cost of this level. If the finest level has a larger error, names an extrapolated value of the field.
 std::string sufficient_level_text(const ConvergeStudy& study, double max_error) {
   // Find the first level from which on all errors are below the bound.
   const std::vector<LevelRow>& levels = study.levels;
@@ -270,7 +270,7 @@ LevelSweep levels_of(const ConvergeOptions& options, const ScenarioText& scenari
   });
 }
 
-/// Returns the error of --to for a work-precision study [m].
+/// Returns the requested position error of a work-precision study [m]: the value of --to, or its default.
 double parse_position_error(const std::string& text) {
   if (text.empty()) return kRequestedError;
   const auto number = finite_number(text);
@@ -387,8 +387,8 @@ void add_converge(CommandLine& line) {
               "field to refine (default: time.step_s), such as environment.spacing_m (distance of surface points), "
               "environment.grid_m or tool.grid_m; any real number above 0 whose decrease reduces the error");
   command.add("--over <field=values>", options.over,
-              "print run time against error for each value of these fields, such as integrator.type=all or "
-              "rendering.algorithm=mean,proxy, at each time step; repeatable",
+              "print run time and error for each value of these fields, such as integrator.type=all or "
+              "rendering.algorithm=mean,proxy, at each level of the time step; repeatable",
               {.several = true});
   command.add("--levels <n>", options.levels,
               "number of levels, from the scenario's own value to finer values (default: 5; with --over: 4)",
@@ -397,8 +397,8 @@ void add_converge(CommandLine& line) {
               "ratio of the field between two levels (default: 2); an integer for the time step");
   command.add(
       "--to <error>", options.to,
-      "also print the coarsest level with a relative error below this (1% or 0.01) and its run time; with --over "
-      "(default: 1e-6): the cheapest setting whose error of the tip's position [m] is below this");
+      "without --over: also print the coarsest level with a relative error below this (1% or 0.01) and its run time; "
+      "with --over: print the cheapest setting whose error of the tip's position is below this [m] (default: 1e-6)");
   add_common(command, options, "converge_NAME");
   add_table(command, options.output);
   command.footer(

@@ -70,6 +70,8 @@ std::string with_spread(double mean, const std::optional<double>& spread, const 
   const double error = std::max(*spread, tolerance.value_or(0.0));
   if (!(error > 0.0)) return significant(mean, digits) + " +- " + significant(*spread, 2);
   const int last = leading_digit(error) - 1;
+  // A spread that rounds to 0 says less than the tolerance.
+  if (tolerance && 2.0 * *spread < math::pow(10.0, last)) return deserved(mean, tolerance, digits);
   if (std::max(std::abs(mean), error) >= kSmallest && last >= kLastDigit)
     return fmt::format("{} +- {}", to_digit(mean, last), to_digit(*spread, last));
   const int decimals = std::max(0, leading_digit(std::max(std::abs(mean), error)) - last);

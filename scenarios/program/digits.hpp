@@ -14,18 +14,20 @@ inline constexpr int kAllDigits = 17;
 /// but from 1e-4 to 1 without an exponent; "-" for NaN and infinities. With kAllDigits the text reads back as the same
 /// double.
 std::string rounded_text(double value, int digits);
-/// Returns the number of digits of `value` from its leading digit down to the leading digit of the tolerance,
-/// from 1 to `max_digits`. Returns `max_digits` without a tolerance above 0, and for a value that is 0 or not finite.
+/// Returns the number of significant digits of `value` from its leading digit down to the decimal place of the
+/// tolerance's leading digit, from 1 to `max_digits`. Returns `max_digits` without a tolerance above 0, and for a value
+/// that is 0 or not finite.
 int deserved_digits(double value, const std::optional<double>& tolerance, int max_digits);
-/// Returns the bound of a number that is only bounded (is_only_bounded()), rounded up to one significant digit: "<=
-/// 0.4", or "0 +- 0.4" for a negative number. The page of `report` writes the same (known_number of hapbench_report).
+/// Returns the bound of a number whose error is not smaller than the number (is_only_bounded()): the sum of magnitude
+/// and tolerance, rounded up to one significant digit. The text is "<= 0.4", or "0 +- 0.4" for a negative number. The
+/// page of `report` writes the same text (known_number of hapbench_report).
 std::string bound_text(double value, double tolerance);
 /// Returns a number rounded to the decimal place of the leading digit of its tolerance, without an exponent for
 /// values of at least 1e-4. Returns `digits` significant digits if the tolerance is unknown or not above 0, and
 /// bound_text() if the number is only bounded.
 std::string deserved(double value, const std::optional<double>& tolerance, int digits = 4);
 /// Returns "MEAN +- SPREAD", both to the second significant digit of the larger of the spread and the tolerance of the
-/// mean. Returns deserved() without a spread, and if only a bound of the mean is known.
+/// mean. Returns deserved() without a spread, if the spread would round to 0, and if only a bound of the mean is known.
 std::string with_spread(double mean, const std::optional<double>& spread, const std::optional<double>& tolerance,
                         int digits = 4);
 

@@ -59,7 +59,7 @@ std::string option_entry(const CLI::Option& option, const std::string& name, con
   return layout.entry(kind.empty() ? name : name + " " + kind, help, 2, kHelpColumn);
 }
 
-/// Returns the arguments or the options. Options that all commands share are listed in one line.
+/// Returns the help of the positional arguments, or the help of the options. Lists shared options in one line by name.
 std::string options_text(const CLI::App& app, bool arguments, const Layout& layout) {
   std::string text, shared;
   for (const CLI::Option* option : app.get_options()) {
@@ -99,7 +99,7 @@ std::string program_help(const Layout& layout) {
   std::string text = front_text(layout) + "\n" + bold(stdout, "Options without a command:") + "\n";
   text += layout.entry("--help", "print this text", 2, 14);
   text += layout.entry("--version", "print the version; with --json also commit, compiler and guarantees", 2, 14);
-  // Indented by more than two spaces: scripts/completion offers each option indented by two.
+  // Indent these options by four spaces: scripts/completion offers only options that are indented by two spaces.
   text += "\n" + bold(stdout, "Options that commands share, written after the command's name:") + "\n";
   for (const auto& [name, placeholder, help] : shared_options())
     text += layout.entry(placeholder.empty() ? std::string(name) : fmt::format("{} {}", name, placeholder), help, 4,

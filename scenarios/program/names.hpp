@@ -20,7 +20,8 @@ std::vector<std::string> chosen_names(const std::string& option, const std::vect
 std::vector<std::string> chosen_algorithms(const std::vector<std::string>& given);
 
 /// Returns the requested metric. Without a request, returns the first of kDefaultMetrics that `metrics` has, or the
-/// last entry of `metrics`. Throws InputError if the requested metric is not among `metrics`.
+/// last of kDefaultMetrics if `metrics` has none of them. Throws InputError if the requested metric is not among
+/// `metrics`.
 std::string chosen_metric(const std::vector<std::string>& metrics, const std::string& requested);
 
 /// Returns the first `max_count` texts; if there are more, adds a text with the number of omitted texts.

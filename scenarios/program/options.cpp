@@ -25,7 +25,7 @@ constexpr SharedOption kSharedOptions[] = {
     {"--wide", "", "print all columns, also beyond the width of the terminal"},
     {"--help", "", "explain the command, with examples"}};
 
-/// Shared options that the help of every command explains all the same, because users need them often.
+/// Shared options that the help of each command explains in full, because users need them often.
 constexpr std::string_view kExplained[] = {"--set", "--jobs"};
 
 }  // namespace

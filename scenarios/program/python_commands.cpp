@@ -188,9 +188,10 @@ int run_import(const ProgramArguments& given, ProgramContext& context) {
         "       hapbench import device [OPTIONS] [<log.csv>]\n\n" +
         kinds + "\n" +
         layout.wrapped(
-            "Both read any column names and units with --columns and --scale. A file with invalid rows is refused, and "
-            "nothing is written; --skip-bad-rows leaves such rows out. A stroke is also refused for jumps or gaps: see "
-            "its help.",
+            "Both write into the current folder, and read any column names with --columns and any units with --scale, "
+            "whose factors are SI units per unit of the file (position=1e-3 for mm). A file with invalid rows is "
+            "refused, and nothing is written; --skip-bad-rows leaves such rows out. A stroke is also refused for jumps "
+            "or gaps: see its help.",
             0) +
         "\nExamples:\n"
         "  hapbench import stroke log.txt --preset hapi\n"

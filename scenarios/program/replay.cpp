@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// One rendering of a log.
+/// A row of replay_comparison.csv: the outputs of one algorithm along a log.
 struct ReplayRow {
   std::string algorithm;
   ReplayComparison compared;    ///< comparison with the recorded outputs
@@ -75,7 +75,7 @@ std::pair<std::vector<HapbenchOutput>, std::string> rendered(const CheckedScenar
   return {replayed(*renderer, log), renderer->log_header};
 }
 
-/// Returns the scenario that was recorded, or else a sentence about the difference.
+/// Returns a sentence on the difference between the scenario and the recorded scenario; empty if they are the same.
 std::string other_scenario_note(const CheckedScenario& scenario, const LoopLog& log) {
   const std::string hash = scenario_hash(effective_scenario(scenario.scenario(), fs::current_path()), scenario.files());
   if (hash == log.scenario.hash) return "";
@@ -117,7 +117,7 @@ int replay_loop(const std::string& given, const std::string& log_file, const Com
   written.append(header);
   for (std::size_t i = 0; i < outputs.size(); ++i) written.append(log_row(log.inputs[i], outputs[i]));
   report.files().take(std::move(written));
-  // Compare with the record.
+  // Compare the new outputs with the recorded outputs.
   const ReplayRow row = replay_row(scenario.scenario().rendering.algorithm, outputs, log);
   const std::string other = other_scenario_note(scenario, log);
   const Layout layout = context.layout();

@@ -7,16 +7,17 @@
 #include "scenarios/program/options.hpp"
 #include "scenarios/program/program_context.hpp"
 
-/// `run --replay` and `compare --replay`: feed the log of a haptic loop to the function that rendered it
-/// (device_model/live/hapbench_renderer.h).
+/// `run --replay` and `compare --replay`: pass the recorded inputs of a haptic loop again to the function that rendered
+/// its forces (device_model/live/hapbench_renderer.h).
 namespace hapbench {
 
-/// Renders the calls of a log again with a scenario, writes them as replay.csv, and compares them with the recorded
-/// outputs. Throws InputError and IoError. Returns the exit status: kUnexpectedOutcome if the scenario is the recorded
-/// one and a bit differs.
+/// Renders the calls of a log again with a scenario, and writes the calls with the new outputs as replay.csv. Compares
+/// the new outputs with the recorded outputs. Returns the exit status: kUnexpectedOutcome if the scenario is the
+/// recorded scenario and an output differs in any bit. Throws InputError and IoError.
 int replay_loop(const std::string& scenario, const std::string& log, const CommonOptions& options,
                 ProgramContext& context);
-/// Renders the calls of a log with several algorithms, and writes and prints a row for each of them.
+/// Renders the calls of a log with each of the algorithms. Writes and prints a row for each algorithm: its forces, and
+/// how they differ from the recorded outputs. Returns the exit status. Throws InputError and IoError.
 int compare_replays(const std::string& scenario, const std::string& log, const std::vector<std::string>& algorithms,
                     const CommonOptions& options, ProgramContext& context);
 

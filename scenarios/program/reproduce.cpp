@@ -38,13 +38,14 @@ struct ReproduceOptions : CommonOptions {
   std::vector<std::string> only;
   std::string ledger;
   bool rerun = false;
-  std::string assumptions, sensitivity;  ///< files; empty for none
+  std::string assumptions, sensitivity;  ///< files of the options with these names; empty without the option
 
   fs::path folder() const { return results_directory(out, "reproduce"); }
   fs::path runs() const { return folder() / "thesis"; }
 };
 
-/// Returns the claims with these ids, in any case of letters; without ids all claims. Throws InputError.
+/// Returns the claims with these ids, which may be in upper or lower case. Returns all claims without ids. Throws
+/// InputError for an unknown id.
 std::vector<Claim> chosen_claims(const std::vector<std::string>& ids) {
   std::vector<Claim> claims = all_claims();
   if (ids.empty()) return claims;
@@ -103,7 +104,8 @@ void provide(ThesisRun& run, const fs::path& directory, bool rerun) {
   });
 }
 
-/// Judges the claims by the runs of the thesis's scenarios, and makes the missing runs first.
+/// Judges the claims by the results of the thesis's scenarios. Runs a scenario without current results when a claim
+/// needs it.
 std::vector<JudgedClaim> judge(const std::vector<Claim>& claims, const PublishedNumbers& published,
                                const Assumptions& assumptions, std::vector<ThesisRun>& runs,
                                const ReproduceOptions& options, const ProgramContext& context) {
@@ -240,9 +242,10 @@ void add_reproduce(CommandLine& line) {
   command.add("--only <id,...>", options.only, "judge only these claims; \"hapbench describe claims\" lists the ids",
               {.comma_separated = true});
   add_out(command, options.out, "reproduce");
-  command.add("--ledger <file.json>", options.ledger,
-              "file of the ledger, with a Markdown table next to it (default: OUT/claims.json; with --only: by default "
-              "none)");
+  command.add(
+      "--ledger <file.json>", options.ledger,
+      "file of the ledger, with claims.md and claim_pages.md next to it (default: OUT/claims.json; with --only, no "
+      "ledger is written unless this option is given)");
   command.flag("--rerun", options.rerun, "repeat all runs, also those whose results are current");
   add_jobs(command, options.jobs);
   add_table(command, options.output);
@@ -251,13 +254,13 @@ void add_reproduce(CommandLine& line) {
   command.add("--sensitivity <file.json>", options.sensitivity,
               "judge claims with one assumption at a time at another value, and add the verdicts to this record");
   command.footer(
-      "Files: claims.json, claims.md and claim_pages.md (the ledger: claim, published and measured value, verdict) "
-      "and the runs in OUT/thesis.\n\n"
+      "Files: the ledger as claims.md (to read first: claim, published and measured value, verdict), claim_pages.md (a "
+      "section for each claim) and claims.json (for programs); the runs in OUT/thesis.\n\n"
       "Figures: the script scripts/reproduce runs this command and also draws the figures of the thesis.\n\n"
       "Assumptions: the thesis leaves them open; \"hapbench describe assumptions\" lists them. --assumptions "
       "prints, for each set, the verdicts and numbers of the claims that the set can change, and the recorded "
-      "verdicts that differ. --sensitivity continues an interrupted record; every ledger uses the record "
-      "results/reference/sensitivity.json.\n\n"
+      "verdicts that differ. --sensitivity with an existing file continues its record. The ledger always "
+      "takes robustness from results/reference/sensitivity.json.\n\n"
       "Earlier results: runs in OUT/thesis of the same scenario by the same build are used again, unless the build "
       "has uncommitted changes; a ledger is replaced.\n\n"
       "Time: about 5 minutes on two processors; a single claim takes seconds to a minute. An assumption set that "

@@ -51,8 +51,8 @@ FolderLock locked_run(ProgramContext& context, const std::filesystem::path& dire
 }
 
 void require_unlocked(const std::vector<std::filesystem::path>& folders, const std::string& set) {
-  // An inner command that starts at the same time finds our lock and gives up. Wait for this, so that one of the two
-  // commands succeeds.
+  // A command in an inner folder that starts at the same time finds the caller's lock and gives up. Wait until it has
+  // given up, so that one of the two commands succeeds.
   using namespace std::chrono_literals;
   constexpr int kMaxAttempts = 50;
   for (const std::filesystem::path& folder : folders) {

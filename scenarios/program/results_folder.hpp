@@ -23,12 +23,12 @@ void require_writable_directory(ProgramContext& context, const std::filesystem::
 FolderLock locked_results(ProgramContext& context, const std::filesystem::path& directory, const std::string& set,
                           const std::string& writer, const std::string& option = "--out");
 
-/// Locks the directory of a run. Throws also if a command that writes to all its subdirectories, such as `compare`, has
-/// locked a directory around it.
+/// Locks the directory of a run. Throws like locked_results(). Also throws IoError if a command that writes to all
+/// subdirectories of a folder, such as `compare`, has locked a folder around `directory`.
 FolderLock locked_run(ProgramContext& context, const std::filesystem::path& directory);
 
 /// Throws IoError if another command has locked the files of this set in one of the folders. Precondition: the caller
-/// has locked the outer folder, so that no such lock can start.
+/// has locked the outer folder, so that no other command can lock the inner folders afterwards.
 void require_unlocked(const std::vector<std::filesystem::path>& folders, const std::string& set);
 
 }  // namespace hapbench

@@ -28,7 +28,7 @@ namespace fs = std::filesystem;
 
 struct RunOptions : CommonOptions {
   std::vector<std::string> scenarios;
-  std::string replay;  ///< log of a haptic loop; empty: the scenario's own motion
+  std::string replay;  ///< log of a haptic loop that is replayed; empty: the scenario is simulated
   bool latency = false, no_skip = false;
 };
 
@@ -139,7 +139,7 @@ void report_results(const std::vector<Result>& results, bool latency, const Layo
   report.add_text(diagnosis_text(results, layout));
 }
 
-/// Throws InputError for options that have no meaning with --replay.
+/// Runs `run --replay` and returns the exit status. Throws InputError for options that have no meaning with --replay.
 int run_replay(const RunOptions& options, ProgramContext& context) {
   if (options.latency || options.no_skip)
     fail_in_option("--replay", "got it together with --latency or --no-skip; allowed: --set, --out, --json, --quiet");
@@ -206,7 +206,7 @@ void add_run(CommandLine& line) {
       line.command("run", "Run scenarios, write their results, and diagnose problems such as vibration.", run,
                    "nothing of the unfinished run is written; finished runs are kept");
   command.add("scenarios <scenario>...", options.scenarios,
-              "scenario files, names of bundled scenarios, or of groups of scenarios (hapbench describe scenarios)",
+              "scenario files, or names of bundled scenarios or groups (hapbench describe scenarios lists both)",
               {.required = true});
   command.add(
       "--out <dir>", options.out,
@@ -231,8 +231,8 @@ void add_run(CommandLine& line) {
       "Diagnosis: each rule that applies is printed with its value and what to try, and is also in summary.json. "
       "For several scenarios, only the names of the rules are printed.\n\n"
       "Expectations: without the field expect, the outcomes completes, leaves_hole and tool_horizontal are "
-      "expected. A --set that changes the run adds these outcomes to the field's outcomes, and the field's bounds "
-      "on metrics are not checked.\n\n"
+      "expected. If a --set changes the run, these three outcomes are accepted too, and the bounds on metrics in "
+      "expect are not checked.\n\n"
       "Earlier results: all files of an earlier run in the same folder are replaced; other files stay. To keep both "
       "runs, give the new run another --out.\n\n"
       "Replay: give the scenario with which the log was recorded. With another scenario the forces may differ, "

@@ -37,7 +37,7 @@ std::string ending_text(const Result& report) {
   switch (report.end.outcome) {
     case Outcome::leaves_hole:
     case Outcome::tool_horizontal:
-      // With several trials there is no common time.
+      // With several trials there is no common end time.
       return !report.sections.contains("targets") ? fmt::format("{} at {:.3g} s", name, report.duration) : name;
     case Outcome::diverges:
       return fmt::format("{} at {:.3g} s", name, report.end.divergence.time);
@@ -122,7 +122,8 @@ void report_fidelity(std::span<const Result> reports, const Layout& layout, Repo
 }
 
 std::vector<std::string> run_warnings(std::span<const Result> reports) {
-  /// A warning of one or more algorithms. `others`: further runs of its algorithm with other numbers in the text.
+  /// A warning of one or more algorithms. `others`: number of further runs of the same algorithm whose warnings differ
+  /// from `text` in their numbers.
   struct Merged {
     std::string kind, text;
     std::vector<std::string> algorithms;
@@ -160,7 +161,8 @@ std::vector<std::string> run_warnings(std::span<const Result> reports) {
 }
 
 std::string step_time_text(std::span<const Result> reports, const Layout& layout) {
-  // Steps that --latency timed one by one have a table of their own: another sample would give other percentiles.
+  // With --latency, a separate table has the percentiles of the step times. Use the same times here, because another
+  // sample would give other percentiles.
   const bool has_table = reports.front().timing.latency.has_value();
   const auto p99 = [](const Result& report) {
     const auto& timed = report.timing.latency;

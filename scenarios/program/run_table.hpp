@@ -20,18 +20,18 @@ struct RunHeading {
   bool wide = true;     ///< true if the column is printed only with --wide
 };
 
-/// The metrics in which algorithms differ most visibly.
+/// Columns for the metrics in which force algorithms differ most visibly.
 inline constexpr RunHeading kRunHeadings[] = {
     {"largest\nforce [N]", "force_max_N", 1.0, false}, {"in contact\n[%]", "contact_share", 100.0},
     {"landing\nforce [N]", "landing_force_max_N"},     {"mean\nforce [N]", "force_mean_in_contact_N", 1.0, false},
     {"force step\n(99 %) [N]", "force_step_p99_N"},    {"vibration\n[N rms]", "force_rms_above_30Hz_N", 1.0, false},
     {"reversals\n[1/s]", "force_reversals_per_s"},     {"max depth\ninside [mm]", "inside_max_m", 1e3, false}};
 
-/// Returns the unit of a metric; "1" for an unknown one.
+/// Returns the unit of a metric; "1" for an unknown metric.
 std::string metric_unit(const std::string& metric);
 
-/// Returns `factor` times the value with the digits that are significant at its tolerance, three at most; the bound of
-/// a value that is not larger than its tolerance; "-" without a value. `tolerance` is in the unit of `value`.
+/// Returns `factor` times the value, with the digits that are significant at its tolerance, at most three. Returns a
+/// bound if the value is not larger than its tolerance, and "-" without a value. `tolerance` is in the unit of `value`.
 std::string short_text(std::optional<double> value, const std::optional<double>& tolerance, double factor);
 
 /// Adds a column for each heading. figure_of(row, metric name) returns the row's value of the metric as
@@ -47,10 +47,11 @@ void add_metrics(Columns<Row>& columns, std::span<const RunHeading> headings, Fi
   }
 }
 
-/// Returns the printed table of runs: names, outcome with its time, and the columns of kRunHeadings without
-/// `wide`. With --wide the table has all columns of kRunHeadings, the range of stiffness ratios and the median
-/// time of a step. `of_scenes`: true if the first column has the scenario. If false, all runs belong to one scenario.
-/// The table then also has the vibration of the tool, which is defined for runs without settled contact too.
+/// Returns the printed table of runs: names, outcome with its time, and the columns of kRunHeadings whose member `wide`
+/// is false. With --wide, the table also has the other columns of kRunHeadings, the vibration of the tool, the range of
+/// stiffness ratios, and the median time of a step. `of_scenes`: true if the first column has the scenario. If false,
+/// all runs belong to one scenario, and the vibration of the tool is printed without --wide too. This vibration is
+/// defined also for runs without settled contact.
 Table run_table(std::span<const Result> reports, bool of_scenes, const Layout& layout);
 
 /// Metric whose square root is the vibration of the tool.
@@ -61,8 +62,8 @@ inline constexpr const char* kToolVibrationPower = "vibration_power_above_30Hz_m
 /// if a step is too slow. Precondition: there is at least one run.
 std::string step_time_text(std::span<const Result> reports, const Layout& layout);
 
-/// Reports a table that compares the rendered force with the reference force, for the runs with a reference.
-/// Reports nothing if there are none.
+/// Reports a table that compares the rendered force with the reference force, for the runs with a reference force.
+/// Reports nothing if no run has a reference force.
 void report_fidelity(std::span<const Result> reports, const Layout& layout, Report& report);
 
 /// Returns the warnings about the runs of one scenario, without the warnings that were printed before the runs. Equal
@@ -70,16 +71,17 @@ void report_fidelity(std::span<const Result> reports, const Layout& layout, Repo
 /// differ in their numbers, its line quotes the first run and counts the others.
 std::vector<std::string> run_warnings(std::span<const Result> reports);
 
-/// Returns a rule of the diagnosis that applies, with its value, its threshold and their unit: "buzz (0.289 > 0.1)".
+/// Returns a diagnosis rule whose threshold is exceeded, with its value, its threshold and their unit: "buzz (0.289 >
+/// 0.1)".
 std::string finding_text(const Diagnosed& found);
 
-/// Returns a number that its error follows, with the digits that are significant at the error: one digit if the error
-/// is not smaller than the number, six digits if the error is 0, four if it is unknown.
+/// Returns a number for a text that also states its error. The digits are significant at the error: one digit if the
+/// error is not smaller than the number, six digits if the error is 0, four if the error is unknown.
 std::string number_text(double value, const std::optional<double>& error);
 /// Returns number_text() followed by the error: "1.234 +- 0.005".
 std::string with_error_text(double value, const std::optional<double>& error);
 
-/// Returns the tables that this command writes and prints, for `describe`.
+/// Returns the tables of runs, for `describe`.
 std::vector<DescribedTable> run_tables();
 
 }  // namespace hapbench

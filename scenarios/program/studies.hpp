@@ -18,11 +18,11 @@
 ///    "between": [1e2, 1e5], "stable": "bounded",
 ///    "over": {"rendering.damping_N_s_per_m": {"from": 0.1, "to": 150, "count": 17, "log": true}}}
 ///
-/// Numbers, texts and true stand for themselves. A list of two numbers for "between" is a range. Other lists are values
-/// separated by commas; in "bound", each entry becomes an option of its own. The objects "set", "over" and "vary" map
-/// paths of fields to a value, a list, or a range with "from", "to", "count" and "log". A scenario file is searched
-/// next to the study first. "alone" is for scripts/reproduce: the script runs nothing else at the same time as a study
-/// that measures time.
+/// A number or a text is the value of its option. True gives an option that has no value, and false omits the option.
+/// A list of two numbers for "between" is a range. Other lists are values separated by commas; each entry of "bound"
+/// becomes a separate option. The objects "set", "over" and "vary" map paths of fields to a value, a list, or a range
+/// with "from", "to", "count" and "log". A scenario file is searched next to the study first. "alone" is for
+/// scripts/reproduce: the script runs nothing else at the same time as a study that measures time.
 namespace hapbench {
 
 /// A study in the folder scenarios/library/studies; `ask` is the command.
@@ -36,10 +36,11 @@ std::vector<BundledStudy> bundled_studies();
 /// The arguments of a command line after a study was replaced by its content, and the lines of the study's file
 /// that they come from.
 struct StudyArguments {
-  /// Replaces the first study on a command line by its scenarios and options. An option of the command line
-  /// takes precedence over the same option of the study; options with an object in the study add up with it.
-  /// `arguments`: the command line without the program's name. `positions`: indices of the positional arguments,
-  /// which may name a study. Returns empty without a study. Throws InputError for a study of another command.
+  /// Replaces the first study on a command line by its scenarios and options. An option of the command line takes
+  /// precedence over the same option of the study. If the study's value is an object, the options of the study and of
+  /// the command line are both used.
+  /// `arguments`: the command line without the program's name. `positions`: indices of the positional arguments, which
+  /// may name a study. Returns empty without a study. Throws InputError for a study of another command.
   static std::optional<StudyArguments> in(const ProgramArguments& arguments, std::span<const std::size_t> positions);
 
   /// Returns the error with the study's file and line in front. The line is the line of the first option in

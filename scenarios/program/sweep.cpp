@@ -45,8 +45,9 @@ namespace fs = std::filesystem;
 
 constexpr const char* kTimesFile = "sweep_timing.csv";
 
-/// Returns the printed columns of a run: the varied fields, the outcome and the columns of `run`. Adds a column
-/// for the metric if no other column has the metric, and the time of a step if `costs` has the cost of each run.
+/// Returns the printed columns of a run: the varied fields, the outcome and the columns that the command `run` prints.
+/// Adds a column for the metric if no other column has the metric, and the time of a step if `costs` has the cost of
+/// each run.
 Columns<SweepRow> run_columns(const SweepTable& table, const std::string& metric, const std::vector<RunCost>& costs) {
   Columns<SweepRow> columns;
   // Begin with the varied fields. If several fields vary, add the index of the run.
@@ -88,8 +89,7 @@ Columns<OutcomeCount> count_columns() {
            [](const OutcomeCount& c) { return c.second.expected; }, only_printed()}};
 }
 
-/// Largest numbers of printed runs: of a sweep of one field, in the order of its values, and of other sweeps, by the
-/// metric.
+/// Largest numbers of printed runs: kMaxShown for a sweep of one field, kMaxListed for a sweep of several fields.
 constexpr std::size_t kMaxShown = 100, kMaxListed = 20;
 
 /// Returns the table of the runs, followed by the counts of outcomes. With several fields, the runs are in
@@ -198,7 +198,7 @@ std::string failures_text(const SweepCounts& counts) {
   return fmt::format("{}", fmt::join(texts, ", "));
 }
 
-/// Reports the number and the first of the runs that failed or ended unexpectedly, and returns the exit status.
+/// Prints the number of runs that failed or ended unexpectedly, and the first of these runs. Returns the exit status.
 int verdict(const Cases& cases, const SweepReport& report, const SweepCounts& counts, ProgramContext& context) {
   const std::string scene = cases.scenes().front().file.string();
   const auto run_text = [&cases](std::size_t run) {
@@ -238,8 +238,8 @@ int print_row(const SweepCommand& command, const Cases& cases, ProgramContext& c
   return kSuccess;
 }
 
-/// Prints the rows of a finished sweep that satisfy the conditions of --where. `resumed`: number of runs that
-/// an earlier call had computed.
+/// Prints the rows of a finished sweep that satisfy the conditions of --where. `resumed`: number of runs that an
+/// interrupted earlier command had computed.
 void print_sweep(const SweepCommand& command, const SweepTable& table, ProgramContext& context, std::size_t resumed = 0,
                  const std::vector<RunCost>& costs = {}) {
   const Layout layout = context.layout();
@@ -290,8 +290,8 @@ Columns<TimedRun> timing_columns(const std::vector<std::string>& fields) {
   return columns;
 }
 
-/// Measures the cost of each run of a sweep and writes sweep_timing.csv. A block of runs is measured together, because
-/// each run keeps its simulation until the end of the measurement.
+/// Measures the cost of each run of a sweep and writes sweep_timing.csv. Measures the runs in blocks of kTogether,
+/// because each run keeps its simulation in memory until the end of the measurement.
 std::vector<RunCost> timed_runs(const Cases& cases, const fs::path& directory, const JobOptions& jobs) {
   constexpr std::size_t kTogether = 32;
   std::vector<TimedRun> rows;
@@ -444,8 +444,8 @@ void add_sweep(CommandLine& line) {
       "Files: sweep.csv has one row per run: index, the varied fields, outcome, expected, steps, ended_at_s, all "
       "metrics, state_hash. A run that could not be computed has the outcome \"error\". Finished rows are kept in "
       "sweep.csv.part until the sweep ends.\n\n"
-      "Printed: of one varied field at most {} runs, in the order of its values; otherwise the {} runs with the "
-      "smallest --metric, failed runs last. sweep.csv has all runs.\n\n"
+      "Printed: with one varied field, at most {} runs in the order of its values; with several fields or a sample, "
+      "the {} runs with the smallest --metric, failed runs last. sweep.csv has all runs.\n\n"
       "Fields: rendering.algorithm=all tries every law; scenario=v,w,... varies the scenario, without <scenario>.\n\n"
       "Earlier results: a finished sweep in the folder is replaced. If the folder has finished rows of an "
       "interrupted sweep, a command without --resume is refused with exit status 2, and the rows stay: use --resume "
@@ -454,8 +454,8 @@ void add_sweep(CommandLine& line) {
       "(hapbench describe \"early end\"). Its row has the outcome, such as went_through, the time ended_at_s and "
       "empty metrics. Failed runs alone do not change the exit status.\n\n"
       "Exit status: 0 success, 1 a run could not be computed, 2 bad input, 3 a run does not meet the field expect, "
-      "130 stopped by Ctrl-C, after the current runs are finished. The field expect counts only if neither --set "
-      "nor --vary changes the run, or if one of them sets expect itself.",
+      "130 stopped by Ctrl-C, after the current runs are finished. If --set or --vary changes the "
+      "run, the field expect is ignored, unless one of them sets expect.",
       kMaxShown, kMaxListed));
 }
 

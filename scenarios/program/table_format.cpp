@@ -29,7 +29,7 @@ struct Decimal {
   std::string mantissa;
 };
 
-/// Returns a finite number; empty for other texts.
+/// Parses a finite decimal number. Returns empty for other texts.
 std::optional<Decimal> decimal_of(std::string_view text) {
   const auto value = finite_number(text);
   if (!value || text.find_first_not_of("+-.0123456789e") != std::string_view::npos) return std::nullopt;
@@ -57,7 +57,7 @@ std::optional<Quantity> quantity_of(const std::string& cell) {
   return error ? std::optional(Quantity{*number, error}) : std::nullopt;
 }
 
-/// Returns the quantities of column c, without cells of other texts. Empty for a column of text.
+/// Returns the quantities in the cells of column c. Omits cells with other texts. Returns empty for a column of text.
 std::vector<Quantity> quantities_of(const Table& table, std::size_t c) {
   std::vector<Quantity> quantities;
   if (!table.columns[c].number) return quantities;
@@ -70,7 +70,7 @@ bool has_errors(const std::vector<Quantity>& quantities) {
   return std::ranges::any_of(quantities, [](const Quantity& q) { return q.error.has_value(); });
 }
 
-/// Replaces each key in the text by its value. At each position the first key that fits counts.
+/// Replaces each key of `by` in the text by its value. If several keys match at a position, replaces the first of them.
 template <std::size_t N>
 std::string replaced(std::string_view text, const std::array<std::pair<std::string_view, std::string_view>, N>& by) {
   std::string result;

@@ -52,7 +52,7 @@ std::string surface_text(const SceneFacts::Surface& surface, std::optional<bool>
                      bounds_text(surface.box), surface.points, closed, start);
 }
 
-/// Returns the closedness and the orientation of a component.
+/// Returns whether a mesh component is closed, and the orientation of its normals, as text.
 std::string closedness_text(const MeshComponent& component, const MeshFindings& found) {
   if (!component.is_closed) {
     return found.open_edges.empty() ? "cut along edges with more than two faces, normals by the winding of the file"

@@ -29,7 +29,8 @@ std::optional<double> position_error(const Setting& s) {
 std::optional<double> force_error(const Setting& s) {
   return s.error ? std::optional(s.error->force) : std::nullopt;
 }
-/// Returns an error in a thousandth of the unit; "<" marks an error that the reference solution does not resolve.
+/// Returns an error in multiples of `unit`, or the error of the reference solution if it is larger. "<" marks an error
+/// that the reference solution does not resolve. Returns "-" for a setting without an error.
 std::string error_text(const Setting& s, double error, double of_reference, double unit) {
   if (!s.error) return "-";
   const double shown = std::max(error, of_reference) / unit;
@@ -161,14 +162,14 @@ namespace {
 
 constexpr const char *kModelErrors = "convergence_model.csv", *kModelTimes = "convergence_model_timing.csv";
 
-/// A law, or another setting, in a scene with a reference force.
+/// Errors and step times of one case, such as a law, in a scene with a reference force.
 struct ModelError {
   std::string problem;  ///< values of the fields of --over
   std::string outcome;
   bool is_expected = true;  ///< true if the scenario expects the outcome; the errors of other runs are empty
   std::optional<double> direction = {}, force = {}, relative = {}, displacement = {};  ///< [rad], [N], [1], [m]
   double reference_error = 0.0;   ///< error of the reference force [N]
-  bool shares_reference = false;  ///< renders by the constraints of the reference force
+  bool shares_reference = false;  ///< true if the law and the reference force have the same constraints
   StepLatency steps = {};         ///< times of the steps in the fastest repetition
 };
 
@@ -251,7 +252,8 @@ void report_model_errors(const Cases& cases, const JobOptions& jobs, const Layou
   std::vector<std::unique_ptr<BareRun>> bare(cases.size());
   JobOptions one_by_one = jobs;
   one_by_one.threads = 1;
-  // The first round computes the errors. Every further round times each case once; the first of them warms the caches.
+  // The first round computes the errors. Every further round times each case once. The first timing round warms the
+  // caches.
   for_each_job(cases.size() * (kTimingRepetitions + 2), one_by_one, [&](std::size_t job) {
     const std::size_t i = job % cases.size(), round = job / cases.size();
     if (round == 0) {

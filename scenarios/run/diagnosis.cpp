@@ -20,7 +20,7 @@ Number share(std::uint64_t rows, std::uint64_t of) {
   return quotient(static_cast<double>(rows), static_cast<double>(of));
 }
 
-/// Returns no further facts.
+/// Returns an empty text, for rules without further facts.
 std::string no_more(const DiagnosedRun&) {
   return "";
 }
@@ -104,7 +104,8 @@ constexpr Rule kRules[] = {
      "number of steps with a force above explicit_friction_limit_N, beyond which explicit integration of friction is "
      "unstable",
      "1", 0.0,
-     "explicit integration of friction is unstable in {} steps: the motion after them is a numerical artefact",
+     "explicit integration of friction is unstable (number of such steps: {}): the motion after them is a numerical "
+     "artefact",
      [](const DiagnosedRun& r) { return r.metric("explicit_friction_rows_beyond"); }, against_friction, no_more, false,
      true},
     {"encoder",
@@ -145,13 +146,15 @@ constexpr Rule kRules[] = {
      against_drift},
 };
 
-/// Evaluates the rules for which the member `mark` is true, or all rules if `mark` is null. With
-/// `beyond_threshold`, returns only the rules whose threshold is exceeded; without it, findings have no advice.
+/// Evaluates the rules for which the member `mark` is true, or all rules if `mark` is null. If `beyond_threshold` is
+/// true, returns only the rules whose threshold is exceeded, with advice. Otherwise returns all evaluated rules that
+/// have a number, without advice.
 std::vector<Diagnosed> diagnosed(const DiagnosedRun& run, bool Rule::*mark, bool beyond_threshold) {
   std::vector<Diagnosed> found;
   for (const Rule& rule : kRules) {
     if (mark != nullptr && !(rule.*mark)) continue;
-    // Numbers of a run that ended by a fault say nothing about step and K.
+    // If the run ended by a fault of a law or a module, report only the fault: the other numbers do not show their
+    // causes.
     if (beyond_threshold && rule.value != fault && fault(run)) continue;
     const Number value = rule.value(run);
     if (!value || (beyond_threshold && !(*value > rule.threshold))) continue;

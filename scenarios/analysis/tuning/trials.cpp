@@ -29,8 +29,8 @@ std::string verdict_with(const RunStability& run, const SceneVariant& variant) {
   return std::string(run_verdict_name(run.verdict)) + with(variant);
 }
 
-/// Returns the rule for a run of a variant. The variants with other hands ask whether the loop is stable. A softer hand
-/// that cannot pull the tool on leaves it at rest, which is stable.
+/// Returns the rule for a run of a variant. The variants with other hands only test the stability of the loop. A tool
+/// at rest is stable even if a softer hand cannot pull it on.
 StabilityRule rule_for(const Scenario& scenario, const SceneVariant& variant) {
   StabilityRule rule = rule_of(scenario);
   rule.judges_progress = variant.family != "hands";
@@ -212,7 +212,7 @@ std::vector<const TuneTrial*> Trials::smallest_excess(std::vector<const TuneTria
                                                       const std::function<bool(const TuneTrial&)>& counts) {
   struct Ranked {
     double excess;
-    std::size_t order;  ///< of the trial in `trials`
+    std::size_t order;  ///< index of the trial in `trials`
     const TuneTrial* trial;
   };
   const auto before = [](const Ranked& a, const Ranked& b) {
@@ -319,28 +319,29 @@ void Trials::evaluate_motion(TuneTrial& trial) {
   if (!trial.failure) measure_scene(trial);
 }
 
-/// Runs the trial until a motion fails, or until nothing more can change what `need` asks for. A trial far from the
-/// limits is not evaluated further than the scene itself, except for Need::all.
+/// Evaluates the trial until a motion fails, or until further runs cannot change the results that `need` requires. A
+/// trial far from the limits is not evaluated further than the scene itself, except for Need::all.
 void Trials::evaluate(TuneTrial& trial, Need need) {
-  constexpr double kNear = 1.5;  // factor beyond a limit from which errors are estimated, so that a search can approach
+  constexpr double kNear = 1.5;  // largest excess() at which errors are estimated, so that a search can approach limits
   const auto is_far = [&] { return need != Need::all && excess(trial) > kNear; };
   const auto is_decided = [&] { return need == Need::feasibility && violates_limits(trial); };
   evaluate_motion(trial);
   if (trial.failure || is_far() || is_decided()) return;
-  // The other variants.
+  // Evaluate the other variants.
   if (trial.judged < variants_.size()) judge_motion(trial, 1, variants_.size());
   if (trial.failure) return;
   measure_variants(trial);
   if (question_.limits.empty() || is_far() || is_decided()) return;
-  // The errors: a limit on another metric than a depth decides that a larger K does not help.
+  // Estimate the errors. If a limit on a metric other than a depth is violated, a larger K does not help, and
+  // Need::softness needs no errors.
   const bool is_stiff = violates_limits(trial) && !violates_only_depths(trial);
   if (need == Need::softness && is_stiff) return;
   refine(trial, Refinement::resolution);
   if (needs_depth(trial, need)) refine(trial, Refinement::depth);
 }
 
-/// Returns true if Refinement::depth may change what `need` asks for, by the tolerance of the search for the deepest
-/// point. The median of a few depths has no such tolerance.
+/// Returns true if Refinement::depth may change the results that `need` requires. The tolerance of inside_max_m bounds
+/// its change. The change of inside_settled_m, a median of a few depths, has no known bound.
 bool Trials::needs_depth(const TuneTrial& trial, Need need) const {
   const MetricValues violated = violated_limits(trial);
   if (need <= Need::softness && !violated.empty()) return false;
@@ -444,7 +445,7 @@ void Trials::judge_motion(TuneTrial& trial, std::size_t first, std::size_t last)
     }
     if (i == 0) trial.settled = true;
     if (!is_stable(at_GK.verdict)) return fail("margin", fmt::format("at {:g} K: ", question_.margin), at_GK);
-    // For springs in permanent contact, evaluate() checked the loop before the runs.
+    // For springs in permanent contact, evaluate_motion() checked the loop before the runs.
     if (!springs_lambda_) trial.failure = loop_failure(trial, i, contacts[i - first]);
   }
 }
@@ -475,7 +476,8 @@ void Trials::measure_scene(TuneTrial& trial) {
     // A run beyond the limit of explicit friction is a numerical artefact: its metrics mean nothing.
     if (const double steps = number_of(run.metrics, "explicit_friction_rows_beyond").value_or(0.0); steps > 0.0)
       trial.failure = TuneFailure{
-          "friction", fmt::format("explicit integration of friction is unstable in {:g} steps of the run", steps)};
+          "friction",
+          fmt::format("explicit integration of friction is unstable in the run (number of such steps: {:g})", steps)};
   });
   for (const auto& [name, bound] : question_.limits) note_worst(trial, name, bound, {&trial.metrics, 1}, variants_);
 }
@@ -508,7 +510,7 @@ void Trials::refine(TuneTrial& trial, Refinement refinement) {
                                               trial.metrics, refinement, question_.threads, runs);
   for (const auto& [name, change] : changes) {
     const auto known = value_in(trial.error, name);
-    if (refinement == Refinement::depth && !known) continue;  // the finer resolution lacks it
+    if (refinement == Refinement::depth && !known) continue;  // the runs with finer resolution lack this metric
     if (std::isfinite(change))
       trial.error[name] = std::max(change, known.value_or(0.0));
     else

@@ -7,7 +7,7 @@
 #include "scenarios/batch/ranking.hpp"
 #include "scenarios/program/columns.hpp"
 
-/// The tables of `compare`.
+/// Columns of the tables that `compare` writes and prints.
 namespace hapbench {
 
 /// A row of comparison.csv: a run and the number of its seed, from 0.

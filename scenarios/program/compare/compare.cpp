@@ -43,10 +43,10 @@ struct CompareOptions : CommonOptions {
   bool errors = false;
   bool time = false;
   bool full = false;
-  std::string replay;  ///< log of a haptic loop; empty: the scenarios' own motions
+  std::string replay;  ///< log of a haptic loop that is replayed; empty: the scenarios are simulated
 };
 
-/// The name of the run time in --by.
+/// The name with which --by selects the run time.
 constexpr const char* kTimeMetric = "time";
 
 /// Checks the options and plans the comparison. Throws InputError.
@@ -118,8 +118,8 @@ void report_ranking(const Ranking& ranking, const Layout& layout, Report& report
   for (std::size_t i = 0; i < laws.size(); ++i) laws[i]["fails"] = ranking.laws[i].fails;
 }
 
-/// Reports the table of the runs of one scene. `errors`: errors are reported, so that the sentence on vibration
-/// is omitted.
+/// Reports the table of the runs of one scene. `errors`: true if errors are reported too; the sentence on vibration is
+/// then omitted.
 void report_runs(const std::vector<Result>& reports, const Ranking& ranking, bool errors, const Layout& layout,
                  Report& report) {
   report.add_text(reports.front().name + "\n\n");
@@ -130,7 +130,8 @@ void report_runs(const std::vector<Result>& reports, const Ranking& ranking, boo
   if (layout.in_full()) report.add_text(step_time_text(reports, layout));
 }
 
-/// Throws InputError for options that have no meaning with --replay.
+/// Runs `compare --replay` and returns the exit status. Throws InputError for options that have no meaning with
+/// --replay.
 int compare_replay(const CompareOptions& options, ProgramContext& context) {
   if (options.errors || options.time || options.full || options.question.seeds != 1 || options.question.jitter != 0.0 ||
       !options.metrics.empty())
@@ -209,15 +210,15 @@ void add_compare(CommandLine& line) {
       "compare", "Run scenarios with several force laws and show the results side by side, or rank the laws.", compare,
       "the folders of finished runs are kept, but no table is written");
   command.add("scenarios <scenario>...", options.scenarios,
-              "scenario files, names of bundled scenarios, or of groups of scenarios (hapbench describe scenarios)");
+              "scenario files, or names of bundled scenarios or groups (hapbench describe scenarios lists both)");
   add_algorithms(command, options.question.algorithms, "all");
   command.add("--seeds <n>", options.question.seeds,
               "repeat each run n times, with the scenario's seed, seed + 1, and so on (default: 1)",
               {.range = {{1, 10'000}}});
   command.add(
       "--jitter <m>", options.question.jitter,
-      "shift the start by this length [m], in one random direction per seed for all laws; needed for a spread over "
-      "seeds if nothing else is random");
+      "shift the start by this length [m], in one random direction per seed for all laws; without it, all seeds give "
+      "the same numbers, unless the scenario contains something random");
   command.add("--by <metric,...>", options.metrics,
               "metrics of the ranking, or time; smaller is better, except for success rates (default: " +
                   fmt::format("{}", fmt::join(kDefaultMetrics, ", ")) +
@@ -239,9 +240,9 @@ void add_compare(CommandLine& line) {
                "make all steps of runs that otherwise end early and have empty metrics (see Failed run)");
   command.footer(
       "Ranking: printed for several scenarios, for several seeds, or with --by. The rank of a law is 1 + the number "
-      "of laws whose mean is better by more than 0.1 % and by more than the sum of the errors of both means (the "
-      "errors that the definitions of the metrics allow); the spread over seeds does not count. Laws with a failed "
-      "run rank last.\n\n"
+      "of better laws. A law is better if its mean is better by more than 0.1 % and by more than the errors of both "
+      "means together; errors are those of the metrics' definitions. The spread over seeds does not count. Laws with "
+      "a failed run rank last.\n\n"
       "Other comparisons: compare varies only the law. \"hapbench sweep\" runs a scenario with several values of any "
       "field, such as two stiffnesses.\n\n"
       "Failed run: it diverges, passes through the surface, loses contact or never touches, sticks, is not dragged "

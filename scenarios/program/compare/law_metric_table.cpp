@@ -14,7 +14,8 @@
 namespace hapbench {
 namespace {
 
-/// Returns the heading of a metric in the table of runs, or its name and a factor of 1.
+/// Returns the heading of a metric in the table of runs. If the table lacks the metric, the heading is the metric's
+/// name with a factor of 1.
 RunHeading heading_of(const std::string& metric) {
   const auto* known = std::ranges::find(kRunHeadings, metric, &RunHeading::metric);
   return known == std::end(kRunHeadings) ? RunHeading{metric.c_str(), metric.c_str()} : *known;
@@ -25,8 +26,8 @@ std::string metric_text(const RankingEntry& entry, double factor) {
   const auto scaled = [factor](const std::optional<double>& number) {
     return number ? std::optional(factor * *number) : std::nullopt;
   };
-  // Agreement of the seeds below the resolution of the ranks does not make a number more precise: use at least this
-  // resolution as its error.
+  // A spread over the seeds below the resolution of the ranks does not make the number more precise: its error is at
+  // least this resolution.
   const double resolution = kRankResolution * std::abs(*entry.mean);
   if (entry.spread && *entry.spread < resolution)
     return deserved(factor * *entry.mean, factor * std::max(entry.tolerance.value_or(0.0), resolution));

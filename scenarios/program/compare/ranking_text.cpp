@@ -74,7 +74,7 @@ std::string first_ranks_text(const Ranking& ranking) {
   if (!is_ranked(ranking)) return std::string("nothing is ranked: ") + no_ranks_reason(ranking);
   const std::size_t rankings = ranking_count(ranking);
   std::vector<std::string> firsts;
-  bool is_everywhere = true;  // true if a law alone is first in all rankings
+  bool is_everywhere = true;  // true if each law with a first rank is first in all rankings
   for (const LawRankingEntry& law : ranking.laws) {
     const std::size_t count = first_ranks(ranking, law.algorithm);
     if (count > 0) firsts.push_back(fmt::format("{} in {}", law.algorithm, count));
@@ -89,7 +89,8 @@ std::string first_ranks_text(const Ranking& ranking) {
                      fmt::join(first_few(firsts, kMaxNamed), ", "));
 }
 
-/// Returns true if all values of a scenario agree over the seeds within the resolution of the ranks.
+/// Returns true if, for each algorithm and metric in a scenario, the spread over the seeds is within the resolution of
+/// the ranks.
 bool seeds_agree(const Ranking& ranking, std::size_t scenario) {
   for (std::size_t a = 0; a < ranking.algorithms.size(); ++a) {
     for (std::size_t m = 0; m < ranking.metrics.size(); ++m) {

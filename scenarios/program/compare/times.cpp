@@ -17,7 +17,7 @@ struct LawTime {
   std::string scenario, algorithm;
   RunCost cost;
   std::optional<double> contacts;  ///< mean number of contacts in a step; empty if the run has no such metric
-  std::uint64_t rank = 1;          ///< 1 + number of laws that are faster by more than both spreads
+  std::uint64_t rank = 1;          ///< 1 + number of laws that are faster by more than the sum of both spreads
 };
 
 Columns<LawTime> time_columns(bool several_scenes) {

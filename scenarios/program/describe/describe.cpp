@@ -148,8 +148,8 @@ void add_describe(CommandLine& line) {
               "list only entries with this text in name, description or source: of the list <name>, or of all lists");
   add_table(command, options.output);
   command.footer(
-      "A list: algorithms, scenarios, studies, devices, presets, metrics, columns, claims, assumptions, terms, or a "
-      "group of scenarios such as thesis.\n\n"
+      "A list: algorithms, scenarios, studies, devices (types), presets (parameters of real devices), metrics, "
+      "columns, claims, assumptions, terms, or a group of scenarios such as thesis.\n\n"
       "Scenario files: \"scenario\" (all fields), a field such as rendering.limits (unit, allowed values, default), "
       "or \"schema\".\n\n"
       "Results: a file such as trajectory.csv (all its columns with units), a column, a metric, an "

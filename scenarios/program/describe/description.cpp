@@ -24,7 +24,7 @@ std::string line_of(const Json& value) {
   return line;
 }
 
-/// Members with a sentence that describes the entry.
+/// Keys of members that describe an entry in a sentence.
 constexpr std::string_view kProse[] = {"summary", "meaning", "holds", "claim", "what"};
 
 /// Returns the texts of an array of entries.

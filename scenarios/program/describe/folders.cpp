@@ -65,8 +65,8 @@ Json list_on_record(const std::string& list) {
   return with_file(file, [&] { return read_json(file).at(list); });
 }
 
-/// Returns the entry of a claim or assumption of the reference results, with the members that `titled` gives to its
-/// text.
+/// Returns the entry of a claim or assumption of the reference results. `titled` renames and removes members for the
+/// printed text of the entry.
 IndexEntry on_record(const char* kind, const Json& item, const std::string& summary,
                      const std::function<Json(Json)>& titled, const Layout& layout) {
   const auto describe = [=] {

@@ -30,8 +30,8 @@ std::string group_of(const IndexEntry& item) {
 
 constexpr std::size_t kColumn = 34;  // column of the summaries [characters]
 
-/// Returns the first sentence. A semicolon, or a colon after character 20, also ends the sentence. Truncates it to
-/// the width that is left in the line.
+/// Returns the first sentence. A semicolon, or a colon after character 20, also ends the sentence. Truncates the
+/// sentence to the width that is left in the line.
 std::string short_summary(const std::string& text, const Layout& layout) {
   std::size_t end = std::min(text.find("; "), text.find(": ", 20));
   for (std::size_t dot = text.find('.'); dot < end; dot = text.find('.', dot + 1)) {

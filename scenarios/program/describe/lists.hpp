@@ -22,8 +22,8 @@ std::string list_name(const std::string& kind);
 /// Returns true for the name of a kind's list, except "metrics", which describe_metrics() explains in full.
 bool is_kind(const std::string& name);
 /// Prints the entries of a kind or group, or with --grep the entries that contain a text. Without a name and without
-/// --grep, prints only the names of each kind, except for metrics, claims and terms, which are too many. Returns the
-/// exit status.
+/// --grep, prints only the names of each kind. This list omits metrics, claims, assumptions and terms, because there
+/// are too many of them. Returns the exit status. Throws InputError if no entry contains the text of --grep.
 int list(const DescribeOptions& options, ProgramContext& context);
 
 }  // namespace hapbench

@@ -28,8 +28,8 @@ struct ThesisLocation {
   std::string kind, number;
 };
 
-/// Returns the kind of the locations whose numbers follow a word. After every word other than "figure", "table" and
-/// "equation", the numbers are sections.
+/// Returns the kind of location that a word announces: the numbers after "figure" are figures. After every word other
+/// than "figure", "table" and "equation", the numbers are sections.
 std::string location_kind(const std::string& word) {
   const std::string lower = lower_case(word);
   if (lower == "fig" || lower == "figs" || lower == "figure") return "Fig.";
@@ -76,8 +76,8 @@ bool mentions_location(const std::string& source, const ThesisLocation& requeste
   return false;
 }
 
-/// Returns what the thesis has at the location, and where hapbench has it, as entries of thesis_places.json. Two tables
-/// have the same number.
+/// Returns the contents of the thesis at the location, as entries of thesis_places.json, which also name the matching
+/// part of hapbench. Returns all entries with this name, because two tables of the thesis have the same number.
 Json contents_of(const ThesisLocation& location) {
   const std::filesystem::path file = installed_folder("results/reference") / "thesis_places.json";
   const std::string number = location.number.substr(0, location.number.find_last_not_of("abcd") + 1);
@@ -130,7 +130,7 @@ std::optional<Description> describe_thesis_location(const std::string& name, con
     pictures += fmt::format("    {}\n    redraw it with: scripts/reproduce --figure {}\n", picture.string(), id);
     json["pictures"].push_back(picture.string());
   }
-  // Collect what the thesis has there.
+  // Collect the contents of the thesis at this location.
   std::string contents;
   const Json entries = contents_of(*location);
   for (const Json& entry : entries) {

@@ -50,8 +50,8 @@ Cell value_beyond(const IntervalEnd& end) {
 Cell class_beyond(const IntervalEnd& end) {
   return end.beyond ? cell_of(run_verdict_name(end.beyond->verdict)) : Cell();
 }
-/// Returns the class of motion beyond the limit. Without a limit, returns the class at the low end of the
-/// range.
+/// Returns the class of motion beyond the limit. If no value is stable, returns the class at the low end of the range.
+/// If the values are stable to the end of the range, returns the text "end of the range".
 Cell class_beyond_limit(const LimitRow& row) {
   const IntervalEnd& end = row.limit.end;
   if (!end.beyond && !end.value) return cell_of(run_verdict_name(row.limit.runs.front().verdict));

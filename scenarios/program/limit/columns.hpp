@@ -5,11 +5,11 @@
 #include "scenarios/program/columns.hpp"
 #include "scenarios/program/limit/question.hpp"
 
-/// The tables of `limit`.
+/// Columns of the tables that `limit` writes and prints.
 namespace hapbench {
 
-/// New and old name of one column. The column lists the runs that are unstable within the stable interval, or stable
-/// outside of it.
+/// Name of a column of limit.csv: the number of runs that are unstable within the stable interval, or stable outside of
+/// it. In the JSON, this name has a list of these runs.
 inline constexpr const char* kNonMonotonic = "non_monotonic_runs";
 
 /// A row of limit_runs.csv: a run and the case that it belongs to.
@@ -20,9 +20,9 @@ struct LimitRunRow {
   operator const LimitRow&() const { return limit; }  // NOLINT: a run is also used as its case
 };
 
-/// Returns the columns of limit.csv. They include the published closed-form limits of a wall on an impedance
-/// device if a case has them. In all functions of this header, `table` selects the columns that apply to it; null:
-/// all columns, for `describe`.
+/// Returns the columns of limit.csv. They include the published closed-form limits of a wall on an impedance device if
+/// a case has these limits. In all functions of this header, `table` is the table that is printed or written, and the
+/// columns that do not apply to it are omitted. Null: all columns, for `describe`.
 Columns<LimitRow> limit_columns(const LimitTable* table);
 /// Returns the columns of limit_runs.csv.
 Columns<LimitRunRow> limit_run_columns(const LimitTable* table);

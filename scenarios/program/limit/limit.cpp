@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "scenarios/analysis/stability/interval_search.hpp"
 #include "scenarios/program/limit/columns.hpp"
 #include "scenarios/program/limit/question.hpp"
 #include "scenarios/program/limit/text.hpp"
@@ -13,7 +14,7 @@
 namespace hapbench {
 namespace {
 
-/// Searches the limits. A single search uses all threads for its runs; several searches run in parallel with
+/// Searches the limit of each row. A single search uses all threads for its runs; several searches run in parallel with
 /// one thread each.
 void find_limits(const LimitOptions& options, std::vector<LimitRow>& rows, const ProgramContext& context) {
   const bool alone = rows.size() == 1;
@@ -93,16 +94,18 @@ void add_limit(CommandLine& line) {
   add_algorithms(command, options.algorithms, "the scenario's algorithm");
   command.add(
       "--device <name,...>", options.devices,
-      "devices instead of the scenario's: presets, ideal, admittance, files NAME.json, all, or impedance for all "
-      "presets; presets also run with all their unpublished parameters at the soft and at the stiff end",
+      "devices instead of the scenario's: presets (hapbench describe presets), ideal, admittance, files NAME.json, "
+      "all, or impedance for all presets; presets also run with all their unpublished parameters at the soft and at "
+      "the stiff end",
       {.comma_separated = true});
   command.add(
       "--friction <factor,...>", options.friction,
-      "with --device: instead of the soft and stiff ends, also run each device with its dry friction times each "
-      "factor, such as 0,2; none: no variation",
+      "with --device: replaces the runs at the soft and stiff ends by runs with the dry friction times each factor, "
+      "such as 0,2; none: only the device as it is",
       {.comma_separated = true});
   command.add("--over <field=values>", options.over,
-              "repeat the search for each value of another field, written like sweep --vary; repeatable",
+              "repeat the search for each value of another field, written like sweep --vary, such as "
+              "rendering.damping_N_s_per_m=1:100:5:log (Z-width); repeatable",
               {.several = true});
   command.add("--stable <rule>", options.stable,
               "stable runs: settled (come to rest or decay), bounded (may also vibrate) or still (the handle hardly "
@@ -119,20 +122,21 @@ void add_limit(CommandLine& line) {
       "reaches 0 or below");
   add_common(command, options, "limit_NAME");
   add_table(command, options.output);
-  command.footer(
+  command.footer(fmt::format(
       "Stable: the run comes to rest or its oscillation decays; if a script moves the tool, the handle hardly "
       "vibrates. A run that diverges, passes through the surface, loses contact, sticks or never touches is "
       "unstable. \"hapbench describe stability\" defines all classes.\n\n"
       "Result: the simulated limit, the linear limit, and which of both to quote, with the reason. The simulated "
       "limit is found by bisection on runs. The linear limit (- if there is none) follows from the eigenvalues of "
       "the loop of hand, device and contact.\n\n"
-      "Limit to quote: the one of both that the field reaches first within the range. There is none if no value is "
+      "Limit to quote: the smaller of the two, or with --smallest the larger. There is none if no value is "
       "stable, or if all runs are stable and the range has no linear limit: then try a wider --between.\n\n"
       "Files: limit.csv has one row per search, limit_runs.csv one row per run with its class. They replace the "
       "files of an earlier search in the same folder.\n\n"
-      "Time: 100 to 400 runs for one search. With --device or --over, a search skips the verification samples and "
-      "needs only 30 to 50 runs.\n\n"
-      "Exit status: 0 also if no value or every value is stable; 2 bad input; 130 stopped by Ctrl-C.");
+      "Time: 100 to 400 runs for one search, of which {} verify the stable side of the limit at further values "
+      "(verification samples). With --device or --over, a search skips these runs and needs only 30 to 50.\n\n"
+      "Exit status: 0 also if no value or every value is stable; 2 bad input; 130 stopped by Ctrl-C.",
+      kVerificationSamples + kSamplesNearLimit));
 }
 
 }  // namespace hapbench

@@ -116,8 +116,8 @@ LimitQuestion question_of(const LimitOptions& options, const ScenarioText& scene
   return question;
 }
 
-/// Returns the warnings. Those about the fields of a device name --device, which replaces the device of the scene's
-/// file, and not this file.
+/// Returns the warnings. In warnings about fields of the device, replaces the scene's file by "--device NAME", because
+/// this option replaces the file's device. Returns the warnings unchanged if `device` is null.
 std::vector<std::string> of_option(const ComparedDevice* device, std::vector<std::string> warnings) {
   if (device == nullptr) return warnings;
   for (std::string& warning : warnings)

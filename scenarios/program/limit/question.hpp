@@ -60,7 +60,8 @@ struct LimitTable {
 /// Returns a table with all cases but without rows. The device axis has no field, so that --over may vary
 /// fields of the device. Throws InputError.
 LimitTable make_limit_table(const LimitOptions& options);
-/// Returns case i without its answer. Adds warnings to `warnings` that are not in it yet. Throws InputError.
+/// Returns the row of case i, without its answer. Adds the warnings about this case to `warnings`, each text once.
+/// Throws InputError.
 LimitRow make_limit_row(const LimitOptions& options, const LimitTable& table, std::size_t i,
                         std::vector<std::string>& warnings);
 

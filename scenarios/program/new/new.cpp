@@ -34,8 +34,8 @@ int list_kinds(const OutputOptions& output, ProgramContext& context) {
   return kSuccess;
 }
 
-/// Runs the scene. If it does not end as intended for its kind, returns a warning. Also returns the warnings of the
-/// run, unless the start is `explained`.
+/// Runs the scene. If the run does not end as intended for the scene's kind, returns a warning and the warnings of the
+/// run. `explained`: true if other warnings already explain this outcome; the warnings of the run are then omitted.
 std::vector<std::string> outcome_warnings(const CheckedScenario& scene, bool explained) {
   const Result run = run_scenario(scene, std::nullopt, false);
   if (outcome_is_expected(scene.scenario().expect, run.end.outcome)) return {};
@@ -118,8 +118,8 @@ void add_new(CommandLine& line) {
               "true length of the longest edge of the mesh's bounding box, with a unit: 12mm, 1.2cm, 0.012m or 0.5in");
   command.add(
       "--unit <unit>", options.unit,
-      "unit of the mesh file, instead of --extent: mm, cm, m or in; without both: m, and a mesh shorter than 1 mm "
-      "or longer than 1 m is refused",
+      "unit of the mesh file, instead of --extent: mm, cm, m or in. Without both, the file is read in m, and refused "
+      "if its longest edge is then below 1 mm or above 1 m",
       {.one_of = {"mm", "cm", "m", "in"}});
   command.add(
       "--side <axis>", options.side,

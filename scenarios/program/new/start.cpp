@@ -36,8 +36,8 @@ namespace {
 
 constexpr double kClearance = 0.001;  ///< distance between tool and surface at the start [m]
 constexpr double kDragSpeed = 5.0;    ///< speed of a drag [tool diameters per second]
-/// Time at the end of a requested path in which the tool reaches the hand's target [s]. The tool lags behind the target
-/// while it lands and climbs, by millimetres: the hand's spring has 300 N/m.
+/// Waiting time at the end of a requested path, so that the tool reaches the hand's target [s]. While the tool lands
+/// and climbs, it lags behind the target by millimetres, because the hand's spring has 300 N/m.
 constexpr double kArrival = 0.5;
 constexpr double kPressDepth = 0.0035;  ///< depth of a pressing hand's target below the surface [m]; gives 1 N
 
@@ -485,7 +485,7 @@ class Start {
   std::optional<double> extent_;             ///< stated longest edge of the mesh's box [m]
   std::vector<Vec3> requested_points_;       ///< points of --path, or the point of --at [m]
   Mat3 to_world_ = Mat3::Identity();         ///< rotates vectors of the side's frame into the world frame
-  double diameter_ = 0.001;                  ///< [m]
+  double diameter_ = 0.001;                  ///< diameter of the tool [m]
   mutable std::optional<MeshFile> largest_;  ///< largest component of the mesh; valid if the environment is equal to
                                              ///< largest_environment_
   mutable Json largest_environment_;

@@ -8,10 +8,10 @@
 #include "results/summary/summary.hpp"
 #include "scenarios/analysis/tuning/tune.hpp"
 
-/// The results of `tune`.
+/// The results of `tune`. The choice of a law is its best feasible setting, with the stiffness K (TunedLaw::choice).
 namespace hapbench {
 
-/// A question and its answer for each law.
+/// The question of a `tune` command, and the answer for each law.
 struct Tuning {
   TuneQuestion question;
   std::string scene;  ///< name of the scene, followed by the name of the device
@@ -19,7 +19,7 @@ struct Tuning {
   std::vector<TunedLaw> laws;
   std::vector<const TunedLaw*> ranking;  ///< laws with a feasible choice, best first
   std::size_t runs = 0;                  ///< number of simulations over all laws
-  /// What the diagnosis of `run` reports for the choice of the best law.
+  /// Diagnosis rules whose thresholds a run with the choice of the best law exceeds.
   std::vector<Diagnosed> findings;
 };
 
@@ -27,8 +27,8 @@ struct Tuning {
 /// in scenes without this metric it has the largest rendered stiffness K lambda_max.
 std::vector<const TunedLaw*> ranking_of(const std::vector<TunedLaw>& laws);
 
-/// A stability margin of a choice: its column in tune.csv, its heading, its JSON key, its printed text, and the
-/// largest value that the search covers.
+/// A stability margin of a choice: its column in tune.csv, its heading, its JSON key, and its printed text. From the
+/// value `max` on, the text says "more than", because the search ends there.
 struct Margin {
   const char *column, *unit, *meaning, *heading, *key, *text;
   std::optional<double> TuneMargins::*of;

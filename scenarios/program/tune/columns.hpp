@@ -5,7 +5,7 @@
 #include "scenarios/analysis/tuning/tune.hpp"
 #include "scenarios/program/columns.hpp"
 
-/// The tables of `tune`.
+/// Columns of the tables that `tune` writes and prints.
 namespace hapbench {
 
 /// Returns the bounds of --bound as JSON: {"inside_max_m": {"max": 0.0003}}.

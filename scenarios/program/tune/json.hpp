@@ -10,7 +10,8 @@ namespace hapbench {
 
 /// Returns the results as JSON. `tuned` is the file of the tuned scenario; empty for none.
 Json tuning_json(const Tuning& tuning, const std::filesystem::path& tuned);
-/// Returns the scenario with the choice of a law. Its file paths are relative to the directory `out`.
+/// Returns the scenario of the question with the choice of a law. The file paths in the returned scenario are relative
+/// to the directory `out`.
 Json tuned_scenario(const Tuning& tuning, const TunedLaw& law, const std::filesystem::path& out);
 
 }  // namespace hapbench

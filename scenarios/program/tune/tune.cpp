@@ -133,9 +133,10 @@ void add_tune(CommandLine& line) {
               "range of the damping ratio zeta of the virtual mass rendering.mass_kg (default: 0.01:10)");
   command.add("--mass <a:b>", options.mass,
               "range of the virtual mass on an admittance device [kg] (default: half to twice the scenario's)");
-  command.add("--scale <number>", options.scale,
-              "setup.mount.scale of your own loop (scenarios/LOOP.md); the printed lines of code for this loop have "
-              "coefficients divided by it (default: 1)");
+  command.add(
+      "--scale <number>", options.scale,
+      "scale of motion of your own loop, setup.mount.scale in scenarios/LOOP.md; tune divides the coefficients in "
+      "the lines of code that it prints for this loop by it (default: 1)");
   command.flag("--filters", options.question.filters, "on an impedance device, choose the velocity filter too");
   add_common(command, options, "tune_NAME");
   add_table(command, options.output);

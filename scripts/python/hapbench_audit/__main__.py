@@ -23,8 +23,8 @@ NOTES = [
     "time, position, force, orientation, velocity, contacts (number of contacts), measured (force "
     'from a sensor). A log of one axis has one position and one force. Units in names, such as "x '
     '[mm]", are applied.',
-    "Fields of --set: force_by_tool=true (the forces of the file act on the object; the command "
-    "changes their sign), touch_N (force from which a row is in contact; default: any force), "
+    "Fields of --set: force_by_tool=true (the log has the force of the tool on the object; audit "
+    "reverses its sign), touch_N (force from which a row is in contact; default: any force), "
     'sample_rate_Hz (for a log without times), and those of "hapbench import stroke --help".',
     "Energy: the sum of f . dp, with the force of a row held until the next row. Positive work is "
     "energy that the engine gives to the hand; the largest sum from the start to any row is the "

@@ -10,11 +10,12 @@ PLOT_NOTES = [
     "record.torque), depth, ratio, contacts, rendered, speed, x, y, z, path, energy, input_energy, "
     "or any column of the runs' tables. force, speed and other vectors are drawn as their length; "
     "--y fx_N,fy_N,fz_N draws components.",
-    "Runs: the folder of a comparison stands for all its runs. Each force law has its colour. A "
+    "Runs: several folders are drawn into one picture; the folder of a comparison stands for all its runs. "
+    "Each force law has its colour. A "
     "circle marks the start of a path, a square its end, a triangle the first touch.",
     "Peaks: a peak of more than three times the range of settled contact is cut off and labelled "
-    "with its value. So is the peak of a run that would flatten all other curves: a peak 100 "
-    "times as large as the peaks of the other runs, or 5 times for a failed run.",
+    "with its value, and so is a peak that is 100 times (in a failed run 5 times) as large as the "
+    "peaks of the other runs.",
     "A comparison with a ranking (several seeds, scenes, or --by): each metric by law, the best "
     "on top with its rank; --y draws the runs over time instead. --metric draws other metrics by "
     "law, also without a ranking. Grey: the error of the mean. A mean that is not larger than its "
@@ -86,8 +87,8 @@ def plot_line():
     line.texts(
         "--y",
         "<name,...>",
-        "quantities to draw (default: force, depth, ratio, contacts, path, and what was recorded of reference, "
-        "force_error and energy; energy needs a run with --set record.energy=true)",
+        "quantities to draw (default: force, depth, ratio, contacts, path; also reference, force_error and "
+        "energy if the run recorded them; for energy, run with --set record.energy=true)",
     )
     line.texts(
         "--metric",
@@ -144,8 +145,9 @@ def report_line():
     line.text(
         "--tolerance",
         "<ratio>",
-        "compare two folders instead of writing a page; allowed difference relative to each number, "
-        "or in a table to the largest value of the column; 0: identical digits",
+        "compare two folders instead of writing a page; allowed relative difference of single "
+        "numbers, and of table entries relative to the largest value of their column; 0: identical "
+        "digits",
     )
     return line
 

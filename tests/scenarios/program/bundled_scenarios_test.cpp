@@ -30,17 +30,16 @@ using test::lines_of;
 using test::ProgramRun;
 using test::read_file;
 
-// The numbers on record, in tests/data/numbers.txt: for each bundled scenario and for some commands a line
+// Format of the stored numbers in tests/data/numbers.txt: for each bundled scenario and for some commands a line
 // "name file" for each file with numbers, and below it an indented line for each column of the file:
 //
 //     column count last largest hash
 //
 // A column line gives the count of the numbers, the first digits of the last number and of the number with the largest
-// magnitude, and a hash of all numbers. The hash shows that a change of the code has changed no number. The digits show
-// in a diff which numbers have changed. Texts are not included. The numbers are the same on every processor and with
-// every compiler.
+// magnitude, and a hash of all numbers. The hash shows whether any number has changed. The digits show in a diff which
+// numbers have changed. Texts are not included. The numbers are the same on every processor and with every compiler.
 //
-// This renews the record after a change that is meant to change numbers, to be committed with it:
+// After a change that is meant to change numbers, this command updates the file, which is committed with the change:
 //
 //     HAPBENCH_RENEW_NUMBERS=1 build/release/bin/program_test --gtest_filter='*OnRecord*'
 
@@ -105,7 +104,7 @@ std::string first_digits(double number) {
   return text;
 }
 
-/// Collects the numbers of a column.
+/// Computes count, last number, largest magnitude and hash of the numbers of a column.
 class ColumnNumbers {
  public:
   void add(double number) {
@@ -116,7 +115,7 @@ class ColumnNumbers {
   }
   /// Returns the stored text: count, last number, largest number, hash.
   std::string text() const {
-    // Half of the hash: the probability that it misses a change is 2^-32.
+    // Half of the hash is stored: it misses a change with the probability 2^-32.
     const std::string hash = hash_text(hash_.value()).substr(0, 8);
     if (count_ == 0) return "0 - - " + hash;
     return fmt::format("{} {} {} {}", count_, first_digits(last_), first_digits(largest_), hash);
@@ -150,7 +149,7 @@ void add_numbers(ColumnNumbers& numbers, const Json& json) {
   for (const Json& value : json) add_numbers(numbers, value);
 }
 
-/// Returns the stored texts of a name by "file column".
+/// Returns the stored texts of one scenario or command, by "file column"; empty for an unknown name.
 std::map<std::string, std::string> flat(const NumbersByName& numbers, const std::string& name) {
   std::map<std::string, std::string> all;
   const auto found = numbers.find(name);
@@ -160,7 +159,7 @@ std::map<std::string, std::string> flat(const NumbersByName& numbers, const std:
   return all;
 }
 
-/// Returns the differences, one line for each difference.
+/// Returns the differences between found and stored numbers, one line for each difference.
 std::string differences(const NumbersByName& found, const NumbersByName& record) {
   std::string text;
   NumbersByName names = found;
@@ -200,9 +199,9 @@ RecordedNumbers numbers_below(const fs::path& directory) {
   return numbers;
 }
 
-/// Compares numbers by name with the stored numbers. Fails if a number differs or is missing. Also fails if stored
-/// names are left over, among names with a colon (`of_commands` true) or without. The failure names file and column.
-/// `some`: names may be left over.
+/// Compares numbers with the stored numbers, either of commands (names with a colon, `of_commands`) or of scenarios.
+/// Fails if a number differs or is not stored. Unless `some`, also fails if stored names are not found. The failure
+/// names file and column. If the variable kRenew is set, stores the numbers instead.
 void expect_recorded(bool of_commands, const NumbersByName& found, bool some = false) {
   ASSERT_FALSE(found.empty());
   if (std::getenv(kRenew) != nullptr) {
@@ -234,8 +233,8 @@ std::vector<std::string> shortened(const Scenario& scenario) {
   return arguments;
 }
 
-/// Returns the scenarios that are run in full: all scenarios, except with AddressSanitizer. It leaves out scenarios of
-/// 10^5 steps, because they take minutes and their first steps find the same errors.
+/// Returns the scenarios that are run in full: all scenarios without AddressSanitizer. With AddressSanitizer, omits
+/// scenarios of more than 10^4 steps, because they take minutes and their first steps find the same errors.
 std::vector<BundledScenario> scenarios_in_full() {
   std::vector<BundledScenario> scenarios = bundled_scenarios();
   constexpr std::int64_t kMostSanitizedSteps = 10'000;
@@ -246,14 +245,14 @@ std::vector<BundledScenario> scenarios_in_full() {
   return scenarios;
 }
 
-/// Runs the scenarios in full in one process.
+/// Runs all steps of these scenarios in one process.
 ProgramRun run_in_full(const std::vector<BundledScenario>& scenarios, const fs::path& out) {
   std::vector<std::string> arguments = {"run", "--out", out.string()};
   for (const BundledScenario& bundled : scenarios) arguments.push_back(bundled.file.string());
   return test::hapbench(arguments);
 }
 
-/// Makes the runs once for all tests of the suite.
+/// Fixture that makes the full runs once for all tests of the suite.
 class BundledScenarios : public testing::Test {
  protected:
   static void SetUpTestSuite() {
@@ -302,15 +301,15 @@ std::set<std::string> warnings_in(const std::string& err) {
   return warnings;
 }
 
-/// Returns the summary without the counts that brute force changes.
+/// Returns the summary without the work counts, which differ with brute force.
 std::string summary_without_work(Json summary) {
   summary.erase("work");
   return summary.dump();
 }
 
-// Another process, the scenario that the run wrote, the scalar build, and brute force instead of skips do not change a
-// byte. Scenarios of many steps are shortened; except in a soak test, only every eighth of them is tested, because
-// brute force is slow.
+// Checks that results do not change by a byte in another process, from the scenario that the run wrote, with the scalar
+// build, and with brute force instead of skips. Scenarios of many steps are shortened. Only every eighth scenario is
+// tested, except in a soak test, because brute force is slow.
 TEST_F(BundledScenarios, GiveTheSameBytesInTheScalarBuildWithoutSkipsFromTheirEffectiveScenarios) {
   const fs::path first = *directory_ / "first", again = *directory_ / "again",
                  effective = *directory_ / "effective" / "scenes";
@@ -342,8 +341,8 @@ TEST_F(BundledScenarios, GiveTheSameBytesInTheScalarBuildWithoutSkipsFromTheirEf
       EXPECT_EQ(run.status, 0) << bundled.name << ": " << run.err;
       warnings.merge(warnings_in(run.err));
     }
-    // The effective scenario has the scenario's name, because it becomes the name of the directory, and the same depth,
-    // because its paths are relative.
+    // The file has the scenario's name, because it becomes the name of the directory. Its folder has the same depth as
+    // the folder of the run, because its paths are relative.
     arguments.push_back((effective / (bundled.name + ".json")).string());
     fs::create_hard_link(out / "scenario.effective.json", arguments.back());
   }
@@ -406,7 +405,7 @@ TEST(Commands, HaveTheNumbersOnRecord) {
     const fs::path out = directory / name;
     arguments.insert(arguments.end(), {"--out", out.string(), "--quiet"});
     const ProgramRun run = test::hapbench(arguments);
-    // Status 3: a run that diverges, which happens with summation.
+    // Status 3 is also allowed: with summation, a run diverges.
     EXPECT_TRUE(run.status == 0 || run.status == 3) << name << ": " << run.err;
     numbers[name] = numbers_below(out);
   }

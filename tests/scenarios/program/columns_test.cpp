@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-/// The printed values of varied fields.
+/// Tests the printed values of varied fields.
 namespace hapbench::columns_test {
 namespace {
 

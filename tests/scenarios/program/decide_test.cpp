@@ -22,7 +22,8 @@ using test::lines_of;
 using test::ProgramRun;
 using test::read_file;
 
-// hapbench limit, tune and converge: their results and files. tests/data/golden/studies.txt has their printed texts.
+// Tests the results and files of hapbench limit, tune and converge. tests/data/golden/studies.txt has their printed
+// texts.
 
 using Words = std::vector<std::string>;
 
@@ -40,7 +41,7 @@ class Decide : public testing::Test {
 class LimitCommand : public Decide {
  protected:
   LimitCommand() {
-    // A probe pressed on a plane of 49 points by a hand with a mass.
+    // The scene has a probe that a hand with a mass presses on a plane of 49 points.
     test::write_plainly(directory_ / "press.json",
                         R"({"time": {"step_s": 0.001, "steps": 200}, "tool": {"diameter_m": 0.01, "length_m": 0.1},
                             "environment": {"type": "plane", "size_m": 0.006, "spacing_m": 0.001},
@@ -85,15 +86,15 @@ TEST_F(LimitCommand, GivesTheSameBytesWhateverTheJobs) {
 
 class TuneCommand : public Decide {
  protected:
-  /// Searches a smaller range of zeta than the default, in half the time.
+  /// Runs tune with a smaller range of zeta than the default, which halves the time.
   ProgramRun tune(const Words& more, const std::string& out = "out") const {
     return ask({"tune", "tap_wall", "--damping-ratio", "0.3:0.6"}, more, out);
   }
 };
 
 TEST_F(TuneCommand, ItsScenarioGivesTheMetricsThatWerePrinted) {
-  // Replaces the scene's device by another device, and one field of this device. Merging by "extends" alone would mix
-  // the fields of both devices.
+  // --device and --set replace the scene's device by another device and change one field of it. Merging by "extends"
+  // alone would mix the fields of both devices.
   const Json json = tune({"--device", "touch", "--set", "device.delay_samples=0.5", "--bound", "inside_max_m=0.01",
                           "--algorithms", "shaped_stiffness,mean", "--json"})
                         .json();
@@ -121,8 +122,8 @@ TEST_F(TuneCommand, ItsScenarioGivesTheMetricsThatWerePrinted) {
   EXPECT_GT(lines_of(read_file(file("out/tune_trials.csv"))).size(), 30u);
 }
 
-/// For one scene and device, the recommended stiffness, linear limit and simulated limit are the same in tune, limit
-/// and the device table.
+/// Checks that tune, limit and the device table print the same recommended stiffness, linear limit and simulated limit
+/// for one scene and device.
 TEST_F(TuneCommand, PrintsTheLimitsThatLimitPrints) {
   const Json law = tune({"--device", "touch", "--json"}).json()["algorithms"][0];
   ASSERT_TRUE(law["simulated_limit_N_per_m"].is_number() && law["linear_limit_N_per_m"].is_number()) << law.dump(1);
@@ -142,8 +143,8 @@ TEST_F(TuneCommand, PrintsTheLimitsThatLimitPrints) {
   EXPECT_GE(law["linear_limit_N_per_m"].get<double>(), 2.0 * law["stiffness_N_per_m"].get<double>());
 }
 
-/// A limit is kept with the error of its metric: the change if the step or the spacing is halved, or the depth is
-/// evaluated in every step.
+/// Checks that a bound also holds if the error of the metric is added. The error is the change of the metric if the
+/// step or the spacing is halved, or the depth is evaluated in every step.
 TEST_F(TuneCommand, KeepsALimitByTheErrorOfItsMetric) {
   const Json law = tune({"--bound", "inside_max_m=6e-4", "--json"}).json()["algorithms"][0];
   ASSERT_TRUE(law["feasible"].get<bool>()) << law.dump(1);
@@ -152,7 +153,8 @@ TEST_F(TuneCommand, KeepsALimitByTheErrorOfItsMetric) {
   EXPECT_LE(law["metrics"]["inside_max_m"].get<double>() + error, 0.6e-3);
 }
 
-/// A bound of the user does not remove the requirement of low vibration; --allow-vibration removes it.
+/// Checks that a bound of the user does not remove the requirement of low vibration, and that --allow-vibration removes
+/// it.
 TEST_F(TuneCommand, KeepsLowVibrationBesideABound) {
   const auto findings = [&](const Words& more, const std::string& out) {
     tune(more, out);
@@ -169,7 +171,7 @@ TEST_F(TuneCommand, KeepsLowVibrationBesideABound) {
   EXPECT_GE(any["algorithms"][0]["stiffness_N_per_m"], bound["algorithms"][0]["stiffness_N_per_m"]);
 }
 
-/// Without limits, the run of the recommended setting has low vibration by the rules of the diagnosis.
+/// Checks that without limits, the run of the recommended setting has low vibration by the rules of the diagnosis.
 TEST_F(TuneCommand, RecommendsAQuietRunInTheSameBytesHoweverManyJobs) {
   tune({"--jobs", "1", "--quiet"}, "a");
   tune({"--jobs", "3", "--quiet"}, "b");
@@ -199,7 +201,7 @@ TEST_F(ConvergeCommand, WritesTheSameBytesHoweverManyJobs) {
     EXPECT_EQ(read_file(directory_ / "one" / name), read_file(directory_ / "three" / name)) << name;
 }
 
-/// The error of an extreme includes the difference between assumptions of the first counted step.
+/// Checks the printed level. The error of an extreme includes its spread over the choices of the first counted step.
 TEST_F(ConvergeCommand, NamesTheCoarsestLevelThatIsEnough) {
   for (const auto& [to, expected] :
        {std::pair{"0.03", "\nerror below 3 %: time.step_s = 0.00025 ("},
@@ -233,7 +235,7 @@ TEST(Ledger, HasFourPartsWithANumberInEveryRow) {
     ++rows;
     std::vector<std::string> cells;
     for (const std::string_view cell : parts_of(line, '|')) cells.emplace_back(cell);
-    if (cells.size() != 8) continue;  // skips rows of the table of revised rules
+    if (cells.size() != 8) continue;  // skips the rows of the table of revised rules
     for (std::size_t i = 1; i < 7; ++i) EXPECT_GT(cells[i].size(), 2u) << line;
     EXPECT_NE(cells[4], " – ") << "no number: " << line;
   }
@@ -266,8 +268,8 @@ void expect_on_record(const Json& ledger, const std::vector<Claim>& claims) {
   }
 }
 
-// The subjects of appendix D take four fifths of the time of all claims, so their claims are left out. numbers.txt
-// contains their trajectories.
+// Checks the claims without subjects. The claims about the subjects of appendix D take four fifths of the time of all
+// claims, so they are left out. numbers.txt contains the trajectories of the subjects.
 TEST(Ledger, OfClaimsWithoutSubjectsIsTheOneTheProgramMakes) {
   std::vector<Claim> claims = all_claims();
   std::erase_if(claims, [](const Claim& claim) { return claim.timing || claim.costly; });
@@ -297,7 +299,8 @@ TEST(WholeLedger, InTheTreeIsTheOneTheProgramMakes) {
   expect_on_record(ledger, all_claims());
 }
 
-// A ledger of single claims would replace the ledger of all claims, so it is written only if --out names a folder.
+// Checks that a ledger of single claims is written only if --out names a folder, because it would replace the ledger of
+// all claims.
 TEST(Ledger, IsNotWrittenOfSingleClaimsUnlessItIsSaidWhere) {
   const test::TemporaryDirectory directory;
   const std::string out = (directory / "out").string(), ledger = (directory / "b3.json").string();
@@ -315,7 +318,7 @@ TEST(Ledger, IsNotWrittenOfSingleClaimsUnlessItIsSaidWhere) {
 
 using Verdicts = std::map<std::string, std::string>;
 
-/// Returns the ledger's verdicts by claim, without claims about times and claims that take long to judge.
+/// Returns the ledger's verdicts by claim. Omits claims about times and claims that take long to judge.
 Verdicts verdicts_on_record() {
   Verdicts verdicts;
   const Json ledger = Json::parse(test::read_file(kReference / "claims.json"));
@@ -339,7 +342,7 @@ Verdicts verdicts_under(const Assumptions& assumptions, AssumptionSet set) {
   return verdicts;
 }
 
-// Takes a minute on one core.
+// Checks stored verdicts with another value of one assumption. Takes a minute on one core.
 TEST(RobustnessOnRecord, HasTheVerdictsThatTheProgramMakesWithAnotherAssumption) {
   const Json record = read_json(kReference / "sensitivity.json");
   if (record.at("claims").empty()) GTEST_SKIP() << "hapbench reproduce --sensitivity has not made the record yet";
@@ -360,7 +363,8 @@ TEST(RobustnessOnRecord, HasTheVerdictsThatTheProgramMakesWithAnotherAssumption)
   EXPECT_GT(compared, 10u);
 }
 
-/// The ledger's own values, given as an assumption set, must give the verdicts of the ledger.
+/// Checks that the values of the assumptions in the ledger, given as an assumption set, give the verdicts of the
+/// ledger.
 TEST(RobustnessOnRecord, OfTheAssumptionsOnRecordIsTheLedger) {
   const Assumptions assumptions(kReference / "assumptions.json");
   Verdicts on_record = verdicts_on_record();
@@ -369,7 +373,7 @@ TEST(RobustnessOnRecord, OfTheAssumptionsOnRecordIsTheLedger) {
   EXPECT_EQ(verdicts_under(assumptions, {assumptions.recorded_values()}), on_record);
 }
 
-/// The ledger contains the record: a claim with all its cases is not "not sampled".
+/// Checks that the ledger contains the sensitivity record: a claim with a complete record is not "not sampled".
 TEST(RobustnessOnRecord, IsInTheLedger) {
   const SensitivityRecord record(kReference / "sensitivity.json");
   const Json ledger = read_json(kReference / "claims.json");

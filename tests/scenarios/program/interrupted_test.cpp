@@ -25,7 +25,7 @@ using test::hapbench;
 using test::ProgramRun;
 using test::RunningProgram;
 
-/// A run that takes minutes and is killed when it has begun to write.
+/// Fixture with a run that takes minutes and is killed when it has begun to write.
 class KilledRun : public testing::Test {
  protected:
   void kill_a_run() const {
@@ -73,7 +73,7 @@ TEST(FailedWrite, LeavesTheResultsOfAnEarlierRun) {
   const std::string out = (directory / "out").string();
   EXPECT_EQ(hapbench({"run", "poke_plane", "--out", out}).status, 0);
   const auto before = test::files_below(out);
-  // trajectory.csv is larger than the file limit, as on a full disk.
+  // trajectory.csv is larger than the file limit, so that writing fails as on a full disk.
   const ProgramRun again =
       hapbench({"run", "poke_plane", "--set", "rendering.algorithm=mean", "--out", out}, {.file_limit = 50'000});
   EXPECT_EQ(again.status, 1) << again.err;
@@ -100,7 +100,7 @@ TEST(FailedWrite, OfAFolderThatAnotherRunWritesTo) {
   EXPECT_TRUE(fs::is_empty(directory / "out"));
 }
 
-/// A program that reads a pipe without a writer, and therefore does not check for a stop.
+/// Fixture with a program that reads a pipe without a writer, and therefore does not check for a stop.
 class Stopped : public testing::Test {
  protected:
   void SetUp() override {
@@ -111,7 +111,7 @@ class Stopped : public testing::Test {
     ASSERT_TRUE(reader_->runs_until([&] { return (writer_ = ::open(pipe.c_str(), O_WRONLY | O_NONBLOCK)) >= 0; }));
   }
   void TearDown() override { ::close(writer_); }
-  /// Returns standard error without progress lines. A progress line is due when the program ends itself.
+  /// Returns standard error without progress lines. The program may print a progress line at any time until it exits.
   std::string message() {
     std::string text;
     for (const std::string& line : test::lines_of(reader_->err()))
@@ -150,7 +150,7 @@ TEST_F(Stopped, AtOnceByASecondSignal) {
   EXPECT_EQ(message(), "");
 }
 
-/// Commands that Ctrl-C ends while they compute.
+/// Fixture of commands that Ctrl-C ends while they compute.
 class InterruptedCommand : public testing::Test {
  protected:
   /// Starts a command that takes minutes. Sends the signal when the command has created its directory and has had time
@@ -182,7 +182,7 @@ TEST_F(InterruptedCommand, EndsWith130AndLeavesWhatWasThereBefore) {
   EXPECT_EQ(test::files_below(out_), before);
 }
 
-/// Sweeps that are killed and continued; batch/sweep_test.cpp tests all other interruptions.
+/// Fixture of sweeps that are killed and continued; batch/sweep_test.cpp tests all other interruptions.
 class KilledSweep : public testing::Test {
  protected:
   /// Returns the arguments of a sweep of at least 180 runs of some milliseconds.
@@ -198,7 +198,8 @@ class KilledSweep : public testing::Test {
   }
   /// Returns the number of rows of the unfinished table.
   std::size_t rows() const { return TableFile::rows_in_progress(directory_ / "out/sweep.csv"); }
-  /// Kills a sweep. Returns false if the sweep ended first, because a busy machine delayed the test.
+  /// Starts a sweep and kills it after ten rows. Returns false if the sweep ended first, because a busy machine delayed
+  /// the test.
   bool is_killed() const {
     RunningProgram sweep(test::hapbench_program(), words("out"));
     return sweep.runs_until([&] { return rows() >= 10; }) && sweep.kill();

@@ -17,7 +17,7 @@ namespace {
 
 using test::hapbench;
 
-/// A tool that a sampled hand presses on a plane.
+/// Returns the scenario of a tool that a hand presses on a plane. The hand is sampled with the device.
 Json pressed(const std::string& law, const char* device, const char* tip) {
   Json scene = Json::parse(R"({
     "time": {"step_s": 0.0005, "duration_s": 1.5},
@@ -40,7 +40,8 @@ class LinearLimitOfCommands : public testing::Test {
     const Json& linear = limit["limits"][0]["linear_limit"];
     return linear.is_number() ? std::optional(linear.get<double>()) : std::nullopt;
   }
-  /// Returns K divided by the linear limit that the rule edge of `run` reports at K [N/m]; empty without the rule.
+  /// Returns K divided by the linear limit, as the rule `edge` in the diagnosis of `run` reports it at K [N/m]; empty
+  /// if the rule finds nothing.
   std::optional<double> limit_ratio_at(const std::string& scene, double K) const {
     const auto run = hapbench(
         {"run", scene, "--set", fmt::format("rendering.stiffness_N_per_m={}", K), "--out", folder_ / "run", "--json"});
@@ -64,8 +65,8 @@ TEST_F(LinearLimitOfCommands, IsOneInRunAndLimit) {
         for (const double factor : {1.2, 1.6}) {
           const auto ratio = limit_ratio_at(scene, factor * *linear);
           if (!ratio) continue;  // the run does not vibrate
-          // Both compute the limit to 1e-7 from derivatives with an error of 1e-7. A nonlinear contact has another
-          // slope at another equilibrium, and `edge` is printed with six digits.
+          // Both commands compute the limit to 1e-7 from derivatives with an error of 1e-7. A nonlinear contact has
+          // another slope at another equilibrium, and `edge` is printed with six digits.
           EXPECT_NEAR(*ratio, factor, 1e-4 * factor) << law << " " << device << " " << tip;
           ++compared;
         }

@@ -1,4 +1,4 @@
-// The lines by which `tune` opens its scenario in a haptic loop, for other scales of the mount.
+// Tests the lines with which `tune` describes how to open its scenario in a haptic loop, for other scales of the mount.
 
 #include "scenarios/program/tune/loop_lines.hpp"
 
@@ -14,7 +14,8 @@
 namespace hapbench {
 namespace {
 
-// Springs through the origin: at another scale, the same motion of the handle is a scaled motion in the same scene.
+// Scene of springs through the origin. At another scale, the same motion of the handle is a scaled motion in the same
+// scene.
 const char* const kScene = R"({
   "time": {"step_s": 0.001, "steps": 100},
   "environment": {"type": "springs", "groups": [{"direction": [1, 0, 0], "count": 2},
@@ -24,7 +25,7 @@ const char* const kScene = R"({
                 "friction": {"mu_s_N_s_per_m": 0.5, "mu_f_s_per_m": 0.7}}
 })";
 
-/// Returns the forces along a motion of the handle.
+/// Returns the forces [N] along a motion of the handle, three components per call.
 std::vector<double> forces(double scale, const std::vector<std::string>& overrides) {
   HapbenchMount mount = HAPBENCH_MOUNT_INIT;
   mount.max_force = 100.0;

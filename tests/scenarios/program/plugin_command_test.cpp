@@ -86,7 +86,7 @@ TEST_F(PluginCommand, EndsARunAndNoMoreWhenALawFails) {
       << both.err;
 }
 
-/// The command fails even if the scenario expects a run that diverges.
+/// Checks that the command fails even if the scenario expects a run that diverges.
 TEST_F(PluginCommand, FailsWhenASourceOfContactsFails) {
   const EnvironmentVariable how("HOSTILE", "contacts");
   const std::string source =
@@ -109,8 +109,8 @@ TEST_F(PluginCommand, FailsWhenASourceOfContactsFails) {
   EXPECT_NE(run.err.find("a law or source of contacts from outside failed once"), std::string::npos) << run.err;
 }
 
-/// The proxy finds its contacts itself. Neither its force nor its metrics use the contacts of a module, and compare
-/// reports this.
+/// Checks the proxy, which finds its contacts itself. Neither its force nor its metrics use the contacts of a module,
+/// and compare reports this.
 TEST_F(PluginCommand, LeavesContactsOfAModuleOutWhereTheLawFindsItsOwn) {
   const std::string sphere =
       R"(rendering.contact_source={"type":"plugin","file":")" + plugin("sphere") + R"(","config":{"radius_m":0.002}})";
@@ -177,7 +177,7 @@ TEST_F(PluginCommand, SweepsCarryThePluginAlong) {
   ASSERT_EQ(with({"--shard", "0/2"}).status, 0);
   const Json description = Json::parse(read_file(directory_ / "s/sweep.0_of_2.json"));
   EXPECT_EQ(description["plugins"].size(), 1u);
-  // The same law in a file with other bytes makes another sweep.
+  // The same law in a file with other bytes defines another sweep.
   fs::remove(mine);
   fs::copy_file(plugin("depth_weighted"), mine);
   fs::resize_file(mine, fs::file_size(mine) + 1);

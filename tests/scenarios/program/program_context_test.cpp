@@ -10,11 +10,11 @@
 #include "scenarios/program/run_program.hpp"
 #include "tests/results/files.hpp"
 
-/// Several programs in one process, such as in a Python interpreter, share nothing.
+/// Tests that several programs in one process, such as in a Python interpreter, share no state.
 namespace hapbench::program_context_test {
 namespace {
 
-/// Returns the output of a command for a host. Precondition: the command succeeds.
+/// Returns the output of a command that runs inside a host program. Precondition: the command succeeds.
 std::string text_of(const ProgramArguments& words) {
   CapturedOutput output;
   ProgramContext context{.program = "/some/where/hapbench", .captured = &output};

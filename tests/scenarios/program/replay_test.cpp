@@ -1,4 +1,5 @@
-// `run --replay` and `compare --replay`: the function that rendered the log of a haptic loop renders it again.
+// Tests `run --replay` and `compare --replay`, which render the log of a haptic loop again with the function that
+// rendered it.
 
 #include <gtest/gtest.h>
 
@@ -72,7 +73,7 @@ TEST_F(Replay, HasTheRecordedBitsInBothBuilds) {
   EXPECT_GT(json["stale_calls"], 0);
   EXPECT_EQ(json["fault_calls"], 100);
   EXPECT_EQ(read_file(folder / "out/replay.csv"), read_file(log));
-  // The reference build without SIMD.
+  // Check the reference build without SIMD.
   const std::string scalar = folder / "scalar";
   const auto other =
       test::run_program(test::hapbench_scalar_program(), {"run", scene, "--replay", log, "--out", scalar, "--quiet"});

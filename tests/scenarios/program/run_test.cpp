@@ -18,7 +18,8 @@ using test::hapbench;
 using test::lines_of;
 using test::ProgramRun;
 
-// hapbench run: files, tables, times. tests/data/golden/ends.txt has the ends of runs and the texts on standard error.
+// Tests the files, tables and times of hapbench run. tests/data/golden/ends.txt has the ends of runs and the texts on
+// standard error.
 
 using Names = std::vector<std::string>;
 
@@ -89,7 +90,7 @@ TEST_F(RunCommand, ThatDivergesKeepsWhatWasRecorded) {
   EXPECT_EQ(s["steps"], step);
   EXPECT_EQ(test::cells_of(rows.back())[0], std::to_string(step - 1));
   EXPECT_NEAR(divergence["time_s"].get<double>(), 0.0005 * static_cast<double>(step), 1e-12);
-  // Divergence in the first step.
+  // Check divergence in the first step.
   hapbench({"run", "single_spring", "--out", out(), "--set", "bounds.position_m=1e-9"});
   EXPECT_EQ(summary()["divergence"]["step"], 0);
   EXPECT_EQ(summary()["metrics"]["final_position_m"], nullptr);
@@ -125,7 +126,7 @@ TEST_F(RunCommand, KeepsItsWarnings) {
   EXPECT_NE(text.find(warnings[0].get<std::string>()), std::string::npos) << text;
 }
 
-/// `hapbench run --latency` and record.timing.
+/// Fixture of the tests of `hapbench run --latency` and record.timing.
 class Latency : public RunCommand {};
 
 TEST_F(Latency, TimesEveryStepAndPrintsATable) {
@@ -144,8 +145,8 @@ TEST_F(Latency, IsPartOfTheJsonAndOfNoOtherFile) {
   const ProgramRun run = hapbench({"run", "single_spring", "--out", out("a"), "--latency", "--json"});
   EXPECT_EQ(run.json()[0]["step_latency"], json_file("a/timing.json")["step_latency"]);
   EXPECT_FALSE(summary("a").contains("step_latency"));
-  // The option gives the same result as the field of the scenario. Except for times, the results equal the results
-  // without the option.
+  // The option gives the same result as the field of the scenario. Without the option, all results except times are the
+  // same.
   hapbench({"run", "single_spring", "--out", out("b"), "--set", "record.timing=true"});
   test::expect_same_files(directory_ / "a", directory_ / "b", {"timing.json"});
   hapbench({"run", "single_spring", "--out", out("c")});
@@ -164,8 +165,8 @@ constexpr double kMaxSeconds = 10.0;
 #else
 constexpr double kMaxSeconds = 100.0;
 #endif
-/// Maximum address space of the program: the largest file read has 64 MiB, and 16 bytes for each value of it are a
-/// gigabyte.
+/// Maximum address space of the program [bytes]. The largest file that it reads has 64 MiB, and 16 bytes for each value
+/// of this file are a gigabyte.
 constexpr std::size_t kMaxMemory = HAPBENCH_TEST_SANITIZED ? 0 : std::size_t{3} << 30;
 
 struct BadInput {

@@ -58,7 +58,7 @@ std::string marked(const std::string& text, const std::string& mark) {
   return result;
 }
 
-/// Adds the paths of all values, such as "rows[].value", on which programs that read the JSON rely.
+/// Adds the paths of all values below `json`, such as "rows[].value". Programs that read the JSON rely on these paths.
 void add_keys(const Json& json, const std::string& path, std::set<std::string>& keys) {
   if (json.empty() || !json.is_structured()) keys.insert(path);
   for (const auto& [key, value] : json.items())

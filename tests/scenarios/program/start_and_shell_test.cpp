@@ -13,7 +13,7 @@
 #include "tests/scenarios/support/scenarios.hpp"
 #include "tests/support/meshes.hpp"
 
-/// Tests hapbench new, point-shell export and effective scenarios: files that are read again.
+/// Tests hapbench new, point-shell export and effective scenarios, whose files the program reads again.
 namespace hapbench::start_and_shell_test {
 namespace {
 
@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 using test::hapbench;
 using test::ProgramRun;
 
-/// `hapbench new`
+/// Fixture of the tests of `hapbench new`.
 class NewCommand : public testing::Test {
  protected:
   std::string path(const std::string& name) const { return (directory_ / name).string(); }
@@ -52,7 +52,7 @@ TEST_F(NewCommand, WritesScenariosOfEveryKindThatRunAtOnceAndTouch) {
   }
 }
 
-/// Writes a rod along x.
+/// Writes the mesh of a rod along x as OBJ.
 void write_rod(const fs::path& file, double length, double thickness) {
   TriangleSoup rod = test::cube(0.5);
   for (Vec3& corner : rod.vertices) corner = corner.cwiseProduct(Vec3(length, thickness, thickness));
@@ -62,7 +62,7 @@ void write_rod(const fs::path& file, double length, double thickness) {
 TEST_F(NewCommand, GivesAMeshItsStatedSize) {
   struct Size {
     double length;
-    const char* extent;  ///< empty: the file is in metres
+    const char* extent;  ///< value of --extent; empty: the file is in metres
     double scale;
   };
   for (const auto& [length, extent, scale] :
@@ -115,7 +115,7 @@ TEST_F(NewCommand, JudgesTheSizeOfAShellAndStartsOverTheLargestComponent) {
   std::vector<std::string> confirmed = words;
   confirmed.insert(confirmed.end(), {"--unit", "m"});
   EXPECT_EQ(hapbench(confirmed).status, 0);
-  // A speck above and beside a cube.
+  // Check a small component (a speck) above and beside a cube.
   test::write_plainly(directory_ / "speck.obj",
                       test::obj_text(test::together(test::cube(0.01, {50, 0, 9}), test::cube(3.0))));
   const ProgramRun started =
@@ -138,7 +138,7 @@ TEST_F(NewCommand, NamesTheClockOfAStrokeThatNoRunCanRecord) {
   }
 }
 
-/// An open sheet of 8 x 8 mm with a hump; its normals point up or down.
+/// Fixture with an open sheet of 8 x 8 mm with a hump; its normals point up or down.
 class NewOnASheet : public NewCommand {
  protected:
   NewOnASheet() {
@@ -149,7 +149,7 @@ class NewOnASheet : public NewCommand {
     test::write_plainly(directory_ / "up.obj", test::obj_text(up));
     test::write_plainly(directory_ / "down.obj", test::obj_text(test::reversed(up)));
   }
-  /// Returns the written scenario after checking that it runs and touches.
+  /// Runs `hapbench new` and returns the written scenario. Checks that it runs and touches its environment.
   Json made(std::vector<std::string> words, std::string* output = nullptr) const {
     words.insert(words.begin(), "new");
     words.insert(words.end(), {"--out", path("made.json")});
@@ -175,7 +175,7 @@ TEST_F(NewOnASheet, TurnsNormalsThatPointAwayFromTheTool) {
   const std::string behind = hapbench({"validate", path("made.json"), "--set", "environment.flip_normals=false"}).err;
   EXPECT_NE(behind.find("1.5 mm behind the surface"), std::string::npos) << behind;
   EXPECT_EQ(hapbench({"validate", path("made.json")}).err.find("behind"), std::string::npos);
-  // The same holds for a tool whose shank passes through the surface, with its tip 0.2 mm behind the surface.
+  // The same holds for a tool whose shank passes through the surface and whose tip is 0.2 mm behind the surface.
   const auto at = turned["initial"]["position_m"].get<std::array<double, 3>>();
   Vec3 touching(at[0], at[1], at[2]);
   touching.z() -= 0.0013;
@@ -186,7 +186,7 @@ TEST_F(NewOnASheet, TurnsNormalsThatPointAwayFromTheTool) {
                                      .err;
     EXPECT_EQ(warnings.find("behind the surface") != std::string::npos, !flip) << warnings;
   }
-  // Commands that run the scene ask the same question about a tool that begins inside.
+  // Commands that run the scene print the same question if the tool begins inside the environment.
   for (const char* command : {"run", "compare"}) {
     const std::string err = hapbench({command, path("made.json"), "--set", "environment.flip_normals=false", "--set",
                                       "time.steps=10", "--set", "expect={}", "--out", path("out")})
@@ -205,7 +205,7 @@ TEST_F(NewOnASheet, StartsAtTheGivenPoint) {
       made({"mesh", "--from", path("down.obj"), "--extent", "8mm", "--side=-z", "--at", "0.002,-0.001,0.0006"});
   EXPECT_FALSE(below["environment"].contains("flip_normals"));
   const auto start = below["initial"]["position_m"].get<std::array<double, 3>>();
-  // One point is kept in each cube of 0.1 mm; the tolerance is its diagonal.
+  // One point is kept in each cube of 0.1 mm. The tolerance is the diagonal of the cube.
   EXPECT_NEAR(start[0], 0.002, 1.8e-4);
   EXPECT_NEAR(start[1], -0.001, 1.8e-4);
   EXPECT_LT(start[2], -0.0005);
@@ -232,7 +232,7 @@ TEST_F(NewOnASheet, ComesFromEverySideOfAClosedBody) {
 }
 
 TEST_F(NewOnASheet, PlaysAStrokeBackOverAMesh) {
-  // A stroke along x, 0.1 mm below the top of the hump, in metres.
+  // Use a stroke along x, 0.1 mm below the top of the hump, in metres.
   test::write_plainly(
       directory_ / "stroke.csv",
       "time_s,px_m,py_m,pz_m,axis_x,axis_y,axis_z\n0,-0.002,0,0.0009,0,0,-1\n1,0.002,0,0.0009,0,0,-1\n");
@@ -242,7 +242,7 @@ TEST_F(NewOnASheet, PlaysAStrokeBackOverAMesh) {
   EXPECT_EQ(json["motion"]["position"]["file"], "stroke.csv");
 }
 
-/// Returns the warnings of validate about the bundled scene of a tooth, 10 mm long, with these fields.
+/// Returns the warnings of validate about mesh_molar, the bundled scene of a tooth 10 mm long, with these fields.
 std::string warnings_of_tooth(std::vector<std::string> fields) {
   std::vector<std::string> words = {"validate", "mesh_molar"};
   for (const std::string& field : fields) words.insert(words.end(), {"--set", field});
@@ -253,7 +253,7 @@ std::string warnings_of_tooth(std::vector<std::string> fields) {
 
 TEST(ValidateCommand, NamesASizeThatNoHandWorksOn) {
   const std::string size = "usual environments are 1 mm ... 1 m long: is environment.scale right?";
-  // Millimetres instead of metres, with a tool of the same scale.
+  // Check millimetres that are read as metres, with a tool of the same scale.
   const std::string large =
       warnings_of_tooth({"environment.scale=1", "environment.spacing_m=0.15", "tool.diameter_m=1", "tool.length_m=10"});
   EXPECT_NE(large.find(size), std::string::npos) << large;
@@ -271,7 +271,7 @@ TEST(ValidateCommand, NamesPointsThatTheToolFeelsOneByOne) {
   EXPECT_EQ(warnings_of_tooth({"environment.spacing_m=0.00016"}).find("apart"), std::string::npos);
 }
 
-/// A warning about a bundled scene would be a false alarm.
+/// Checks that bundled scenes cause no warning, because it would be a false alarm.
 TEST(ValidateCommand, FindsNoUnitsWrongInBundledScenes) {
   for (const test::NamedScenario& scenario : test::bundled_scenario_files()) {
     const ProgramRun run = test::hapbench_in_process({"validate", scenario.name});
@@ -320,9 +320,9 @@ std::string without_files(const std::string& text) {
   return std::regex_replace(text, std::regex("[^\n]*\\.json: /"), "/");
 }
 
-/// Runs scenarios with files, all records and unusual settings, then their effective scenarios from a directory that a
-/// link leads to. The paths in the effective scenarios are written differently; everything else is the same, including
-/// the hash of the scenario.
+/// Checks that effective scenarios reproduce their runs. Runs scenarios with files, all records and unusual settings,
+/// then their effective scenarios from a directory that a link leads to. The paths in the new effective scenarios are
+/// written differently; everything else is the same, including the hash of the scenario.
 TEST(EffectiveScenario, ReproducesTheRunFromAnotherDirectory) {
   const test::TemporaryDirectory directory;
   fs::create_directory(directory / "my scenes");

@@ -23,7 +23,7 @@ using test::lines_of;
 using test::ProgramRun;
 using test::read_file;
 
-// hapbench sweep: results, files and output, of whole sweeps and of shards.
+// Tests the results, files and output of hapbench sweep, for whole sweeps and for shards.
 
 using Words = std::vector<std::string>;
 
@@ -51,7 +51,7 @@ class SweepCommand : public testing::Test {
   test::TemporaryDirectory directory_;
 };
 
-/// Simulates a full disk for the sweep: a file stands where the folder of a run should be.
+/// Checks a sweep whose results cannot be written, as on a full disk: a file has the name of a run's folder.
 TEST_F(SweepCommand, StartsNoFurtherRunsWhereTheyCannotBeKept) {
   fs::create_directories(directory_ / "a" / "runs");
   std::ofstream(directory_ / "a" / "runs" / "000000") << "in the way";
@@ -66,7 +66,7 @@ TEST_F(SweepCommand, StartsNoFurtherRunsWhereTheyCannotBeKept) {
   EXPECT_EQ(table("a"), table("b"));
 }
 
-/// A soft law lets the tool through. Runs that fail are results; only an unmet expect is an error.
+/// Checks a soft law that lets the tool through. Runs that fail are results; only an unmet expect is an error.
 TEST_F(SweepCommand, CountsRunsThatFailAndEndsThemEarly) {
   const auto sweep_of = [this](const std::string& out, const Words& more) {
     Words all = {"sweep",  "mesh_molar",
@@ -200,7 +200,8 @@ TEST_F(SweepCommand, VariesScenesAndWholeObjects) {
   EXPECT_EQ(hapbench({"sweep", (directory_ / "a").string(), "--json"}).out, run.out);
 }
 
-/// Runs the shards like Slurm: one task for each shard. One task is repeated, and the last task joins the tables.
+/// Checks shards that are run like in Slurm: one task for each shard. One task is repeated, and the last task joins the
+/// tables.
 TEST_F(SweepCommand, RunsInShardsByTheScriptForSlurm) {
   const auto task = [&](const std::string& number, Words more) {
     more.insert(more.begin(), {"HAPBENCH=" + test::hapbench_program().string(), "SLURM_ARRAY_TASK_COUNT=3",
@@ -222,7 +223,7 @@ TEST_F(SweepCommand, RunsInShardsByTheScriptForSlurm) {
 
 TEST(SweepThreads, ThatCannotAllBeStartedEndItWithAReason) {
   const test::TemporaryDirectory directory;
-  // Each thread has a stack of some megabytes.
+  // Check threads that do not fit into memory: each thread has a stack of some megabytes.
   const ProgramRun run =
       hapbench({"sweep", "tap_wall", "--vary", "seed=1:400:400", "--jobs", "200", "--out", directory / "out"},
                {.memory_limit = std::size_t{1} << 30});
@@ -233,7 +234,7 @@ TEST(SweepThreads, ThatCannotAllBeStartedEndItWithAReason) {
 #endif
 }
 
-/// A scenario with 16 million points, which are allowed, and a memory limit that is too small for them.
+/// Checks a scenario with 16 million points, which is valid, and a memory limit that is too small for them.
 TEST(Memory, ThatIsNotThereEndsACommandWithAReason) {
 #ifdef HAPBENCH_SANITIZED
   GTEST_SKIP() << "sanitizers reserve more addresses";
@@ -245,7 +246,7 @@ TEST(Memory, ThatIsNotThereEndsACommandWithAReason) {
   EXPECT_NE(run.err.find("out of memory; allowed: "), std::string::npos) << run.err;
 }
 
-// hapbench compare: algorithms, scenarios and seeds. tests/data/golden/sweep.txt has the printed texts,
+// Tests the algorithms, scenarios and seeds of hapbench compare. tests/data/golden/sweep.txt has the printed texts,
 // tests/known_answers the numbers.
 
 class CompareCommand : public testing::Test {
@@ -259,13 +260,13 @@ TEST_F(CompareCommand, EqualsARunOfEachAlgorithmAlone) {
   const std::string scene = "peg_in_hole_2d_shaped_stiffness";
   hapbench({"compare", scene, "--algorithms", "mean", "--out", at("out")});
   hapbench({"run", scene, "--set", "rendering.algorithm=mean", "--out", at("run")});
-  // The run misses the expectations of another algorithm, which compare does not check; the numbers are the same.
+  // Only summary.json differs: the run misses the expectations of another algorithm, which compare does not check. The
+  // numbers are the same.
   test::expect_same_files(directory_ / "out/mean", directory_ / "run", {"summary.json"});
 }
 
-/// A round tip is pressed onto a plane from two heights.
 TEST_F(CompareCommand, ReportsThatEveryRunFailed) {
-  // 100 mm above the tooth, no law touches the tooth.
+  // The tool starts 100 mm above the tooth, so that no law touches the tooth.
   const Words words = {"compare",       "mesh_molar", "--algorithms", "mean,summation", "--set",
                        "time.steps=20", "--set",      "expect={}",    "--set",          "initial.position_m=[0,0,0.1]",
                        "--out",         at("out")};
@@ -277,6 +278,7 @@ TEST_F(CompareCommand, ReportsThatEveryRunFailed) {
   EXPECT_NE(hapbench(words).out.find("every run failed: there is no vibration"), std::string::npos);
 }
 
+/// Compares runs of a round tip that is pressed onto a plane from two heights, with 1 and with 5 jobs.
 TEST_F(CompareCommand, GivesTheSameBytesWhateverTheJobs) {
   for (const auto& [name, height] : {std::pair{"press", "0.0001"}, {"poke", "0.0003"}}) {
     test::write_plainly(directory_ / (std::string(name) + ".json"),
@@ -295,7 +297,7 @@ TEST_F(CompareCommand, GivesTheSameBytesWhateverTheJobs) {
   test::expect_same_files(directory_ / "1", directory_ / "5");
 }
 
-// Studies: questions as files.
+// Tests studies, which are files with a command and its options.
 
 class Study : public testing::Test {
  protected:
@@ -353,7 +355,7 @@ TEST_F(Study, IsNotNamedByTheValueOfAnOption) {
     EXPECT_EQ(run.status, 0) << run.err;
     EXPECT_TRUE(fs::is_directory(directory_ / study)) << study;
   };
-  // Folders with the names of bundled studies, of this command and of another command.
+  // The folders have the names of bundled studies, one of this command and one of another command.
   expect_folder({"run", "single_spring"}, "run_limits");
   expect_folder({"limit", "single_spring", "--resolution", "0.5"}, "stability_delay");
   // A study after options and their values is also found.

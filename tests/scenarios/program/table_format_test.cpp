@@ -5,7 +5,7 @@
 
 #include "scenarios/program/table_format.hpp"
 
-/// Tables as Markdown, LaTeX and CSV. tests/scripts/table_test.py compiles the LaTeX.
+/// Tests tables as Markdown, LaTeX and CSV. tests/scripts/table_test.py compiles the LaTeX.
 namespace hapbench::table_format_test {
 namespace {
 
@@ -13,7 +13,7 @@ std::string formatted(const Table& table, const char* format) {
   return formatted_tables(std::vector{table}, format);
 }
 
-/// A table with two-line heads, errors, missing values, bounds, texts among the numbers and very small numbers.
+/// Returns a table with two-line heads, errors, missing values, bounds, texts among the numbers and very small numbers.
 Table every_kind() {
   return {{{"law", false}, {"largest\nforce [N]"}, {"published", true, "", "N/m"}, {"depth", true, "", "m"}, {"rank"}},
           {{"a_b", "1.25 +- 0.05", "1440", "7.3e-05", "1"},
@@ -56,7 +56,7 @@ TEST(TableFormat, Latex) {
             "\\end{tabular}\n");
 }
 
-/// Special characters are escaped, and the surrounding text is unchanged.
+/// Checks that special characters are escaped, and that the surrounding text is unchanged.
 TEST(TableFormat, EscapesEverySpecialCharacter) {
   const Table table{{{"name", false}}, {{"a\\b{c}_d%e&f#g$h~i^j<k>l|m\"n--o\np"}}, "50 % of\nit"};
   EXPECT_NE(formatted(table, "latex")
@@ -76,7 +76,7 @@ TEST(TableFormat, EscapesUnderscoresThatBeginOrEndAWord) {
   EXPECT_NE(formatted({{{"name", false}}, {{"_a_ b_c _"}}}, "markdown").find("| \\_a\\_ b_c \\_ |"), std::string::npos);
 }
 
-/// siunitx reads one exponent, after number and error.
+/// Checks the exponent in LaTeX: siunitx reads one exponent, after number and error.
 TEST(TableFormat, NumberAndErrorShareAnExponent) {
   const Table table{{{"v"}}, {{"7.35e-06 +- 1.2e-07"}, {"1.5e-05 +- 2e-06"}, {"3 +- 0.25"}}};
   const std::string latex = formatted(table, "latex");
@@ -101,7 +101,8 @@ TEST(TableFormat, SeveralTablesHaveCaptions) {
   EXPECT_EQ(formatted_tables(tables, "csv"), "a\n1\n\nb\n2\n");
 }
 
-/// A column whose cells are texts is aligned like numbers, and not read by siunitx; long texts are wrapped.
+/// Checks that a column whose cells are texts is aligned like numbers, and not read by siunitx, and that long texts are
+/// wrapped.
 TEST(TableFormat, ColumnsOfTextAreNoNumbers) {
   const Table table{{{"value"}, {"text", false}}, {{"explicit", std::string(41, 'x')}, {"-", "-"}}};
   EXPECT_NE(formatted(table, "latex").find("{r >{\\raggedright\\arraybackslash}p{0.4\\linewidth}}"), std::string::npos);

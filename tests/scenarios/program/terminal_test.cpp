@@ -35,7 +35,8 @@ using test::hapbench_in_process;
 using test::lines_of;
 using test::ProgramRun;
 
-// The program at a terminal: lists, descriptions, completion; folders of results, and the search for installed files.
+// Tests the program at a terminal: lists, descriptions and completion, the folders of results, and the search for
+// installed files.
 
 /// Returns the names of the commands, which the program prints after the names of their groups.
 std::vector<std::string> command_names() {
@@ -77,7 +78,7 @@ TEST(Terminal, HasEveryHelpInItsWidth) {
   EXPECT_LE(widest(in_terminal({"--help"}, 80).out), 80u);
 }
 
-/// Returns the lines after a heading of a text, up to an empty line.
+/// Returns the lines between a heading of a text and the next empty line; empty without this heading.
 std::vector<std::string> lines_below(const std::string& text, const std::string& heading) {
   const std::vector<std::string> lines = lines_of(text);
   const auto begin = std::find(lines.begin(), lines.end(), heading);
@@ -90,7 +91,7 @@ TEST(Terminal, ListsNoOptionOfACommandAsOneOfTheProgram) {
   std::size_t options = 0;
   for (const std::string& line : lines_below(help, "Options without a command:")) {
     const std::string option = line.substr(2, line.find(' ', 2) - 2);
-    if (!option.starts_with("--")) continue;  // continues the meaning of the option above
+    if (!option.starts_with("--")) continue;  // this line continues the meaning of the option above
     EXPECT_EQ(hapbench({option}).status, 0) << option;
     ++options;
   }
@@ -100,7 +101,7 @@ TEST(Terminal, ListsNoOptionOfACommandAsOneOfTheProgram) {
   EXPECT_GE(lines_below(help, shared).size(), 9u);
 }
 
-/// Users cannot remember more names than these.
+/// Checks the number of option names, because users cannot remember more names.
 TEST(Terminal, HasNoMoreThanEightyFiveNamesOfOptions) {
   static const std::regex kNames("\n  (--[a-z-]+(, --[a-z-]+)*)"), kName("--[a-z-]+");
   std::set<std::string> names;
@@ -133,7 +134,7 @@ std::string completion_script() {
   return test::run_program(HAPBENCH_SCENARIOS "/../../scripts/completion", {test::hapbench_program().string()}).out;
 }
 
-/// Calls the completion as bash does.
+/// Checks the completion by calling it as bash does.
 TEST(Completion, KnowsEveryCommandAndItsOptionsInBash) {
   const std::string script = completion_script() + R"(
 complete -p hapbench
@@ -180,7 +181,7 @@ TEST(Installation, HasItsScenariosBesideTheProgramAndMissesThemAloud) {
 TEST(DescribeCommand, ExplainsEveryNameThereIs) {
   std::set<std::string> listed;
   for (const Json& entry : hapbench_in_process({"describe", "--json"}).json()) {
-    EXPECT_NE(entry["summary"], "") << entry;  // a list would print an entry without a summary without any explanation
+    EXPECT_NE(entry["summary"], "") << entry;  // without a summary, a list would print only the name of the entry
     listed.insert(entry["name"].get<std::string>());
   }
   std::vector<std::string> models;
@@ -193,7 +194,7 @@ TEST(DescribeCommand, ExplainsEveryNameThereIs) {
   for (const BundledScenario& bundled : bundled_scenarios()) models.push_back(bundled.name);
   for (const std::string& name : models) EXPECT_TRUE(listed.contains(name)) << name;
   std::vector<std::string> names = scenario_field_paths();
-  // The metrics are added below.
+  // The metrics are added below, without the prefix "expect.metrics.".
   std::erase_if(names, [](const std::string& path) { return path.starts_with("expect.metrics."); });
   for (const Metric& metric : metrics_without_values(1)) names.push_back(metric.name);
   for (const Claim& claim : all_claims()) names.emplace_back(claim.id);
@@ -226,7 +227,7 @@ TEST(DescribeCommand, ShowsWhatNamesALocationInTheThesis) {
   EXPECT_EQ(claims("Fig. 2"), Json::array({"V1", "V2", "S3", "S1"}));
 }
 
-/// Every figure, table and equation that the thesis prints. Two tables have the same number.
+/// Checks every figure, table and equation that the thesis prints. Two tables have the same number.
 TEST(DescribeCommand, ExplainsEveryNumberThatTheThesisPrints) {
   const Json locations =
       read_json(fs::path(HAPBENCH_SCENARIOS) / "../../results/reference/thesis_places.json").at("places");
@@ -256,11 +257,11 @@ TEST(DescribeCommand, ListsAssumptionsAndTheClaimsThatEachDecides) {
     if (std::ranges::find(deciders, "local.average") == deciders.end()) continue;
     EXPECT_NE(text.find(claim.at("id").get<std::string>(), decides), std::string::npos) << text;
   }
-  // A name of an earlier version is answered with its new name.
+  // The error for a name of an earlier version states the new name.
   EXPECT_NE(hapbench_in_process({"describe", "choices"}).err.find("renamed it to \"assumptions\""), std::string::npos);
 }
 
-/// This includes all tables that a run can write.
+/// Checks the columns of all tables that a run can write.
 TEST(DescribeCommand, ExplainsEveryColumnOfEveryFileOfARun) {
   const test::TemporaryDirectory directory;
   Json json = test::minimal_scenario("block_with_hole");
@@ -293,7 +294,7 @@ TEST(DescribeCommand, ExplainsEveryColumnOfEveryFileOfARun) {
   }
 }
 
-/// The command line itself, and the folders of results.
+/// Fixture of tests of the option --out and of the folders of results.
 class OutputDirectory : public testing::Test {
  protected:
   static std::vector<std::vector<std::string>> commands_writing_to(const fs::path& out) {
@@ -343,7 +344,7 @@ TEST_F(OutputDirectory, MayHaveSpacesQuotesAndLetters) {
   EXPECT_TRUE(fs::exists(out / "s.csv"));
 }
 
-// `describe` explains the headings of printed tables, and tables are at most as wide as the terminal.
+// Checks that `describe` explains the headings of printed tables, and that tables are at most as wide as the terminal.
 
 using Words = std::vector<std::string>;
 
@@ -359,7 +360,7 @@ void add_titles(const std::string& upper, const std::string& lower, const std::s
   for (std::sregex_iterator column(rule.begin(), rule.end(), kColumn), end; column != end; ++column) {
     const auto at = static_cast<std::size_t>(column->position()), wide = static_cast<std::size_t>(column->length());
     const auto part = [&](const std::string& line) { return at < line.size() ? trimmed(line.substr(at, wide)) : ""; };
-    // A sweep of two fields has values above its columns.
+    // A sweep of two fields prints values of a field above its columns; skip these.
     if (!finite_number(part(lower))) titles.emplace(part(upper), part(lower));
   }
 }
@@ -428,7 +429,7 @@ TEST(Headings, OfEveryTableAreKnownToDescribeAndFitATerminal) {
   }
   for (const auto& file : std::filesystem::recursive_directory_iterator(directory.path())) {
     const std::string name = file.path().filename().string();
-    // The choice of tune is a scenario and not a result.
+    // The scenario that tune writes is not a result.
     if (!file.is_regular_file() || name.ends_with("_tuned.json")) continue;
     EXPECT_TRUE(is_described(name)) << file.path();
   }
@@ -436,7 +437,7 @@ TEST(Headings, OfEveryTableAreKnownToDescribeAndFitATerminal) {
   for (const auto& [upper, lower] : titles) EXPECT_TRUE(is_described(upper, lower)) << upper << " / " << lower;
 }
 
-/// This includes headings of tables that no command above prints.
+/// Checks all headings, including headings of tables that no command above prints.
 TEST(Headings, OfEveryListHaveAMeaning) {
   for (const DescribedTable& table : result_tables())
     for (const Table::Column& heading : table.headings) EXPECT_TRUE(is_described(heading.title)) << heading.title;

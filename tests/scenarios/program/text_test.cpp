@@ -54,7 +54,7 @@ TEST(Fitted, BreaksWideLinesAtBlanksAndKeepsTheirIndent) {
   EXPECT_EQ(fitted("a  b\n\n", 80), "a  b\n\n");
 }
 
-/// Only equal texts are merged: here each law has its own number.
+/// Checks that only equal texts are merged: here the text of each law has another number.
 TEST(RunWarnings, QuoteEachLawsOwnNumber) {
   const auto run = [](const char* law, const char* text) {
     Result result;
@@ -87,7 +87,8 @@ TEST(Deserved, HasItsUsualDigitsWithoutATolerance) {
   EXPECT_EQ(deserved(std::nan(""), 1e-3), "-");
 }
 
-/// The cases of test_a_number_below_its_error_is_a_bound in tests/scripts/ranking_test.py: the page agrees.
+/// Checks the cases of test_a_number_below_its_error_is_a_bound in tests/scripts/ranking_test.py, which tests the same
+/// text on the page.
 TEST(Deserved, IsABoundIfTheToleranceIsNotSmaller) {
   EXPECT_EQ(deserved(0.0730, 0.37), "<= 0.5");
   EXPECT_EQ(deserved(0.0730, 0.93), "<= 2");
@@ -109,6 +110,7 @@ TEST(WithSpread, EndsWithTheSecondDigitOfTheLargerError) {
   EXPECT_EQ(with_spread(7.3456e-6, 1.2e-7, {}), "7.35e-06 +- 1.2e-07");
   EXPECT_EQ(with_spread(1.5, 0.0, {}), "1.5 +- 0");
   EXPECT_EQ(with_spread(1.5, {}, 0.1), "1.5");
+  EXPECT_EQ(with_spread(0.1302, 0.0003, 0.01), "0.13") << "a spread of 0.000 would look exact";
   EXPECT_EQ(with_spread(0.056, 2e-5, 0.37), "<= 0.5") << "the spread says nothing of an error that all seeds share";
 }
 
@@ -129,7 +131,7 @@ std::vector<const ModelInfo*> all_models() {
   return models;
 }
 
-/// The models document the parameters, and the descriptions of scenarios enforce their ranges.
+/// Checks that the parameters that models document are fields of scenarios, with the same units and ranges.
 TEST(ParameterBlocks, NameFieldsOfScenariosWithTheirUnits) {
   EXPECT_FALSE(find_algorithm("shaped_stiffness")->info->parameters.empty());
   const std::vector<ScenarioField> fields = scenario_fields();
