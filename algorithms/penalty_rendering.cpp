@@ -5,8 +5,8 @@
 
 namespace hapbench {
 
-/// Copied in every step. A default-constructed object would write its zeros one by one, and reading them in
-/// pairs would stall.
+/// Zero force that is copied to the result in every step. The default constructor would write the zeros one by one, and
+/// the processor would stall when it later reads two zeros at a time.
 static const RenderedForce kNoForce;
 
 PenaltyRendering::PenaltyRendering(std::unique_ptr<ForceLaw> law, const RenderingConfig& config)
@@ -53,8 +53,8 @@ void PenaltyRendering::render(const ToolState& tool, ContactBuffer& contacts, Re
   // tangential.
   if (contacts.empty()) return;
   in_contact_ = true;
-  Mat3 loads;  // uninitialised unless read
-  // A law without weights has a single load, its spring force.
+  Mat3 loads;  // initialised only if needs_loads()
+  // A law without weights has a single load along its spring force.
   if (damping_and_limits_.needs_loads())
     loads = law_->gives_weights() ? Mat3(K_ * load_tensor(contacts)) : load_along(law.spring);
   out.rendered = damping_and_limits_.rendered_force(law.spring, law.S, velocity_at(contacts, tool), loads);

@@ -12,9 +12,9 @@ namespace hapbench {
 ///
 ///   contacts with depths -> (local average) -> (reduction) -> force law -> damping, friction, limits
 ///
-/// One virtual call for each stage in each step. Only the stages in the configuration are created. Steps
-/// without contacts skip all stages, and steps with one contact skip the reduction (Skips), since these stages
-/// would change nothing.
+/// Each stage costs one virtual call in each step. Only the stages in the configuration are created. With Skips::on, a
+/// step without contacts skips all stages, and a step with one contact skips the reduction. The skipped stages would
+/// change nothing.
 class PenaltyRendering final : public ForceAlgorithm {
  public:
   PenaltyRendering(std::unique_ptr<ForceLaw> law, const RenderingConfig& config);

@@ -15,16 +15,16 @@
 #include "algorithms/rendering_config.hpp"
 #include "sim/core/types.hpp"
 
-/// The table of algorithms. A built-in algorithm is a source file that defines its AlgorithmEntry, and an entry
-/// of the list in registry.cpp. `add_algorithm` adds an external algorithm while the program runs.
+/// Table of the force algorithms. Each built-in algorithm has a source file that defines its AlgorithmEntry, and a name
+/// in the list in registry.cpp. `add_algorithm` adds an external algorithm while the program runs.
 ///
-/// The table belongs to the process. Reader, schema, help and factories look names up in it, and a module, whose code a
-/// process loads once, adds to it. If each run had its own table, every visitor of fields would have to receive it as
-/// an argument.
+/// The process has one table. The scenario reader, the schema, the help texts and the factories look algorithms up in
+/// this table. A module adds its algorithm to the table; the process loads the code of a module only once. With one
+/// table for each run, every function that visits scenario fields would need the table as an argument.
 namespace hapbench {
 
-/// A numeric parameter that belongs to one algorithm only and is not a member of RenderingConfig. In a scenario
-/// it is the field rendering.parameters.<algorithm>.<name>.
+/// A numeric parameter that belongs to one algorithm only and is not a member of RenderingConfig. A scenario sets the
+/// parameter in the field rendering.parameters.<algorithm>.<name>.
 struct AlgorithmParameter {
   const char* name;
   NumberRange range;
@@ -35,8 +35,8 @@ struct AlgorithmParameter {
 /// Returns the parameter's value in `config`, or its default.
 double parameter_value(const RenderingConfig& config, const char* algorithm, const AlgorithmParameter& parameter);
 
-/// A function for AlgorithmEntry::force_bound: returns the force divided by K of `count` parallel springs at the
-/// largest depth, or of all n springs if there are fewer. Without `count`, all n springs count.
+/// Function for AlgorithmEntry::force_bound. Returns the force divided by K [m] of min(count, n) parallel springs that
+/// all have the depth `depth` [m]. Without `count`, all n springs are included.
 template <int count = std::numeric_limits<int>::max()>
 double bound_of_springs(const RenderingConfig&, const ToolShape&, std::size_t n, double depth) {
   return std::min<double>(count, static_cast<double>(n)) * depth;
@@ -48,11 +48,11 @@ struct AlgorithmOrigin {
   std::string hash;  ///< hash of the file's content
 };
 
-/// An algorithm: its documentation, how to create it, and the bound of its force. Exactly one of `make_law` and
-/// `make` is set.
+/// Describes an algorithm: its documentation, the function that creates the algorithm, and the upper bound of its
+/// force. Exactly one of `make_law` and `make` is set.
 struct AlgorithmEntry {
   const ModelInfo* info;
-  /// Creates the force law for one run. PenaltyRendering adds the stages around it.
+  /// Creates the force law for one run. PenaltyRendering adds the stages around the law.
   std::function<std::unique_ptr<ForceLaw>(const RenderingConfig&)> make_law = {};
   /// Creates an algorithm that is not a force law, for one run.
   std::function<std::unique_ptr<ForceAlgorithm>(const RenderingConfig&)> make = {};
@@ -61,7 +61,7 @@ struct AlgorithmEntry {
   double (*force_bound)(const RenderingConfig& config, const ToolShape& tool, std::size_t n, double depth) = nullptr;
   /// Depth model that is part of the algorithm's definition; empty if the scenario chooses it.
   std::string_view fixed_depth_model = {};
-  /// False if the algorithm's definition excludes the reduction.
+  /// False if the algorithm's definition excludes the point reduction; with_fixed_stages() then removes the reduction.
   bool may_reduce = true;
   /// Depth model whose depths are reported in the results, for an algorithm that does not use depths for its force;
   /// empty if the algorithm uses the depths.
@@ -72,7 +72,7 @@ struct AlgorithmEntry {
   std::shared_ptr<const void> texts = {};
 };
 
-/// AlgorithmEntry::make_law for a class that is constructed from the configuration.
+/// Function for AlgorithmEntry::make_law. Creates an object of the class `Law` from the configuration.
 template <class Law>
 std::unique_ptr<ForceLaw> law_of(const RenderingConfig& config) {
   return std::make_unique<Law>(config);
@@ -82,7 +82,7 @@ std::unique_ptr<ForceLaw> law_of(const RenderingConfig& config) {
 const std::deque<AlgorithmEntry>& algorithms();
 /// Returns the names of the algorithms, in the order of algorithms().
 std::vector<std::string> algorithm_names();
-/// Returns the documentation of the optional stages of the penalty pipeline.
+/// Returns the documentation of the stages that can run before and after a force law.
 std::span<const ModelInfo* const> stages();
 
 /// Returns the entry of the algorithm with this name; null if no algorithm has this name.
@@ -98,11 +98,12 @@ AlgorithmEntry checked_copy(AlgorithmEntry entry);
 /// for the name of a built-in algorithm.
 void add_algorithm(AlgorithmEntry entry);
 
-/// Returns the number of add_algorithm calls. Data derived from the table is valid until this number changes.
+/// Returns the number of successful add_algorithm calls. Data derived from the table is valid until this number
+/// changes.
 std::size_t additions();
 
-/// Returns the values of the algorithm's own parameters, in the order of its table: the values in `config`, or
-/// the defaults.
+/// Returns the values of `entry.algorithm_parameters`, in their order. A parameter that `config` does not set has its
+/// default value.
 std::vector<double> parameter_values(const RenderingConfig& config, const AlgorithmEntry& entry);
 
 /// Returns `config` with the depth model and the reduction that its algorithm prescribes. Precondition: the

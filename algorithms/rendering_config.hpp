@@ -22,10 +22,12 @@ struct ReductionConfig {
   std::optional<std::uint64_t> shuffle_seed;
 };
 
-/// Value of RenderingConfig::contact_source for contacts from hapbench's own search and depth models.
+/// Value of RenderingConfig::contact_source: hapbench's contact search finds the contacts, and a depth model computes
+/// their depths.
 inline constexpr const char* kComputedContacts = "own";
-/// Values of RenderingConfig::contact_source for contacts from a file: the recorded contacts of a prescribed
-/// motion, or the user's shared library.
+/// Values of RenderingConfig::contact_source for contacts from `contact_file`. With kTrace, the file contains recorded
+/// contacts of a prescribed motion. With kContactPlugin, the file is a shared library of the user that computes the
+/// contacts.
 inline constexpr const char* kTrace = "trace";
 inline constexpr const char* kContactPlugin = "plugin";
 
@@ -36,7 +38,8 @@ struct DryFrictionConfig {
   double damping_ratio = 1.0;       ///< zeta_t, damping ratio of the bristle with the virtual mass
 };
 
-// Force stages replace the force of an algorithm by the force to render; see stages/controllers.hpp.
+// Parameters of the force stages. A force stage replaces the algorithm's force by the force to render; see
+// stages/controllers.hpp.
 
 struct EnergyTankConfig {
   double capacity = 0.1;  ///< C, largest energy that the tank keeps [J]
@@ -49,8 +52,8 @@ struct ActuatorLimitedPassivityConfig {
 };
 using ForceStageConfig = std::variant<EnergyTankConfig, ActuatorLimitedPassivityConfig>;
 
-/// Parameters of the rendering, which computes a force from contacts. Algorithms have their names in registry.hpp.
-/// Units: N, m, s, kg.
+/// Parameters of the rendering, which computes a force from contacts. The names of the algorithms are listed by
+/// algorithm_names() in registry.hpp. Units: N, m, s, kg.
 struct RenderingConfig {
   std::string algorithm = "shaped_stiffness";
   int iterations = 3;  ///< m, number of shaping iterations, for laws that iterate
@@ -68,13 +71,14 @@ struct RenderingConfig {
   std::optional<double> damping;                  ///< B, normal damping [N s/m]; nullopt: 2 zeta sqrt(K M)
   double mu_s = 0.0;                              ///< viscous friction [N s/m]
   double mu_f = 0.0;                              ///< viscous friction per newton of spring force [s/m]
-  std::optional<DryFrictionConfig> dry_friction;  ///< if set, mu_s and mu_f are 0
-  /// chi [s/m] of damping that grows with depth (Hunt and Crossley); replaces B.
+  std::optional<DryFrictionConfig> dry_friction;  ///< replaces mu_s and mu_f; nullopt: no dry friction
+  /// chi [s/m], coefficient of Hunt and Crossley's damping, which grows with the depth and replaces B; nullopt: B is
+  /// used.
   std::optional<double> hunt_crossley;
   std::optional<double> max_damping;       ///< B_max, limit of the damping [N s/m]; nullopt: no limit
   std::optional<double> max_force;         ///< F_max, limit of the force [N]; nullopt: no limit
   std::optional<double> virtual_coupling;  ///< K_vc, stiffness of the coupling spring [N/m]; nullopt: K
-  double regularisation = 0.01;            ///< eps of the law least_squares
+  double regularisation = 0.01;            ///< eps, regularisation of the law least_squares, dimensionless
 
   bool angular_damping = false;  ///< true: damping and friction use the velocity of the tool's material at each
                                  ///< contact; false: the velocity of the tip centre
@@ -82,7 +86,7 @@ struct RenderingConfig {
   /// filter.
   std::optional<double> angular_velocity_cutoff = 20.0;
 
-  /// Applied after the algorithm; nullopt: the algorithm's force is rendered.
+  /// Controller that replaces the algorithm's force; nullopt: no force stage.
   std::optional<ForceStageConfig> force_stage;
   bool passivity_controller = false;  ///< true: a passivity controller wraps algorithm and force stage
 
@@ -125,8 +129,8 @@ inline constexpr Parameter kDropout = {"rendering.contacts.dropout", {0.0, 1.0, 
 inline constexpr Parameter kMaxDamping = {"rendering.limits.max_damping_N_s_per_m", {0.0, 1e12, "N s/m"}};
 inline constexpr Parameter kMaxForce = {"rendering.limits.max_force_N", {0.0, 1e12, "N"}};
 inline constexpr Parameter kVirtualCoupling = {"rendering.virtual_coupling_N_per_m", {0.0, 1e12, "N/m", true}};
-/// Lower limit 1e-9: below it, the rounding of sum d_i u_i (1e-16 n d), divided by eps, would not be far below
-/// a depth.
+/// The smallest eps is 1e-9. The rounding error of sum d_i u_i is about 1e-16 n d for n contacts of depth d. Divided by
+/// a smaller eps, this error would not be much smaller than d.
 inline constexpr Parameter kRegularisation = {"rendering.regularisation", {1e-9, 1e6, "1"}};
 inline constexpr Parameter kTankCapacity = {"rendering.force_stage.capacity_J", {0.0, 1e6, "J"}};
 inline constexpr Parameter kTankInitial = {"rendering.force_stage.initial_J", {0.0, 1e6, "J"}};

@@ -37,7 +37,7 @@ class IdealDevice final : public Device {
   HandleState handle_;
 };
 
-/// Errors that the force sensor adds to the hand's force (thesis 3.5). The noise is not in the thesis.
+/// Parameters of the errors that the force sensor adds to the hand's force (thesis 3.5). The thesis has no noise.
 struct ForceSensorConfig {
   double weight = 0.7;           ///< weight of the dummy drill [N]; the sensor measures it along `down`
   Vec3 down = {0.0, 0.0, -1.0};  ///< direction of gravity, unit vector in the world frame
@@ -69,7 +69,8 @@ class ForceSensor {
     return force;
   }
 
-  /// Returns the part of the measured force that drives the virtual mass [N], before the limiter.
+  /// Returns the force that drives the virtual mass before the limiter [N]: `measured`, minus the weight if the weight
+  /// is compensated.
   Vec3 compensated(const Vec3& measured) const noexcept {
     return config_.compensated ? Vec3(measured - config_.weight * config_.down) : measured;
   }
@@ -79,8 +80,8 @@ class ForceSensor {
   Random random_;
 };
 
-/// Parameters of the control loop that makes the carriage follow the virtual tool. The thesis gives only the
-/// saturation (C.4.4); the other values are our estimates.
+/// Parameters of the control loop that makes the carriage follow the virtual tool. The thesis gives only the saturation
+/// (C.4.4); the other values are estimates of this project.
 struct PositionServoConfig {
   double stiffness = 40000.0;  ///< proportional gain: force per position error [N/m]
   double damping = 160.0;      ///< derivative gain: force per velocity error [N s/m]
@@ -103,8 +104,9 @@ class PositionServo {
     next_ = 0;
   }
 
-  /// Computes the servo's command for this sample and returns the actuators' force during this sample [N], which is
-  /// the command of `delay` samples ago. `position` [m] and `velocity` [m/s] are of the carriage.
+  /// Computes the servo's command for this sample from the state `reference` of the virtual tool, and from `position`
+  /// [m] and `velocity` [m/s] of the carriage. Returns the force of the actuators during this sample [N], which is the
+  /// command of `delay` samples ago.
   Vec3 force(const ToolState& reference, const Vec3& position, const Vec3& velocity) noexcept {
     Vec3 command =
         config_.stiffness * (reference.pose.position - position) + config_.damping * (reference.velocity - velocity);
@@ -162,7 +164,7 @@ class HandleMechanics {
     const double inertia_c = 2.0 * config_.carriage_mass / dt, inertia_h = 2.0 * config_.handle_mass / dt;
     const double a = config_.structure_stiffness * dt / 2.0 + config_.structure_damping;
     const double cc = inertia_c + config_.friction + a, hh = inertia_h + a;
-    const double determinant = cc * hh - a * a;  // positive, because all terms of the expanded product are
+    const double determinant = cc * hh - a * a;  // positive, because all terms of the expanded product are positive
     const Vec3 tension = config_.structure_stiffness * (carriage_.position - handle_.position);
     const Vec3 right_c = actuator - tension + inertia_c * carriage_.velocity;
     const Vec3 right_h = hand + tension + inertia_h * handle_.velocity;
@@ -179,7 +181,7 @@ class HandleMechanics {
 
   const HandleState& carriage() const noexcept { return carriage_; }
   const HandleState& handle() const noexcept { return handle_; }
-  /// Returns the works of all forces since the reset and the change of the stored energy since the reset [J].
+  /// Returns the work of each force since the reset, and the change of the stored energy since the reset [J].
   DeviceEnergy energy() const noexcept { return work_.plus_stored(stored()); }
 
  private:
@@ -192,7 +194,7 @@ class HandleMechanics {
   HandleMechanicsConfig config_;
   HandleState carriage_;
   HandleState handle_;
-  DeviceEnergy work_;  ///< works since the reset; `stored` holds minus the energy stored at the reset [J]
+  DeviceEnergy work_;  ///< work of each force since the reset; `stored` is minus the energy stored at the reset [J]
 };
 
 struct AdmittanceDeviceConfig {

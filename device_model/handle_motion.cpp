@@ -42,7 +42,8 @@ FreeMotion by_series(const MotionLaw& law, double time) noexcept {
 /// Returns the solution after twice the time of `m`.
 FreeMotion doubled(const MotionLaw& law, const FreeMotion& m) noexcept {
   const double k = law.stiffness, S2 = m.S * m.S;
-  // The handle starts at rest under an acceleration g and reaches x = P g. There the spring balances k P g of g.
+  // The handle starts at rest under an acceleration g and reaches x = P g. At this position, the spring reduces the
+  // acceleration by k P g.
   const double left = 1.0 - k * m.P;  // remaining fraction of g
   return {.time = 2.0 * m.time,
           .S = m.S * (m.V + left),
@@ -124,7 +125,7 @@ void HandleMotion::advance_with_friction(Eigen::Index axis, double motors, const
   }
 }
 
-/// Moves one axis and adds up the works of all forces. Precondition: if there is friction, the velocity keeps its
+/// Moves one axis and adds the work of each force to work_. Precondition: if there is friction, the velocity keeps its
 /// sign.
 void HandleMotion::move(Eigen::Index axis, double motors, double friction, const FreeMotion& motion) noexcept {
   const double hand = hand_force_if_at_rest(axis), v = handle_.velocity[axis];
@@ -142,14 +143,14 @@ void HandleMotion::move(Eigen::Index axis, double motors, double friction, const
 
 using TransitionMatrix = ElasticMotion::Matrix;
 
-// In the longest step of the search for stops, the phase of the fastest mode advances by kMaxStep radians.
+// In the longest step of the search for stops, the phase of the fastest mode advances by at most kMaxStep radians.
 constexpr std::size_t kChangeHalvings = 40;  ///< number of halvings of the longest step, to locate the time of a change
 constexpr std::size_t kSkipHalvings = 12;    ///< number of halvings that give the shortest time between two changes
 constexpr std::size_t kMaxHalvings = 52;     ///< number of halvings of a period: the number of bits in a double's
                                              ///< mantissa
 
-/// Returns the matrix M of z^T M z, the integral of u^T form u over `time`, where u(0) = z and u' = rates u. Power
-/// series in time.
+/// Returns the matrix M for which z^T M z is the integral of u^T form u over `time`, where u(0) = z and u' = rates u.
+/// Uses a power series in time.
 static TransitionMatrix integral(const TransitionMatrix& rates, const TransitionMatrix& form, double time) {
   TransitionMatrix term = form * time, sum = term;
   for (int n = 2; n <= kTerms; ++n) {
@@ -182,7 +183,7 @@ ElasticMotion::ElasticMotion(const ImpedanceDeviceConfig& device, const Transmis
       motor_mass_(transmission.motor_share * device.handle_mass),
       handle_mass_((1.0 - transmission.motor_share) * device.handle_mass) {}
 
-/// Returns the matrix A of the motion z' = A z.
+/// Returns the matrix A of the motion z' = A z, with motors at rest if `sticking` is true.
 ElasticMotion::Matrix ElasticMotion::rates(bool sticking) const {
   const double k = transmission_.stiffness, d = transmission_.damping, m = motor_mass_,
                mass = handle_mass_ + hand_.mass;
@@ -269,13 +270,13 @@ void ElasticMotion::set_friction(Axis& axis, bool may_stick) const noexcept {
   axis.z[kMotorForce] = axis.motors + axis.friction;
 }
 
-/// Returns true if the motors have reversed or started to move by the state `next`.
+/// Returns true if moving motors have reversed, or sticking motors have started to move, before the state `next`.
 bool ElasticMotion::changes(const Axis& axis, const State& next) const noexcept {
   if (axis.sticks) return std::abs(force_on_resting_motors(axis, next)) > coulomb_;
   return next[kMotorSpeed] * axis.friction > 0.0;
 }
 
-/// Advances one axis by a transition and adds up the works of all forces.
+/// Advances one axis by a transition and adds the work of each force to work_.
 void ElasticMotion::apply(Axis& axis, const Transition& transition) noexcept {
   const State z = axis.z, next = transition.map * z;
   const double k = hand_.stiffness, displacement = next[kMotor] - z[kMotor];
@@ -288,8 +289,8 @@ void ElasticMotion::apply(Axis& axis, const Transition& transition) noexcept {
 }
 
 /// Advances by at most the fraction `left` of the interval, until the motors stop or start to move. Returns the
-/// fraction of the interval that remains after this. If `skip` > 0, a first step of `skip` halvings of the search
-/// step is taken without a check, so that a change is not found again at once.
+/// fraction of the interval that remains after this. If `skip` > 0, a first step of `skip` halvings of the search step
+/// is taken without a check, so that the search does not find the previous change again.
 double ElasticMotion::advance_to_change(Axis& axis, const Stretch& stretch, double left, std::size_t skip) noexcept {
   const std::vector<Transition>& transitions = axis.sticks ? stretch.sticking : stretch.moving;
   const auto fraction_of = [](std::size_t level) { return std::ldexp(1.0, -static_cast<int>(level)); };
@@ -331,8 +332,8 @@ double ElasticMotion::stored() const noexcept {
 
 namespace {
 
-/// Coefficients of the motion x'' = a - rate x' after a time: x = v S + a P and x' = v + (a - rate v) S, v the
-/// initial velocity.
+/// Coefficients of the motion x'' = a - rate x' after a time: x = v S + a P and x' = v + (a - rate v) S, where v is the
+/// initial velocity. S [s], P [s^2].
 struct Coast {
   double S, P;
 };
@@ -349,12 +350,12 @@ Coast coast(double rate, double time) noexcept {
   return {S, (time - S) / rate};
 }
 
-/// One axis of a logged handle. All forces are divided by the mass.
+/// Motion of one axis of a logged handle. The arguments `push` are forces divided by the mass [m/s^2].
 struct Axis {
   double rate, coulomb;  ///< b / m [1/s], c / m [m/s^2]
   double x, v;           ///< position [m], velocity [m/s]
 
-  /// Advances a handle at rest: it sticks, or starts to move in the direction of `push`.
+  /// Advances a handle at rest by `time` [s]. The handle sticks, or starts to move in the direction of `push`.
   void leave_rest(double push, double time) noexcept {
     v = 0.0;
     if (std::abs(push) <= coulomb || time <= 0.0) return;

@@ -24,8 +24,8 @@ struct AttachedHand {
   double damping = 0.0;    ///< [N s/m]
 };
 
-/// A body on a spring and a damper under a constant force; damping, stiffness and the constant acceleration g =
-/// force / mass are per unit of mass. Position x is relative to the initial position:
+/// Law of motion of a body on a spring and a damper under a constant force. Damping, stiffness and the constant
+/// acceleration g = force / mass are per unit of mass. Position x is relative to the initial position:
 ///
 ///   x'' = g - damping x' - stiffness x,   x(0) = 0,   x'(0) = v
 struct MotionLaw {
@@ -38,14 +38,14 @@ struct MotionLaw {
 ///
 ///   x = v S + g P,   x' = v V + g S,   integral of x'^2 = v^2 W + v g S^2 + g^2 Z
 struct FreeMotion {
-  double time = 0.0;  ///< [s]
-  double S = 0.0, P = 0.0, V = 1.0;
-  double W = 0.0, Z = 0.0;
+  double time = 0.0;                 ///< [s]
+  double S = 0.0, P = 0.0, V = 1.0;  ///< [s], [s^2], dimensionless
+  double W = 0.0, Z = 0.0;           ///< [s], [s^3]
 };
 
-/// Returns the solution of `law` after `time` [s]: a power series for a small fraction of the time, which is then
-/// doubled repeatedly. The relative error is a few units in the last place for any damping, stiffness and time,
-/// whether the motion oscillates or creeps. Takes about 0.1 us.
+/// Returns the solution of `law` after `time` [s]. Computes the solution for a small fraction of the time by a power
+/// series, and then doubles the fraction repeatedly. The relative error is a few units in the last place for any
+/// damping, stiffness and time, whether the motion oscillates or creeps. Takes about 0.1 us.
 FreeMotion free_motion(const MotionLaw& law, double time) noexcept;
 
 /// Returns the first time after the start at which the velocity is zero [s]; infinity if there is no such time. `v`:
@@ -71,7 +71,7 @@ class HandleMotionBase {
   HandleState handle_;
   Vec3 origin_ = Vec3::Zero();              ///< position of the handle at the last sample [m]
   Vec3 hand_force_at_rest_ = Vec3::Zero();  ///< hand's force on a handle at rest at origin_ [N]
-  DeviceEnergy work_;  ///< works since the reset; `stored` holds minus the energy stored at the reset [J]
+  DeviceEnergy work_;  ///< work of each force since the reset; `stored` is minus the energy stored at the reset [J]
 };
 
 /// Motion of a handle with friction under forces that are constant between samples, in each axis separately and
@@ -87,16 +87,17 @@ class HandleMotion : public HandleMotionBase {
  public:
   HandleMotion(const ImpedanceDeviceConfig& device, const AttachedHand& hand);
 
-  /// Returns the law of motion between stops. The argument of `advance` is made from it: free_motion(law(), time).
+  /// Returns the law of motion between stops. The caller computes the argument `interval` of `advance` as
+  /// free_motion(law(), time).
   const MotionLaw& law() const noexcept { return law_; }
 
   void reset(const HandleState& handle) noexcept;
-  /// Advances by `interval.time` under a constant force of the motors [N]. Precondition: `interval` was made from
+  /// Advances by `interval.time` under a constant force of the motors [N]. Precondition: `interval` was computed from
   /// law(). Allocates nothing.
   void advance(const Vec3& motors, const FreeMotion& interval) noexcept;
 
-  /// Returns the energy balance since the reset. The mass of an attached hand does not count as stored: its inertia
-  /// is part of the hand's work.
+  /// Returns the energy balance since the reset. `stored` excludes the kinetic energy of an attached hand: the hand's
+  /// work includes the inertia force of this mass.
   DeviceEnergy energy() const noexcept { return work_.plus_stored(stored()); }
 
  private:
@@ -123,16 +124,16 @@ struct Transmission {
 ///   m_m x_m'' = f - b x_m' - c sign(x_m') - k (x_m - x_h) - d (x_m' - x_h')
 ///   m_h x_h'' = f_hand                    + k (x_m - x_h) + d (x_m' - x_h')
 ///
-/// Indices m and h denote motors and handle: m_m = motor_share handle_mass, m_h is the remaining mass. Friction (b,
-/// c) and the motors' force f act on the motors' side, the hand's force on the handle, as in HandleMotion. With
-/// Coulomb friction the motors stop, stick as long as the sum of the other forces is at most c, and then start to
-/// move. No closed form gives these instants. They are located to rounding accuracy by bisection between points in
-/// time at which the phase of the fastest mode differs by a quarter radian, so two changes between neighbouring
-/// points may be missed.
+/// Indices m and h denote motors and handle: m_m = motor_share handle_mass, m_h is the remaining mass. Friction (b, c)
+/// and the motors' force f act on the motors' side, the hand's force on the handle, as in HandleMotion. With Coulomb
+/// friction the motors stop, stick as long as the sum of the other forces is at most c, and then start to move. No
+/// closed form gives these instants. They are located to rounding accuracy by bisection between points in time between
+/// which the phase of the fastest mode advances by at most a quarter radian. Two changes between neighbouring points
+/// may therefore be missed.
 class ElasticMotion : public HandleMotionBase {
  public:
-  /// (x_m, v_m, x_h, v_h, force on the motors, force on the handle). Positions are relative to the handle's
-  /// position at the sample.
+  /// State of one axis: (x_m, v_m, x_h, v_h, force on the motors, force on the handle) [m, m/s, m, m/s, N, N].
+  /// Positions are relative to the handle's position at the last sample.
   using State = Eigen::Matrix<double, 6, 1>;
   using Matrix = Eigen::Matrix<double, 6, 6>;
 
@@ -142,7 +143,7 @@ class ElasticMotion : public HandleMotionBase {
     Matrix map, dissipated, hand;
   };
   /// Solutions for an interval and for its repeated halvings (entry i: 2^-i of the interval), with moving and with
-  /// sticking motors. Takes about a millisecond to compute.
+  /// sticking motors. `sticking` is empty without Coulomb friction. Takes about a millisecond to compute.
   struct Stretch {
     std::vector<Transition> moving, sticking;
     std::size_t first = 0;  ///< index of the longest step in the search for instants at which the motors stop
@@ -150,16 +151,17 @@ class ElasticMotion : public HandleMotionBase {
 
   ElasticMotion(const ImpedanceDeviceConfig& device, const Transmission& transmission, const AttachedHand& hand);
 
-  /// Computes the solutions for an interval of `time` [s], the argument of `advance`.
+  /// Returns the solutions for an interval of `time` [s], which `advance` needs.
   Stretch stretch(double time) const;
 
   void reset(const HandleState& handle) noexcept;
   /// Advances by the interval of `stretch` under a constant force of the motors [N]. Allocates nothing.
   void advance(const Vec3& motors, const Stretch& stretch) noexcept;
 
-  /// Position and velocity on the motors' side, which the encoder measures.
+  /// Returns position and velocity on the motors' side, which the encoder measures.
   const HandleState& motor() const noexcept { return motor_; }
-  /// Like HandleMotion::energy; `stored` includes both masses and the spring.
+  /// Returns the energy balance since the reset, as HandleMotion::energy does. `stored` includes both masses and the
+  /// transmission's spring.
   DeviceEnergy energy() const noexcept { return work_.plus_stored(stored()); }
 
  private:
@@ -197,10 +199,10 @@ struct LoggedHandle {
   double velocity = 0.0;  ///< initial velocity [m/s]
 };
 
-/// Simulates a log. Computes the `positions` [m] at `times` [s] of a handle that starts at 0. Each of `forces` [N]
-/// is commanded at the time with the same index, acts `handle.delay` later and is then held; before the first force
-/// acts, only the offset acts. Exact, including stops and rests. Precondition: `times` increase, and all spans have
-/// the same length. Takes 20 ns for each time.
+/// Simulates a log. Writes the `positions` [m] at `times` [s] of a handle that starts at position 0. Each of `forces`
+/// [N] is commanded at the time with the same index. It begins to act `handle.delay` later and acts until the next
+/// force begins. Before the first force, only the offset acts. Exact, including stops and rests. Precondition: `times`
+/// increase, and all spans have the same length. Takes 20 ns for each time.
 void simulate_log(const LoggedHandle& handle, std::span<const double> times, std::span<const double> forces,
                   std::span<double> positions) noexcept;
 

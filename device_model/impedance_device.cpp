@@ -25,7 +25,7 @@ static Complex exponential_minus_one(const Complex& z) {
   return {grown - 2.0 * (1.0 + grown) * half * half, (1.0 + grown) * math::sin(z.imag())};
 }
 
-// H(s) is the product of p_i / (p_i - s), which is the sum of residue_i p_i / (p_i - s).
+// With the poles p_i, H(s) is the product of p_i / (p_i - s), which equals the sum of residue_i p_i / (p_i - s).
 std::vector<LowPassMode> low_pass_modes(const LowPassFilter& filter, double dt) {
   // List the poles of the upper half plane, then their conjugates.
   std::vector<Complex> poles;
@@ -120,8 +120,8 @@ double VelocityFilter::end_fit(Eigen::Index axis, double noise) const noexcept {
   return rise / dt_;
 }
 
-/// Returns `v` with each component rounded to the nearest multiple of `step`, halves away from zero; `v` itself if
-/// step is 0.
+/// Returns `v` with each component rounded to the nearest multiple of `step`; halves are rounded away from zero.
+/// Returns `v` unchanged if `step` is 0.
 static Vec3 rounded_to(const Vec3& v, double step) noexcept {
   if (step == 0.0) return v;
   return {std::round(v.x() / step) * step, std::round(v.y() / step) * step, std::round(v.z() / step) * step};
@@ -215,9 +215,9 @@ constexpr SourcedNumber chai(double value) {
 constexpr SourcedNumber sheet(double value) {
   return {value, kFromDataSheet};
 }
-// Factors that bound an estimate of an unpublished value (kPresetRanges). They are wide because we found no
-// measured friction of these devices; a paddle whose motor has 0.04 N s/m in its data sheet was measured to have 3
-// to 4 N s/m (scenarios/library/validation).
+// Factors that bound an estimate of an unpublished value (kPresetRanges). They are wide because we found no measured
+// friction of these devices. The friction of a haptic paddle was measured as 3 to 4 N s/m, although the data sheet of
+// its motor gives 0.04 N s/m (scenarios/library/validation).
 struct Factors {
   double low, high;
 };

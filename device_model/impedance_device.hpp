@@ -24,11 +24,12 @@ struct LowPassFilter {
   static constexpr int kMaxOrder = 8;
 };
 
-/// One mode of a sampled low-pass: a term of the partial fractions of its transfer function. Its state is updated
-/// by y += gain (residue u - y) for each sample u, which is exact for an input that was constant at u over the
-/// preceding period. The filter's output is the sum of the real parts of all states.
+/// Mode of a sampled low-pass filter: a term in the partial fractions of the filter's transfer function. For each
+/// sample u, the state y of the mode changes by gain (residue u - y). This is exact if the input was constant at u over
+/// the preceding period. The filter's output is the sum of the real parts of all states.
 struct LowPassMode {
-  /// A pair of complex poles has one mode with twice its residue; the mode of a real pole is real.
+  /// Dimensionless coefficients. A pair of complex poles has one mode, with twice the residue of one pole. The mode of
+  /// a real pole has real coefficients.
   std::complex<double> residue, gain;
 
   /// Returns the mode's transfer function at z = e^(j theta), theta = 2 pi f dt.
@@ -38,8 +39,8 @@ struct LowPassMode {
 /// Returns the modes of a low-pass for samples at intervals of `dt` [s]; a single mode for order 1.
 std::vector<LowPassMode> low_pass_modes(const LowPassFilter& filter, double dt);
 
-/// Low-pass filter of sampled vectors, component by component. Allocates only in the constructor; a sample takes
-/// about 5 ns a mode.
+/// Low-pass filter of sampled vectors, component by component. Allocates only in the constructor; a sample takes about
+/// 5 ns for each mode.
 class SampledLowPass {
  public:
   SampledLowPass(const LowPassFilter& filter, double dt);
@@ -52,13 +53,13 @@ class SampledLowPass {
  private:
   struct Term {
     LowPassMode mode;
-    Vec3 real = Vec3::Zero(), imaginary = Vec3::Zero();  ///< parts of the mode's state
+    Vec3 real = Vec3::Zero(), imaginary = Vec3::Zero();  ///< real and imaginary part of the mode's state
   };
   std::vector<Term> terms_;
   bool is_identity_ = true;  ///< true if the cutoff is so high that the output equals the input
 };
 
-/// Velocity by the difference of positions, v_k = (x_k - x_(k-1)) / T, with the sampling period T.
+/// Velocity as the difference of positions, v_k = (x_k - x_(k-1)) / T, with the sampling period T.
 struct DifferenceFilter {};
 
 /// First-order adaptive windowing, the end-fit method of F. Janabi-Sharifi, V. Hayward and C.-S. J. Chen,
@@ -68,13 +69,14 @@ struct DifferenceFilter {};
 /// straight line through the window's ends.
 struct AdaptiveWindowFilter {
   double noise = 1e-5;  ///< largest error of a sample [m]; half the encoder's resolution for a rounded position
-  /// Longest window [samples] (our choice). It reduces the effect of one encoder step on the velocity to 1/15 of its
-  /// effect on a simple difference, and delays the velocity by half the window, 7.5 ms at 1 kHz.
+  /// Longest window [samples] (our choice). With this window, one encoder step changes the velocity by 1/15 of the
+  /// change of a simple difference. The velocity is delayed by half the window, 7.5 ms at 1 kHz.
   static constexpr std::size_t kLongest = 15;
 };
 
-/// Method of estimating the velocity. LowPassFilter: the continuous low-pass of the difference d_k, held over its
-/// period; for order 1 v_k = v_(k-1) + (1 - e^(-2 pi f T)) (d_k - v_(k-1)), with f the cutoff.
+/// Method of estimating the velocity. LowPassFilter: the continuous low-pass filter, whose input is the difference d_k
+/// = (x_k - x_(k-1)) / T, held over the period. For order 1, v_k = v_(k-1) + (1 - e^(-2 pi f T)) (d_k - v_(k-1)), with
+/// f the cutoff.
 using VelocityFilterConfig = std::variant<DifferenceFilter, LowPassFilter, AdaptiveWindowFilter>;
 
 /// Estimates the velocity from sampled positions, as a controller does. Allocates only in the constructor.
@@ -100,7 +102,7 @@ class VelocityFilter {
   std::optional<SampledLowPass> low_pass_;
   std::array<Vec3, AdaptiveWindowFilter::kLongest + 1> samples_{};  ///< ring buffer [m]
   std::size_t next_ = 0;                                            ///< index of the next sample
-  std::size_t known_ = 0;  ///< samples since the reset, at most the size of the ring buffer
+  std::size_t known_ = 0;  ///< number of samples since the reset, at most the size of the ring buffer
 };
 
 /// Impedance-type haptic device: a light handle with motors, which measures positions and renders forces.
@@ -142,8 +144,8 @@ class ForcePath {
   void reset() noexcept;
   /// Adds the force rendered at the beginning of a period [N] and returns the motors' force during this period.
   HeldForce hold(const Vec3& rendered) noexcept;
-  /// Returns the fractional part of the delay, in [0, 1). After this fraction of each period the motors change their
-  /// force.
+  /// Returns the fractional part of the delay, in [0, 1). After this fraction of each period, the motors change from
+  /// HeldForce::before to HeldForce::after.
   double switch_fraction() const noexcept { return switch_fraction_; }
 
  private:
@@ -196,7 +198,7 @@ class ImpedanceDevice final : public Device {
   Random random_;
   ForcePath path_;
   HandleMotion motion_;
-  FreeMotion before_, after_;  ///< solutions for the parts of a period before and after the motors change their force
+  FreeMotion before_, after_;  ///< motion in a period before and after the motors change their force
   struct Elastic {
     ElasticMotion parts;
     ElasticMotion::Stretch before, after;
@@ -205,7 +207,7 @@ class ImpedanceDevice final : public Device {
   HandleState sampled_;
 };
 
-/// Sources of the values in device presets.
+/// Sources of the values in device presets: the code of CHAI3D, the maker's data sheet, or an estimate of this project.
 inline constexpr std::string_view kFromChai3d = "CHAI3D 3.3.0, src/devices/CPhantomDevices.cpp and CDeltaDevices.cpp",
                                   kFromDataSheet = "the maker's data sheet", kOurEstimate = "(ours)";
 
@@ -216,8 +218,8 @@ struct SourcedNumber {
   double low = value, high = value;  ///< plausible range of an estimate; equal to `value` if published
 };
 
-/// A commercial impedance-type device. The filter, delay and resolution of its force belong to the controller and
-/// are not included.
+/// A commercial impedance-type device. The velocity filter, the delay and the force resolution belong to the controller
+/// and are not included.
 struct DevicePreset {
   const char* name;
   const char* device;           ///< make and model
@@ -235,15 +237,16 @@ std::span<const DevicePreset> device_presets() noexcept;
 /// Returns the preset with this name; null if no preset has this name.
 const DevicePreset* find_device_preset(std::string_view name) noexcept;
 
-/// Selects the values of a preset's unpublished parameters: own: the estimates themselves. soft: the end of each
-/// range that lowers the stability limit of a wall (little friction and mass, a coarse encoder). stiff: the opposite
-/// end.
+/// Selects the values of a preset's unpublished parameters. `own`: the estimates. `soft`: the end of each plausible
+/// range that lowers the stability limit of a wall (little friction, little mass, a coarse encoder). `stiff`: the
+/// opposite end of each range.
 enum class PresetVariant { own, soft, stiff };
 inline constexpr const char* kPresetRanges =
     "dry friction 0 to twice our value, viscous friction 1 to 10 times, mass smaller or larger by a factor of 1.3, "
     "encoder finer or coarser by a factor of 2";
 
-/// Returns the device's configuration, with defaults for fields that a preset does not contain.
+/// Returns the configuration of the device with the estimates that `end` selects. Fields that a preset does not contain
+/// have their defaults.
 ImpedanceDeviceConfig config_of(const DevicePreset& preset, PresetVariant end = PresetVariant::own);
 
 }  // namespace hapbench

@@ -94,11 +94,11 @@ constexpr ModelInfo kContinuousNormalProjectionInfo = {
 ///  - The increase by <dx, u> equals work done against the force -K d u. Only d_sd creates energy, as in the depth
 ///    model surface_normal. If a point leaves the tool sideways, some energy is lost.
 ///
-/// No function of the pose alone is both continuous and free of saturation. Continuity at entry requires depth
-/// 0 everywhere on the tool's surface. Without saturation, a point that was pressed through the whole tool to the
+/// A depth that depends only on the pose cannot be both continuous and free of saturation. Continuity at entry requires
+/// depth 0 everywhere on the tool's surface. Without saturation, a point that was pressed through the whole tool to the
 /// opposite surface would have the diameter as depth on this surface. Subtracting the depth at entry is no solution:
-/// points enter a tool that slides over a flat surface from the side all the time, and the tool would lose its
-/// support. O(n).
+/// points enter a tool that slides over a flat surface from the side all the time, and the tool would lose its support.
+/// O(n).
 class ContinuousNormalProjection final : public DepthModel {
  public:
   void prepare(const PointShell& shell) override {
@@ -142,7 +142,7 @@ class ContinuousNormalProjection final : public DepthModel {
   std::vector<Memory> memory_;  ///< one entry for each point of the shell
   std::vector<double> exit_;    ///< d_np of each contact [m]
   std::uint64_t step_ = kNever + 1;
-  ToolPose last_;  ///< pose in the previous step; unused if no point was inside
+  ToolPose last_;  ///< pose in the last `evaluate`; read only for points that were inside the tool at this pose
 };
 
 template <class Model>

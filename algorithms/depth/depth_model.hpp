@@ -12,9 +12,9 @@
 
 namespace hapbench {
 
-/// Computes the penetration depth d_i >= 0 [m] and the gradient u_i of every colliding point (thesis B.1, C.1,
-/// F.1; signs as in ContactBuffer). Most models depend only on the pose of the tool. A model with a memory
-/// holds the state of one run. One virtual call in each step.
+/// Computes the penetration depth d_i >= 0 [m] and the gradient u_i of every colliding point (thesis B.1, C.1, F.1;
+/// signs as in ContactBuffer). Most models depend only on the pose of the tool. A model with a memory holds the state
+/// of one run. A model costs one virtual call in each step.
 class DepthModel {
  public:
   virtual ~DepthModel() = default;
@@ -28,7 +28,7 @@ class DepthModel {
   virtual void evaluate(const ToolShape& tool, const ToolPose& pose, ContactBuffer& contacts) noexcept = 0;
 };
 
-/// An entry of the table: documentation and constructor of a depth model.
+/// Entry of the table of depth models: documentation of a model, and the function that creates the model.
 struct DepthModelEntry {
   const ModelInfo* info;
   std::unique_ptr<DepthModel> (*make)();

@@ -9,8 +9,8 @@
 namespace hapbench {
 namespace {
 
-/// Returns energy [J] and moment about `tip` of springs of stiffness K [N/m] with the weights in the buffer.
-/// Their ends have moved by `shift` [m], so the depths are d_i + <u_i, shift>. O(n).
+/// Returns the energy [J] and the moment about `tip` [N m] of springs of stiffness K [N/m] with the weights in the
+/// buffer. The tool ends of the springs have moved by `shift` [m], so their depths are d_i + <u_i, shift>. O(n).
 SpringState shifted_springs(const ContactBuffer& contacts, const Vec3& shift, const Vec3& tip, double K) noexcept {
   using simd::load, simd::Pack;
   const Pack sx(shift.x()), sy(shift.y()), sz(shift.z());
@@ -29,8 +29,8 @@ SpringState shifted_springs(const ContactBuffer& contacts, const Vec3& shift, co
   return {0.5 * K * simd::sum(energy), -K * Vec3(simd::sum(mx), simd::sum(my), simd::sum(mz))};
 }
 
-/// A law with all penalty springs in series with one coupling spring: f = -K M^-1 sum d_i u_i and S = M^-1
-/// S_sum, with S_sum = sum u u^T and M = shift I + scale S_sum.
+/// Base of laws in which all penalty springs act in series with one coupling spring: f = -K M^-1 sum d_i u_i and S =
+/// M^-1 S_sum, with S_sum = sum u u^T and M = shift I + scale S_sum.
 class SeriesLaw : public ForceLaw {
  public:
   SeriesLaw(double stiffness, double shift, double scale) : ForceLaw(stiffness), shift_(shift), scale_(scale) {}
@@ -47,7 +47,7 @@ class SeriesLaw : public ForceLaw {
 
   bool gives_weights() const noexcept override { return false; }
 
-  /// The coupling transmits velocities by the same matrix as depths.
+  /// The coupling reduces the normal velocity by the same matrix as the stiffness tensor.
   Vec3 turning_velocity(const ContactBuffer& contacts, const Mat3& S, const ToolState& tool) const noexcept override {
     return series_.solve(ForceLaw::turning_velocity(contacts, S, tool));
   }
@@ -76,7 +76,8 @@ constexpr AlgorithmParameter kAlongSum[] = {
      "0: coupling spring in space; 1: scalar coupling spring along the sum of the depths, whose direction the force "
      "keeps"}};
 
-/// M is divided by K_vc, so that K = 0 needs no special case.
+/// Penalty springs of stiffness K in series with a coupling spring of stiffness K_vc: M = I + K / K_vc S_sum. M
+/// contains K / K_vc and not K_vc / K, so that `evaluate` needs no special case for K = 0.
 class VirtualCoupling final : public SeriesLaw {
  public:
   explicit VirtualCoupling(const RenderingConfig& config)
@@ -113,9 +114,9 @@ double virtual_coupling_bound(const RenderingConfig&, const ToolShape&, std::siz
   return 0.5 * std::sqrt(static_cast<double>(n)) * depth;
 }
 
-/// Mechanical equivalent: penalty springs of stiffness K / eps in series with one coupling spring of stiffness
-/// K. The energy is E = K / (2 eps) min over x of sum (d_i - <u_i, x>)^2 + eps |x|^2. Its gradient by the
-/// tool's position is K x = -f. Depths and velocities are transmitted by the same matrix.
+/// Mechanical equivalent: penalty springs of stiffness K / eps in series with one coupling spring of stiffness K. The
+/// energy is E = K / (2 eps) min over x of sum (d_i - <u_i, x>)^2 + eps |x|^2. The gradient of E with respect to the
+/// tool's position is K x = -f.
 class LeastSquares final : public SeriesLaw {
  public:
   explicit LeastSquares(const RenderingConfig& config) : SeriesLaw(config.stiffness, config.regularisation, 1.0) {}
@@ -126,9 +127,8 @@ class LeastSquares final : public SeriesLaw {
 };
 
 /// Bound of |f_spring| / K = |x|, where x = (eps I + U U^T)^-1 U d. The columns of U are the gradients, and d is the
-/// vector of the depths. With the singular values s of U, |x| <= max s / (eps + s^2) |d|, which is at most |d| / (2
-/// sqrt eps), at s^2 = eps.
-/// |d| is at most sqrt(n) times the largest depth.
+/// vector of the depths. With the singular values s of U, |x| <= max s / (eps + s^2) |d|. This is at most |d| / (2 sqrt
+/// eps), reached at s^2 = eps. |d| is at most sqrt(n) times the largest depth.
 double least_squares_bound(const RenderingConfig& config, const ToolShape&, std::size_t n, double depth) {
   return 0.5 * std::sqrt(static_cast<double>(n) / config.regularisation) * depth;
 }
@@ -154,8 +154,8 @@ double saturation_of(const RenderingConfig& config) {
   return parameter_value(config, "static_coupling", kSaturation[0]);
 }
 
-/// Static virtual coupling: the tool is connected by a saturating spring to a massless copy of itself,
-/// displaced by s, which is in balance with its contacts. Newton's method with halved steps finds the balance,
+/// Static virtual coupling: the tool is connected by a saturating spring to a massless copy of itself, displaced by s
+/// [m] from the tool. The copy is in balance with its contacts. Newton's method with halved steps finds the balance,
 /// the minimum of the convex energy
 ///
 ///   W(s) + K/2 sum p_i^2,  W(s) = F_s^2 / K_vc (sqrt(1 + (K_vc |s| / F_s)^2) - 1)
@@ -192,7 +192,7 @@ class StaticCoupling final : public ForceLaw {
 
   bool gives_weights() const noexcept override { return false; }
 
-  /// The coupling transmits velocities by the same matrix as depths.
+  /// The coupling reduces the normal velocity by the same matrix as the stiffness tensor.
   Vec3 turning_velocity(const ContactBuffer& contacts, const Mat3& S, const ToolState& tool) const noexcept override {
     return transmission_ * ForceLaw::turning_velocity(contacts, S, tool);
   }
@@ -214,7 +214,8 @@ class StaticCoupling final : public ForceLaw {
       const Vec3 newton = Eigen::LDLT<Mat3>(stiffness).solve(residual);
       const Vec3 from = displacement_;
       const double before = residual.norm();
-      // A full step may go too far where the coupling saturates or contacts separate.
+      // Halve the step until the imbalance decreases. A full step may be too long if the coupling saturates or contacts
+      // separate.
       for (double fraction = 1.0; fraction > kMinFraction; fraction *= 0.5) {
         displacement_ = from + fraction * newton;
         copy_force = force_on_copy(contacts, displacement_);
@@ -222,7 +223,7 @@ class StaticCoupling final : public ForceLaw {
         if (residual.norm() < before) break;
       }
       if (residual.norm() < before) continue;
-      displacement_ = from;  // the imbalance is only rounding, or the balance cannot be reached
+      displacement_ = from;  // here the imbalance is only rounding, or no step reduces it
       force_on_copy(contacts, displacement_);
       return;
     }
@@ -241,8 +242,8 @@ class StaticCoupling final : public ForceLaw {
     return K_vc_ / q * (Mat3::Identity() - r * r.transpose());
   }
 
-  /// Returns the contact force on a copy displaced by s [m]. Contacts that the copy still touches get weight 1,
-  /// others 0. O(n).
+  /// Returns the contact force on a copy displaced by s [m], and sqrt(sum p_i^2). Sets the weight of each contact to 1
+  /// if the copy still touches the contact, otherwise to 0. O(n).
   CopyForce force_on_copy(ContactBuffer& contacts, const Vec3& s) const noexcept {
     using simd::load, simd::Pack, simd::select;
     const Pack sx(s.x()), sy(s.y()), sz(s.z()), zero(0.0);
@@ -265,7 +266,8 @@ class StaticCoupling final : public ForceLaw {
   double K_vc_;                       ///< stiffness of the coupling before saturation [N/m]
   double F_s_;                        ///< saturation force of the coupling [N]
   Vec3 displacement_ = Vec3::Zero();  ///< displacement s of the copy for the last contacts [m]
-  Mat3 transmission_ = Mat3::Zero();  ///< maps a displacement of the tool to the part of it that reaches the contacts
+  Mat3 transmission_ = Mat3::Zero();  ///< C (C + P)^-1 for the stiffness C of the coupling and P of the contacts: maps
+                                      ///< the contacts' force on a tool without coupling to the force with coupling
 };
 
 /// Bound of |f_spring| / K: the coupling force balances the contacts, at most n K d, and is below F_s.

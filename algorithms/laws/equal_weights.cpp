@@ -46,7 +46,8 @@ class McNeely final : public ForceLaw {
   double points_;
 };
 
-/// Bound of |f_spring| / K: n springs of weight min(1, p / n), all in one direction.
+/// Upper bound of |f_spring| / K [m]: n springs of weight min(1, p / n), all in one direction. p is the
+/// parameter `points`.
 double mcneely_bound(const RenderingConfig& config, const ToolShape&, std::size_t n, double depth) {
   return std::min(static_cast<double>(n), points_of(config)) * depth;
 }

@@ -19,7 +19,8 @@ using Vec6 = Eigen::Matrix<double, 6, 1>;
 using Mat6 = Eigen::Matrix<double, 6, 6>;
 
 constexpr double kEps = kExactShapingEpsilon;
-/// Number of Newton steps with the final epsilon before kPath is used; nearly all scenes need one or two.
+/// Maximum number of Newton steps with the final epsilon, before the solver follows kPath. Nearly all scenes need one
+/// or two steps.
 constexpr int kDirectSteps = 6;
 /// Decreasing values of epsilon, the weight of the regularisation. The solver uses one value after the other if it has
 /// not converged after kDirectSteps steps with the final epsilon (see solve).
@@ -49,12 +50,13 @@ struct TensorPack {
   }
 };
 
-// The generators of the cone are tensors. The functions below take them as an object of a class of this form:
+// The cone consists of the sums of tensors a_i with weights c_i >= 0. The functions below get the tensors as an object
+// of a class of this form:
 //
 //   struct Tensors { std::size_t size, padded_size; double* weight; TensorPack pack(std::size_t i) const; };
 //
-// It has `size` tensors of trace 1, and one weight for each. `pack(i)` returns the eight tensors from index i on.
-// Tensors and weights are padded to whole packs with zeros.
+// The object contains `size` tensors of trace 1, and one weight for each tensor. `pack(i)` returns the eight tensors
+// from index i on. Tensors and weights are padded to whole packs with zeros.
 
 /// Sums over the tensors and their weights c_i.
 struct TensorSums {
@@ -145,8 +147,7 @@ bool newton(const Tensors& tensors, double eps, int max_steps, Vec6& w, TensorSu
     const Vec6 target = solve_step(sums.G, eps, identity6());
     const double slope = dual_gradient(w, eps, sums).dot(target - w);
     sums = evaluate_at(tensors, target);
-    // A contact whose exact weight is zero may change between active and inactive by the rounding of a_i .
-    // target.
+    // A contact whose exact weight is zero may change between active and inactive because a_i . target is rounded.
     const double rounding = 1e-15 * (1.0 + n) * (1.0 + target.norm());
     const bool flickers_only = sums.same_active || dual_gradient(target, eps, sums).norm() <= rounding;
     // In exact arithmetic the slope is negative before the optimum. A slope >= 0 is therefore only rounding.
@@ -231,15 +232,17 @@ class ExactShaping final : public ForceLaw {
   }
 };
 
-/// Number of cells along each edge of the cube of directions: 1350 cells of about 6 degrees, the angle within
-/// which the reduction calls gradients similar. Odd, so that the coordinate axes lie in the middle of cells.
+/// Number of cells along each edge of the cube of directions. It gives 1350 cells of about 6 degrees, the angle up to
+/// which the point reduction counts gradients as similar by default. The number is odd, so that the coordinate axes lie
+/// in the middle of cells.
 constexpr int kDirectionCells = 15;
 
 constexpr std::size_t kFaces = 6, kCells = kFaces * kDirectionCells * kDirectionCells;
 
-/// Returns the cell index along one edge of a face, for a tangent in [-1, 1].
+/// Returns the index of the cell, along one edge of a face, that contains `tangent`: the ratio of two components of a
+/// direction, in [-1, 1].
 std::size_t edge_cell(double tangent) noexcept {
-  // Written so that NaN also gets a valid cell.
+  // The negated comparison is true also for NaN, which gets the cell 0.
   const double position = 0.5 * kDirectionCells * (tangent + 1.0);
   if (!(position > 0.0)) return 0;
   return position < kDirectionCells ? static_cast<std::size_t>(position) : kDirectionCells - 1;
@@ -311,7 +314,7 @@ class MergedShaping final : public ForceLaw {
   }
 
  private:
-  /// Sums u u^T over each cell and lists the cells that have contacts.
+  /// Sums u u^T over the contacts of each cell, and lists the cells that have contacts.
   void gather(const ContactBuffer& contacts) noexcept {
     touched_.clear();
     for (std::size_t i = 0; i < contacts.size(); ++i) {
@@ -331,13 +334,13 @@ class MergedShaping final : public ForceLaw {
     std::sort(touched_.begin(), touched_.end());
   }
 
-  /// Creates one group from each listed cell and resets the sums of the cell.
+  /// Creates one group from each cell in touched_, and resets the sums of the cell.
   void make_groups() noexcept {
     groups_.size = touched_.size();
     for (std::size_t k = 0; k < groups_.size; ++k) {
       CellSum& cell = cells_[touched_[k]];
       const double trace = cell.tensor[0] + cell.tensor[1] + cell.tensor[2];
-      // A cell with zero gradients only has a zero tensor, and its weight has no effect.
+      // A cell that contains only zero gradients has a zero tensor. The weight of its group then has no effect.
       const double scale = trace > 0.0 ? 1.0 / trace : 0.0;
       trace_[k] = trace > 0.0 ? trace : 1.0;
       weight_[k] = 1.0;
@@ -359,7 +362,7 @@ class MergedShaping final : public ForceLaw {
   };
   std::vector<std::uint16_t> cell_;  ///< cell of each contact
   std::vector<CellSum> cells_ = std::vector<CellSum>(kCells);
-  std::vector<std::uint16_t> touched_;  ///< cells of the groups, ascending
+  std::vector<std::uint16_t> touched_;  ///< indices of the cells that have contacts, ascending; one group for each
   PerCell group_weight_{};              ///< c_k of each cell
   PerCell trace_{};
   alignas(64) PerCell weight_{};  ///< C_k = c_k tr T_k of each group

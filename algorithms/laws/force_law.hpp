@@ -19,10 +19,9 @@ struct LawForce {
   Mat3 S = Mat3::Zero();       ///< stiffness tensor in units of K
 };
 
-/// A force law: combines the penalty springs of all contacts to one force (thesis C.4). Most laws compute
-/// f_spring = -K sum c_i d_i u_i and S = sum c_i u_i u_i^T, with depths d_i and gradients u_i, and differ only
-/// in the weights c_i (see gives_weights). One instance holds the state of one run. One virtual call in each
-/// step.
+/// A force law: combines the penalty springs of all contacts to one force (thesis C.4). Most laws compute f_spring = -K
+/// sum c_i d_i u_i and S = sum c_i u_i u_i^T, with depths d_i and gradients u_i, and differ only in the weights c_i
+/// (see gives_weights). One instance holds the state of one run. A law costs one virtual call in each step.
 class ForceLaw {
  public:
   explicit ForceLaw(double stiffness) : K_(stiffness) {}
@@ -31,8 +30,8 @@ class ForceLaw {
   /// Called before the first step; may allocate for up to `capacity` contacts.
   virtual void prepare(std::size_t capacity) { static_cast<void>(capacity); }
   virtual void reset() noexcept { iterations_ = 0; }
-  /// Returns force and stiffness tensor, zero without contacts, and writes the weights into the buffer.
-  /// Precondition: the contacts are padded.
+  /// Returns force and stiffness tensor, both zero without contacts. Writes the weights into the buffer. Precondition:
+  /// the contacts are padded.
   virtual LawForce evaluate(ContactBuffer& contacts) noexcept = 0;
   /// Returns the elastic energy of the springs of the last `evaluate` and their moment about the tip centre
   /// `tip` [m]. The arguments are the contacts and the spring force [N] of that call. Default for weighted
@@ -66,8 +65,8 @@ class SingleSpringLaw : public ForceLaw {
   bool gives_weights() const noexcept override { return gives_weights_; }
 
  protected:
-  bool gives_weights_ = false;  ///< true if the last `evaluate` returned weighted springs; for a law that returns
-                                ///< weighted springs in some steps only
+  bool gives_weights_ = false;  ///< true if the last `evaluate` wrote weights that define the force; may differ from
+                                ///< step to step
 };
 
 /// Sets the weight of every contact to c; the padding stays zero. O(n).

@@ -8,7 +8,8 @@
 namespace hapbench {
 namespace {
 
-/// Mean gradient below which the direction is rounding noise and the force is zero.
+/// Smallest norm of the mean gradient, |sum u_i| / n, that gives a force. Below this norm, the direction is rounding
+/// noise, and the force is zero.
 constexpr double kMinMeanGradient = 1e-9;
 
 /// A law with one spring, compressed by d_r = depth(contacts, |sum u_i|) [m]. Sets all weights to 1, because
@@ -73,9 +74,9 @@ class Tandpasta final : public ForceLaw {
   }
 
  private:
-  /// Returns the ratio beta of the gradient u: 1 if no other gradient opposes it, 0 if all cancel. The sum of
-  /// inner products is the inner product with the sum of gradients, so only the sum of magnitudes needs the
-  /// O(n) loop.
+  /// Returns the ratio beta of the gradient u: 1 if no other gradient opposes u, 0 if the inner products of u with all
+  /// gradients sum to zero. This sum is the inner product of u with `total`, the sum of the gradients. Only the sum of
+  /// the magnitudes needs the O(n) loop.
   static double cancelling_ratio(const ContactBuffer& c, const Vec3& u, const Vec3& total) noexcept {
     using simd::load, simd::Pack;
     const Pack x(u.x()), y(u.y()), z(u.z());

@@ -29,7 +29,8 @@ extern "C" {
 
 enum { HAPBENCH_LAW = 1, HAPBENCH_CONTACTS = 2 };
 
-/* A parameter of a law. In a scenario it is the field rendering.parameters.<law>.<name>. Both bounds are allowed. */
+/* A parameter of a law. A scenario sets it in the field rendering.parameters.<law>.<name>. The values `min` and `max`
+ * are allowed. */
 typedef struct HapbenchParameter {
   const char* name; /* letters, digits and "_"; begins with a small letter */
   const char* unit; /* SI unit such as "N/m"; "1" if dimensionless */
@@ -59,18 +60,19 @@ typedef struct HapbenchPose {
   double rotation[9]; /* matrix from tool frame to world frame, row by row; the tool's z axis points to the shank */
 } HapbenchPose;
 
-/* The contacts of a step; n entries in each array. The gradient is the unit vector along which the tool gets deeper.
- * The penalty force of contact i alone on the tool is -K depth gradient. A law receives n > 0 contacts and writes the
- * weights only. A contact source writes n and all arrays except normals and weights, which are NULL. */
+/* The contacts of a step; n entries in each array. The gradient is the unit vector along which the tool gets deeper. If
+ * contact i were the only contact, the penalty force on the tool would be -K depth gradient. A law receives n > 0
+ * contacts and writes the weights only. A contact source writes n and all arrays except normals and weights, which are
+ * NULL. */
 typedef struct HapbenchContacts {
   size_t n;
   size_t room;                /* capacity of the arrays */
-  uint32_t* index;            /* number of the point, vertex or triangle; constant over the run */
-  double* depth;              /* penetration depth >= 0 [m]; may be negative for springs */
+  uint32_t* index;            /* number of the point, vertex or triangle; never changes during a run */
+  double* depth;              /* penetration depth >= 0 [m]; negative only for bilateral springs */
   double *gx, *gy, *gz;       /* gradient, unit vector */
   double *x, *y, *z;          /* colliding point, world [m] */
   const double *nx, *ny, *nz; /* outward normal of the environment at this point */
-  double* weight;             /* c_i, weight of the contact's spring */
+  double* weight;             /* c_i, weight of the contact's spring, dimensionless */
 } HapbenchContacts;
 
 /* The result of a law. By default, hapbench computes it from the weights: force -K sum c_i d_i u_i and stiffness tensor
@@ -102,12 +104,12 @@ typedef struct HapbenchModule {
    * Returning NULL is a fault. If this function is NULL, the state is NULL. */
   void* (*create)(const double* values, const char* config, const HapbenchRun* run, char* fault);
 
-  /* Evaluates one pose of the tool. Integrators may call it several times in a step. For a law, `pose` is NULL, and it
-   * should not allocate. For a contact source, `force` is NULL, and its contacts must depend on the pose only. Returns
-   * 0; any other value is a fault. */
+  /* Evaluates one pose of the tool. Integrators may call this function several times in a step. For a law, `pose` is
+   * NULL, and the function should not allocate. For a contact source, `force` is NULL, and its contacts must depend on
+   * the pose only. Returns 0; any other value is a fault. */
   int (*step)(void* state, const HapbenchPose* pose, HapbenchContacts* contacts, HapbenchForce* force, char* fault);
 
-  void (*reset)(void* state);   /* returns to t = 0, bitwise; NULL if the state does not change */
+  void (*reset)(void* state);   /* restores the state after `create`, bitwise; NULL if the state never changes */
   void (*destroy)(void* state); /* frees the state; may be NULL */
 } HapbenchModule;
 

@@ -23,7 +23,7 @@ constexpr std::size_t kMaxParameters = 1000;
 constexpr std::size_t kGuards = 8;
 constexpr auto kUnwritten = std::uint64_t{0x7ff4deadc0ffee00};
 
-constexpr double kLengthTolerance = 1e-3;  ///< tolerance of a gradient's length
+constexpr double kLengthTolerance = 1e-3;  ///< largest allowed difference between a gradient's length and 1
 
 /// The faults since the last take_module_faults(). A fault may happen in a haptic loop, so recording a fault neither
 /// locks nor allocates. Only the text of the first fault is kept.
@@ -64,12 +64,12 @@ LawForce force_of(const HapbenchForce& answer) {
   return force;
 }
 
-/// The force of a law that has failed: NaN.
+/// Returns the result of a law that has failed: a force of NaN and a tensor of zero.
 LawForce no_force() {
   return {Vec3::Constant(kNaN), Mat3::Zero()};
 }
 
-/// Returns why a contact from a module cannot be used, or null.
+/// Returns the problem of contact i from a module; null if the contact is valid.
 const char* problem_of(const ContactBuffer& contacts, std::size_t i) {
   const Vec3 gradient = contacts.gradient(i);
   if (!contacts.point(i).allFinite() || !gradient.allFinite() || !std::isfinite(contacts.depth[i]))
@@ -181,7 +181,8 @@ LawForce ModuleLaw::evaluate(ContactBuffer& contacts) noexcept {
   const auto is_unwritten = [](double number) { return std::bit_cast<std::uint64_t>(number) == kUnwritten; };
   if (!std::all_of(weights_.begin(), weights, is_unwritten) || !std::all_of(end, end + kGuards, is_unwritten))
     return failed("writes beyond its weights, of which there is one for each contact");
-  // Take the weights, or the force with equal weights if the module wrote no weights.
+  // Compute the force from the weights, or take the force of the module. A module that gives a force may leave weights
+  // unwritten; each unwritten weight becomes 1 / n.
   gives_weights_ = answer.given == 0;
   if (!gives_weights_) std::replace_if(weights, end, is_unwritten, 1.0 / static_cast<double>(n));
   std::copy(weights, end, contacts.weight.begin());

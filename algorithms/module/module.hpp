@@ -10,22 +10,23 @@
 #include "algorithms/registry.hpp"
 #include "sim/contact/contact_source.hpp"
 
-/// Force laws and contact sources behind the C interface. A step adds one indirect call and a check of the
-/// result.
+/// Runs force laws and contact sources that external modules implement through the C interface (hapbench_module.h).
+/// Compared with built-in code, a step costs one more indirect call and a check of the result.
 namespace hapbench {
 
-/// A module's table and the name of the file that it came from, without folders.
+/// A loaded module: its table of functions and texts, and the name of its file without folders.
 struct Module {
   std::shared_ptr<const HapbenchModule> table;
   std::string file;
 };
 
-/// Room for the text of a fault with the names of module and file; a longer text is cut.
+/// Size [characters] of the buffer for the text of a fault, which includes the names of module and file. Longer text is
+/// cut.
 inline constexpr std::size_t kFaultTextSize = 320;
 
-/// The state of a module in one run. An exception counts as a fault, like a fault that the module reports.
-/// After a fault, the module is not called again until the next reset. If its state could not be created, it is
-/// never called.
+/// The state of a module in one run. An exception counts as a fault, like a fault that the module reports. After a
+/// fault, the module is not called again until the next reset. If the module could not create its state, it is never
+/// called.
 class ModuleState {
  public:
   explicit ModuleState(Module module) : module_(std::move(module)) {}
@@ -33,7 +34,8 @@ class ModuleState {
   ModuleState(const ModuleState&) = delete;
   ModuleState& operator=(const ModuleState&) = delete;
 
-  /// Creates a new state. Sets HapbenchRun::data. Returns false for a fault.
+  /// Creates a new state for `run`, after setting HapbenchRun::data from the module's table. Returns false after a
+  /// fault.
   bool create(const double* values, const char* config, HapbenchRun run) noexcept;
   /// Returns to t = 0 and clears the fault, unless the state could not be created.
   void reset() noexcept;
@@ -77,12 +79,14 @@ class ModuleLaw final : public SingleSpringLaw {
 
   ModuleState state_;
   std::vector<double> values_;
-  /// Guard numbers, one weight for each contact, guard numbers; detects writes out of range.
+  /// Buffer for the weights of the contacts, with guard values before and after the weights. A changed guard value
+  /// shows that the module wrote out of range.
   std::vector<double> weights_;
 };
 
-/// Contacts from a module, which determines their number, positions, depths and gradients. No depth model is
-/// used. The normal is the reversed gradient. Unlike other sources, it allocates in a step if the module does.
+/// Contacts from a module, which determines their number, positions, depths and gradients. No depth model is used. The
+/// normal is the reversed gradient. If the module allocates in a step, this source allocates in the step; other sources
+/// never do.
 class ModuleContacts final : public ContactSource {
  public:
   /// Throws std::runtime_error with the module's fault if the module cannot create its state. `config` is the

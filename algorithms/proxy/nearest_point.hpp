@@ -27,9 +27,9 @@ using Vector = Eigen::Matrix<double, N, 1>;
 template <int N>
 using Matrix = Eigen::Matrix<double, N, N>;
 
-/// Squared sine of the angle between a gradient and the span of other gradients below which the gradient counts
-/// as part of the span. Gradients on one flat face of the tool, or along one line of its side, differ only by
-/// rounding (1e-15). The threshold is an angle of 3e-8 rad. Other neighbouring gradients differ by far more.
+/// Threshold for the squared sine of the angle between a gradient and the span of other gradients. Below it, the
+/// gradient counts as part of the span. Gradients on one flat face of the tool, or along one line of its side, differ
+/// only by rounding (1e-15). The threshold is an angle of 3e-8 rad. Other neighbouring gradients differ by far more.
 inline constexpr double kInSpan = 1e-15;
 inline constexpr int kMaxIterations = 100;
 inline constexpr double kNever = std::numeric_limits<double>::infinity();
@@ -40,7 +40,7 @@ struct Violation {
   double amount = 0.0;  ///< d + <u, x>
 };
 
-/// A gradient split into its projection on the span of the active gradients and the remainder.
+/// Result of splitting a gradient into its projection on the span of the active gradients and the remainder.
 template <int N>
 struct Split {
   Vector<N> inside = Vector<N>::Zero();  ///< components of the projection in the orthonormal basis of the span
@@ -113,8 +113,9 @@ class ActiveSet {
   Matrix<N> Q_, R_;  ///< the first size() columns are valid
 };
 
-/// Makes constraint `p` satisfied and active, and removes active constraints that no longer hold the point back.
-/// Returns false if this is impossible.
+/// Moves x so that constraint `p` with the gradient u is satisfied, and makes it active. `violation` is d_p + <u, x> >
+/// 0 at entry. Removes active constraints that no longer hold the point back. Returns false if constraint `p`
+/// contradicts the active constraints.
 template <int N>
 bool satisfy(std::size_t p, double violation, const Vector<N>& u, Vector<N>& x, ActiveSet<N>& active) noexcept {
   double lambda = 0.0;
@@ -123,7 +124,8 @@ bool satisfy(std::size_t p, double violation, const Vector<N>& u, Vector<N>& x, 
     const Vector<N>&r = parts.along, &free = parts.remainder;
     const double free2 = active.size() == N ? 0.0 : free.squaredNorm();
     const double whole_step = free2 > kInSpan ? violation / free2 : kNever;
-    // Shorten the step where a multiplier would become negative; this constraint leaves the active set.
+    // If the multiplier of an active constraint would become negative, end the step where this multiplier is zero. This
+    // constraint then leaves the active set.
     double step = whole_step;
     int leaving = -1;
     for (int k = 0; k < active.size(); ++k) {
@@ -195,7 +197,8 @@ struct Compromise {
 };
 
 /// Minimises the compromise by Newton's method with a line search. The method converges, because the problem is convex
-/// and piecewise quadratic. On entry, `x` is t. Returns the problem at the minimum x.
+/// and piecewise quadratic. On entry, `x` is t; on return, `x` is the minimum. Returns value, gradient and Hessian at
+/// the minimum. Adds the number of Newton steps to `iterations`.
 template <int N, class Rows>
 Compromise<N> solve_least_squares(const Rows& rows, double epsilon, double tolerance, Vector<N>& x,
                                   int& iterations) noexcept {

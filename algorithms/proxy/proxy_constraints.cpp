@@ -16,7 +16,7 @@ namespace {
 using nearest_point::kNever, nearest_point::Violation;
 using simd::load, simd::Pack;
 
-/// The contacts as constraints of a move in space.
+/// Presents the contacts as constraints (`Rows` of nearest_point.hpp) on a translation x.
 class MoveRows {
  public:
   explicit MoveRows(const ContactBuffer& contacts) : c_(contacts) {}
@@ -52,14 +52,14 @@ double largest_length(const ContactBuffer& c, const Vec3& wanted) noexcept {
   return simd::max_lane(largest);
 }
 
-/// Factor on the margin of the search. The margin must exceed the largest move of the proxy by the rounding errors of
-/// margin and move.
+/// Factor on the margin of the contact search. The margin of the search must exceed the largest move of the proxy by
+/// the rounding errors of margin and move.
 constexpr double kQueryMargin = 1.0 + 1e-6;
 /// Distance, relative to the spacing, by which a point may lie inside one of the two faces at an edge and still count
 /// as beyond the edge.
 constexpr double kEdgeSlack = 1e-3;
 
-/// Number of points whose spacing is measured.
+/// Largest number of shell points at which typical_spacing() measures the distance to the neighbours.
 constexpr std::size_t kSpacingSamples = 100;
 /// Radius of a patch relative to the spacing. In a square lattice of points, the patches cover the centre between
 /// four points, which is 0.707 spacings away from each.
@@ -67,8 +67,8 @@ constexpr double kPatch = 0.75;
 /// Largest depth at which an edge constraint applies, relative to the spacing.
 constexpr double kMaxPatchDepth = 0.1;
 
-/// Points closer than this fraction of the shell's size count as one point, because shells may list a vertex
-/// once for each of its cells.
+/// Points closer than this fraction of the diagonal of the shell's bounding box count as one point, because a shell may
+/// list a vertex once for each of the vertex's cells.
 constexpr double kSamePosition = 1e-7;
 
 /// Returns the distance [m] from a point to the second nearest of the other points. Points at the same position count
@@ -201,7 +201,7 @@ void SpringConstraints::constraints_at(const ToolPose& proxy, const Vec3&, Conta
   for (std::size_t j = 0; j < springs_->gradients.size(); ++j) {
     const Vec3& u = springs_->gradients[j];
     const double depth = proxy.position.dot(u);
-    // If the depth is NaN, both conditions are false, so the spring is not compressed.
+    // If the depth is NaN, both conditions are false, and the spring adds no constraint.
     if (depth > -kNever) push_spring(j, proxy.position, depth, u, contacts);
     if (springs_->bilateral && -depth > -kNever) push_spring(j, proxy.position, -depth, -u, contacts);
   }

@@ -11,8 +11,9 @@
 
 namespace hapbench {
 
-/// Tolerance of the constraints, relative to the largest length of the problem. It is above the rounding of
-/// solution and gradients, and far below anything that can be felt (1e-11 m in a search of 0.1 mm).
+/// Tolerance of the constraints, relative to the largest of the depths and of the components of the wanted move. It is
+/// above the rounding errors of solution and gradients, and far below anything that can be felt (1e-11 m in a search of
+/// 0.1 mm).
 inline constexpr double kViolationTolerance = 1e-7;
 /// Weight epsilon of the compromise between contradictory contacts (nearest_allowed).
 inline constexpr double kCompromiseEpsilon = 1e-6;
@@ -20,7 +21,8 @@ inline constexpr double kCompromiseEpsilon = 1e-6;
 /// The result of nearest_allowed. x is the allowed move, t the wanted move.
 struct AllowedMove {
   Vec3 move = Vec3::Zero();  ///< x [m]
-  /// I - dx/dt: projector onto the span of the gradients of the contacts that hold the tool back.
+  /// I - dx/dt. If `feasible`, it is the projector onto the span of the gradients of the contacts that hold the tool
+  /// back.
   Mat3 held = Mat3::Zero();
   bool feasible = true;  ///< false: no move satisfies all contacts, so x is the least-squares compromise
   /// Only set if `feasible` is false: <u_i, share> is the contribution of contact i to the residual t - x [m].
@@ -36,7 +38,8 @@ struct AllowedMove {
 /// (Mathematical Programming 27, 1983). With three unknowns, at most three contacts are active. Each iteration adds the
 /// most violated contact, the first if several are equally violated. The multipliers lambda_i >= 0 [m] are written as
 /// weights into the buffer; x = t - sum lambda_i u_i, and lambda_i = 0 for contacts that do not hold the tool back. A
-/// constraint counts as satisfied within kViolationTolerance times the largest length of the problem.
+/// constraint counts as satisfied if its violation is at most kViolationTolerance times the largest of the depths and
+/// of the components of t.
 ///
 /// If no x satisfies all contacts (opposite walls of a slot narrower than the tool), x is the unique minimiser
 /// of
@@ -75,9 +78,9 @@ class ProxyConstraints {
   /// Replaces the contents of `contacts` by the padded constraints of a proxy at the pose `proxy` with the
   /// wanted move `wanted` [m]. Precondition: contacts.capacity() >= capacity(). Allocates nothing.
   virtual void constraints_at(const ToolPose& proxy, const Vec3& wanted, ContactBuffer& contacts) noexcept = 0;
-  /// Upper bound of the number of constraints.
+  /// Returns an upper bound of the number of constraints.
   virtual std::size_t capacity() const noexcept = 0;
-  /// Distance [m] that the proxy may move before the constraints must be computed again.
+  /// Returns the distance [m] that the proxy may move before the constraints must be computed again.
   virtual double margin() const noexcept = 0;
   /// Returns true if the force of a constraint acts at the contact's point. Returns false if it acts at the tip
   /// centre, where it has no moment.
@@ -86,7 +89,7 @@ class ProxyConstraints {
   virtual const SearchWork& work() const noexcept { return work_; }
 
  protected:
-  SearchWork work_;  ///< counters of constraints that have no contact search
+  SearchWork work_;  ///< work counters of a class without a contact search
 };
 
 /// Constraints from the shell points within the margin of the tool (ToolShape::surface_constraints), and from
@@ -115,7 +118,7 @@ class ShellConstraints final : public ProxyConstraints {
   AlignedDoubles support_x_, support_y_, support_z_;
 };
 
-/// Constraints from springs: planes that hold at any distance. A bilateral spring holds the tool from both
+/// Constraints from springs: planes that act on the tool at any distance. A bilateral spring holds the tool from both
 /// sides, so it gives two constraints, (d, u) and (-d, -u).
 class SpringConstraints final : public ProxyConstraints {
  public:

@@ -23,8 +23,9 @@ constexpr double kConverged = 0.03;
 constexpr std::size_t kLongestCycle = 4;
 /// Positions closer than this fraction of the margin count as equal.
 constexpr double kEqualPositions = 1e-3;
-/// Maximum number of times that the move of a proxy with points inside is shortened. After these shortenings the
-/// length of the move is right to a few per cent, unless the tool itself pulls the proxy away.
+/// Maximum number of times that next_move() shortens the move of a proxy with points inside. After these shortenings,
+/// the length of the move differs from the allowed length by a few per cent. It may be longer if the tool pulls the
+/// proxy away.
 constexpr int kMaxShortenings = 3;
 
 constexpr AlgorithmParameter kOwnParameters[] = {
@@ -75,12 +76,12 @@ void for_each_holding(const ContactBuffer& contacts, const Use& use) {
 /// planes in space that rotate with the tool's material, and in every step the proxy moves to the allowed position
 /// nearest to the tool, without passes. Points beyond the margin are not found before the next query.
 ///
-/// f_spring = K (x - p) with the tool's position p. S is the projector onto the span of the gradients that hold
-/// the proxy back. With angular damping, v_n is S v plus the shortest velocity in this span whose components
-/// along the u_i are the rotating tool's components <omega x r_i, u_i>. Normal damping and friction may follow
-/// S with a time constant (`damping_time_s`), because S, and with it -B S v, changes in steps as points come
-/// and go. A mean of projectors lies between 0 and I, so both stay passive. The rendered contacts are the
-/// contacts that hold the proxy, with depth lambda_i [m] and weight 1: f_spring = -K sum lambda_i u_i.
+/// f_spring = K (x - p) with the tool's position p. S is the projector onto the span of the gradients that hold the
+/// proxy back. With angular damping, v_n is S v plus the shortest velocity in this span whose components along the u_i
+/// are the rotating tool's components <omega x r_i, u_i>. Normal damping and friction may follow S with a time constant
+/// (`damping_time_s`), because S, and with it -B S v, changes abruptly when points come into contact or leave. A mean
+/// of projectors lies between 0 and I, so both stay passive. The rendered contacts are the contacts that hold the
+/// proxy, with depth lambda_i [m] and weight 1: f_spring = -K sum lambda_i u_i.
 class ProxyRendering final : public ForceAlgorithm {
  public:
   explicit ProxyRendering(const RenderingConfig& config)
@@ -132,7 +133,7 @@ class ProxyRendering final : public ForceAlgorithm {
       damping_and_limits_.release();
       return;
     }
-    Mat3 loads;  // uninitialised unless read
+    Mat3 loads;  // initialised only if needs_loads()
     if (damping_and_limits_.needs_loads()) loads = load_along(spring_);
     out.rendered = damping_and_limits_.rendered_force(spring_, damping_S_, velocity_at(tool), loads);
     out.friction = damping_and_limits_.friction_state();
@@ -171,10 +172,11 @@ class ProxyRendering final : public ForceAlgorithm {
   }
 
  private:
-  /// Moves the proxy for the tool's pose and updates the spring force. `free`: the tool touches no point.
+  /// Moves the proxy towards the tool at the pose `tool` and updates the spring force. `free`: true if the tool touches
+  /// no point.
   void update_proxy(const ToolPose& tool, bool free) noexcept {
     if (!has_proxy_) set_proxy(tool.position);
-    // If a tool in free air is too far away for the proxy to follow, move the proxy to the tool.
+    // If the tool is in free air and too far away for the proxy to follow, place the proxy at the tool.
     if (!follow(tool) && free) set_proxy(tool.position);
     spring_ = K_ * (proxy_ - tool.position);
   }
@@ -201,8 +203,7 @@ class ProxyRendering final : public ForceAlgorithm {
     spring_ = K_ * (proxy_ - tool.position);
   }
 
-  /// Updates the constraint planes for the rotation of the tool since the query, about the proxy position of
-  /// the constraints.
+  /// Rotates the constraint planes with the tool since the query, about constraint_position_.
   void move_planes(const ToolPose& from, const ToolPose& to) noexcept {
     const Mat3 turned = turn_matrix(from, to) - Mat3::Identity();
     ContactBuffer& planes = *near_contacts_;
@@ -212,7 +213,7 @@ class ProxyRendering final : public ForceAlgorithm {
   }
 
   /// Low-pass filters S for damping and friction. If an integrator evaluates several states within a step, the filter
-  /// starts from the previous step for each of them. The first contact takes effect at once.
+  /// starts each evaluation from the S of the previous step. In the first step with contact, the filtered S equals S.
   void filter_directions() noexcept {
     damping_S_ = allowed_.held;
     if (damping_time_ == 0.0) return;
@@ -250,7 +251,7 @@ class ProxyRendering final : public ForceAlgorithm {
     return velocity;
   }
 
-  /// Moves the proxy to a position, without contacts.
+  /// Places the proxy at a position and discards its constraints.
   void set_proxy(const Vec3& position) noexcept {
     has_proxy_ = true;
     proxy_ = constraint_position_ = position;
@@ -276,7 +277,7 @@ class ProxyRendering final : public ForceAlgorithm {
     return allowed;
   }
 
-  /// Multiplies the depths of points inside the proxy by `factor`.
+  /// Multiplies all positive depths (points inside the proxy) by `factor`.
   void scale_depths(double factor) noexcept {
     depth_scale_ *= factor;
     for (double& depth : std::span(near_contacts_->depth.data(), near_contacts_->size())) {
@@ -289,7 +290,7 @@ class ProxyRendering final : public ForceAlgorithm {
   bool follow(const ToolPose& tool) noexcept {
     const double margin = constraints_->margin();
     const double converged = kConverged * margin, same = kEqualPositions * margin;
-    std::array<Vec3, kLongestCycle> recent;  // positions of the last passes
+    std::array<Vec3, kLongestCycle> recent;  // proxy positions after the last passes
     recent.fill(Vec3::Constant(std::numeric_limits<double>::infinity()));
     for (int pass = 0; pass < kMaxProxyPasses; ++pass) {
       const ToolPose proxy{proxy_, tool.axis, tool.roll};
@@ -346,7 +347,7 @@ class ProxyRendering final : public ForceAlgorithm {
   }
 
   double K_;
-  double damping_time_;  ///< time constant of damping and friction [s]
+  double damping_time_;  ///< time constant of the low-pass filter of S for damping and friction [s]
   DampingAndLimits damping_and_limits_;
   Skips skips_;
   std::unique_ptr<ProxyConstraints> constraints_;
@@ -357,13 +358,14 @@ class ProxyRendering final : public ForceAlgorithm {
   std::optional<std::uint64_t> last_query_row_;  ///< step of the last query whose points were searched
   /// Proxy position for which the constraints of the last pass were computed [m].
   Vec3 constraint_position_ = Vec3::Zero();
-  AlignedDoubles constraint_depth_;  ///< depths of the constraints at constraint_position_ [m], if planes rotate
+  AlignedDoubles constraint_depth_;  ///< depths [m] of the constraints at constraint_position_; used only with linear
+                                     ///< multi-rate contacts
 
   bool has_proxy_ = false;  ///< false before the first step
   Vec3 proxy_ = Vec3::Zero();
   AllowedMove allowed_;            ///< result of the last pass
   Mat3 damping_S_ = Mat3::Zero();  ///< S for normal damping and friction
-  /// The filtered S at the end of this step and of the previous step.
+  /// Filtered S of the first evaluation in this step, and of the first evaluation in the previous step.
   Mat3 damping_S_row_ = Mat3::Zero(), previous_S_ = Mat3::Zero();
   std::optional<std::uint64_t> last_row_;
   const std::uint64_t* row_ = nullptr;  ///< null if no Simulation steps the algorithm; then each call counts as a step

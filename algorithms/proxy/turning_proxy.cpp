@@ -58,7 +58,7 @@ class TurningProxy final : public ForceAlgorithm {
       damping_and_limits_.release();
       return;
     }
-    Mat3 loads;  // only initialised if the loads are needed
+    Mat3 loads;  // initialised only if needs_loads()
     if (damping_and_limits_.needs_loads()) loads = load_along(out.spring);
     out.rendered = damping_and_limits_.rendered_force(out.spring, S_, {tool.velocity, Vec3(S_ * tool.velocity)}, loads);
     out.friction = damping_and_limits_.friction_state();

@@ -7,7 +7,7 @@
 
 namespace hapbench {
 
-/// Returns true if the proxy of `config` rotates, that is, if its rotational stiffness is finite.
+/// Returns true if the algorithm of `config` is `proxy` with a finite rotational stiffness; the proxy then rotates.
 bool turns(const RenderingConfig& config);
 
 /// Creates a proxy that also rotates (algorithm `proxy` with a finite rotational stiffness k [N m/rad]). The tool has
@@ -18,13 +18,14 @@ bool turns(const RenderingConfig& config);
 /// `force_point`: distance [m] from the tip centre back to the force point. The translational spring acts at this
 /// point, and the proxy rotates about it.
 ///
-/// S = U^T (U U^T + K/k V V^T)^-1 U with the rows u_i of U and r_i x u_i of V, for the points that hold the proxy. It
-/// satisfies 0 <= S <= I. Apart from a term from the curvature of the tool, the derivative of the force with respect to
-/// p is -K S. Points inside the proxy leave it at 40 half widths per second, as with the translating proxy. If the
-/// walls leave no room for the tool, a pass takes the least-squares compromise.
+/// S = U^T (U U^T + K/k V V^T)^-1 U with the rows u_i of U and r_i x u_i of V, for the points that hold the proxy. r_i
+/// is the vector from the force point to point i. S satisfies 0 <= S <= I. Apart from a term from the curvature of the
+/// tool, the derivative of the force with respect to p is -K S. Points inside the proxy leave it at 40 half widths per
+/// second, as with the translating proxy. If the walls leave no room for the tool, a pass takes the least-squares
+/// compromise, and S is I.
 std::unique_ptr<ForceAlgorithm> make_turning_proxy(const RenderingConfig& config, double force_point);
 
-/// Name of the parameter, in rendering.parameters.proxy.
+/// Name of the parameter k in rendering.parameters.proxy.
 inline constexpr const char* kRotationalStiffness = "rotational_stiffness_N_m_per_rad";
 
 }  // namespace hapbench

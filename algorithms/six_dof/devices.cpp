@@ -17,16 +17,17 @@ constexpr int kMaxPasses = 100;
 constexpr int kMaxNewtonSteps = 60;
 /// Largest number of sub-steps of a step of the intent.
 constexpr double kMaxSubsteps = 64.0;
-/// Smallest difference of forces that a Newton step still reduces [N]; the rounding error of 20 000 N/m times 10 mm is
-/// 1e-13 N.
+/// Imbalance [N] at which Newton's method stops, and change of the imbalance [N] at which a law with a memory counts as
+/// converged. The rounding error of a force of 20 000 N/m times 10 mm is 1e-13 N.
 constexpr double kExact = 1e-11;
 /// Change of the force for difference quotients [N]. It moves the handle by 20 nm at 500 N/m.
 constexpr double kForceStep = 1e-5;
 /// Smallest fraction of a Newton step in the line search.
 constexpr double kSmallestStep = 1.0 / 1024.0;
 
-/// Limits for a law with a memory: largest number of calls at one pose, and the factor below which the motion of its
-/// memory must reduce the imbalance between hand and device for the iteration to continue.
+/// Limits for a law with a memory. kMaxSettling: largest number of repeated calls at one pose. kStillMoves: if the line
+/// search fails, the iteration continues only if repeated calls reduce the imbalance between hand and device to less
+/// than this fraction.
 constexpr int kMaxSettling = 20;
 constexpr double kStillMoves = 0.5;
 
@@ -136,7 +137,8 @@ void ThreeDofDevice::place(const Intent& intent, const Vec3& force) noexcept {
   handle_.position = intent.grip + force / springs_.hand - springs_.grip * axis;
 }
 
-/// Returns the rendered force minus the force that the hand balances at this handle pose [N].
+/// Places the handle where the hand balances `force`. Returns the force that the device renders there, minus `force`
+/// [N].
 Vec3 ThreeDofDevice::unbalanced(const Intent& intent, const Vec3& force) noexcept {
   place(intent, force);
   ToolState tool;
@@ -150,7 +152,8 @@ Vec3 ThreeDofDevice::unbalanced(const Intent& intent, const Vec3& force) noexcep
   return rendered.spring - force;
 }
 
-/// Returns unbalanced() after a law with a memory, such as a proxy, has converged at this pose.
+/// Repeats unbalanced() until a law with a memory, such as a proxy, has converged at this pose, at most kMaxSettling
+/// times. Returns the last result [N].
 Vec3 ThreeDofDevice::settled(const Intent& intent, const Vec3& force) noexcept {
   Vec3 rest = unbalanced(intent, force);
   for (int i = 0; i < kMaxSettling; ++i) {

@@ -45,22 +45,24 @@ struct Handle {
 inline constexpr double kJump = 0.1;
 inline constexpr int kBisections = 6;
 
-/// The reference: tool, coupling and hand in equilibrium, with force and torque. When the intent changes continuously,
-/// the equilibrium is the local minimum of the energy that follows continuously. It need not be the global minimum,
-/// which for a tool in a hole may lie outside of the hole.
+/// Reference device that renders force and torque: tool, coupling and hand are in equilibrium. When the intent changes
+/// continuously, the equilibrium is the local minimum of the energy that follows continuously. It need not be the
+/// global minimum, which for a tool in a hole may lie outside of the hole.
 class SixDofDevice {
  public:
   /// Shell and tool must outlive the device.
   SixDofDevice(const PointShell& shell, const ToolShape& tool, const HandAndCoupling& springs, Skips skips);
 
   void reset() noexcept;
-  /// Moves the intent from its previous value to `intent`, and the tool to the equilibrium. The first call starts in
-  /// free space. Allocates nothing.
+  /// Result of follow().
   struct Step {
-    bool solved = true;     ///< the pose is an equilibrium; false: no room for the tool, or no convergence
-    bool jumped = false;    ///< true if the pose does not continuously follow from the previous pose
+    bool solved = true;   ///< true if the pose is an equilibrium; false if there is no room for the tool or the search
+                          ///< did not converge
+    bool jumped = false;  ///< true if the pose does not continuously follow from the previous pose
     double residual = 0.0;  ///< largest residual of the step's equilibria [N]; see ToolEquilibrium::Outcome
   };
+  /// Moves the intent from its previous value to `intent`, and the tool to the equilibrium. The first call starts in
+  /// free space. Allocates nothing.
   Step follow(const Intent& intent) noexcept;
 
   const Handle& handle() const noexcept { return handle_; }
@@ -73,7 +75,7 @@ class SixDofDevice {
 
   HandAndCoupling springs_;
   ToolEquilibrium equilibrium_;
-  double jump_;  ///< [m]
+  double jump_;  ///< kJump times the half width of the tool [m]
   bool starts_ = true;
   bool was_solved_ = true;  ///< false if the previous step was not solved; the next step is then not bisected
   Intent intent_;
@@ -89,7 +91,7 @@ inline constexpr double kBalanced = 1e-3;
 /// grip: K_phi Log(phi*^T phi) = -c e x f, with the symbols of PoseSprings.
 class ThreeDofDevice {
  public:
-  /// `config`: the law and its stiffness. `dt`: time step [s]. Shell and tool must outlive the device.
+  /// `config`: the force law or proxy, and its stiffness. `dt`: time step [s]. Shell and tool must outlive the device.
   ThreeDofDevice(const PointShell& shell, const ToolShape& tool, const HandAndCoupling& springs,
                  const RenderingConfig& config, double dt);
 

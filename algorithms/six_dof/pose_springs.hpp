@@ -45,21 +45,21 @@ CoupledPose relaxed(const PoseSprings& springs) noexcept;
 /// The energy near a pose as a function of the motion z = (dx, dtheta) of the tool [m, rad]. The handle's rotation is
 /// eliminated: it minimises the quadratic model.
 struct EnergyModel {
-  Vec6 tool_gradient;                          ///< derivative by z without a turn of the handle [N, N m]
-  Vec6 gradient;                               ///< derivative by z with the turn [N, N m]
-  Mat6 hessian;                                ///< symmetric [N/m, N, N m/rad]
-  Vec3 handle_gradient;                        ///< derivative by the handle's turn [N m]
-  Vec3 handle_turn;                            ///< turn of the handle without a move of the tool [rad]
-  Eigen::Matrix<double, 3, 6> handle_follows;  ///< the handle turns by handle_turn + handle_follows z
+  Vec6 tool_gradient;    ///< derivative with respect to z if the handle does not rotate [N, N m]
+  Vec6 gradient;         ///< derivative with respect to z if the handle rotates to the minimum [N, N m]
+  Mat6 hessian;          ///< symmetric [N/m, N, N m/rad]
+  Vec3 handle_gradient;  ///< derivative with respect to the handle's rotation [N m]
+  Vec3 handle_turn;      ///< rotation of the handle to the minimum if the tool does not move [rad]
+  Eigen::Matrix<double, 3, 6> handle_follows;  ///< the handle rotates by handle_turn + handle_follows z [rad]
 };
 EnergyModel energy_model(const PoseSprings& springs, const CoupledPose& pose) noexcept;
 
 /// Moves the tool by z = (dx, dtheta) and rotates the handle by the rotation that minimises the model.
 void move(CoupledPose& pose, const EnergyModel& model, const Vec6& z) noexcept;
 
-/// Return the force K (x + c e - q*) on the handle [N], and the moment K_r Log(phi^T theta) about the force point [N
-/// m].
+/// Returns the force K (x + c e - q*) on the handle [N].
 Vec3 spring_force(const PoseSprings& springs, const CoupledPose& pose) noexcept;
+/// Returns the moment K_r Log(phi^T theta) on the handle about the force point [N m].
 Vec3 spring_torque(const PoseSprings& springs, const CoupledPose& pose) noexcept;
 
 }  // namespace hapbench::six_dof

@@ -38,7 +38,8 @@ constexpr int kManyPasses = 40;
 
 }  // namespace
 
-/// The linearised constraints in coordinates in which the model of the energy is |z - t|^2.
+/// The linearised constraints (`Rows` of nearest_point.hpp), in coordinates y in which the quadratic model of the
+/// energy is K/2 |y - t|^2.
 struct ToolEquilibrium::Program {
   const std::vector<Vec6>& rows;
   const std::vector<double>& depths;

@@ -32,10 +32,11 @@ inline constexpr double kSolved = 1e-9;
 /// and adds the second derivatives of the constraints that hold the tool to the second derivatives of the energy, so
 /// that the passes converge quadratically. A pass moves no point of the tool by more than a margin. If the second
 /// derivatives at a stationary pose show a descent, such as for a cylinder balanced on one row of points, the search
-/// leaves the pose along this descent. If it cannot leave the pose, the search is not solved.
+/// leaves the pose along this descent. If it cannot leave the pose, the outcome is not `solved`.
 ///
-/// Unlike the translating proxy, the constraints are the points alone, without patches between them. An edge of the
-/// tool may therefore sink in between points, by 2.5 um for a radius of 0.5 mm and points 0.1 mm apart.
+/// Unlike the constraints of the translating proxy, these constraints come only from the points, without the flat
+/// patches around the points. An edge of the tool may therefore sink in between points, by 2.5 um for a radius of 0.5
+/// mm and points 0.1 mm apart.
 ///
 /// Allocates in the constructor only.
 class ToolEquilibrium {
@@ -50,7 +51,7 @@ class ToolEquilibrium {
     bool solved = false;    ///< the residual is at most kSolved, and the second derivatives show a minimum
     bool feasible = false;  ///< the constraints of the last pass do not contradict each other
     double residual = 0.0;  ///< [N]
-    double moved = 0.0;     ///< bound of the displacement of all points of the tool [m]
+    double moved = 0.0;     ///< upper bound of the distance that any point of the tool has moved [m]
     int passes = 0;
   };
   /// Moves `pose` to the equilibrium. If the outcome is not `solved`, `pose` is the pose of the last pass.
@@ -75,8 +76,9 @@ class ToolEquilibrium {
   std::size_t capacity() const noexcept { return near_->capacity(); }
   /// Returns the largest depth of a point inside the tool at the pose of the last pass [m]; 0 if no point is inside.
   double deepest() const noexcept { return deepest_; }
-  /// Sets the depth [m] to which depths of points inside the tool are reduced, so that they leave slowly. A search with
-  /// points inside the tool, or without room for the tool, then takes one pass. Infinite by default.
+  /// Sets the depth [m] to which the depth of the deepest point inside the tool is reduced, so that points leave the
+  /// tool slowly. All other positive depths are scaled by the same factor. A search with points inside the tool, or
+  /// without room for the tool, then takes one pass. Infinite by default.
   void set_recovery(double depth) noexcept { recovery_ = depth; }
   void reset() noexcept;
   const SearchWork& work() const noexcept { return near_->work(); }
@@ -104,8 +106,8 @@ class ToolEquilibrium {
   double deepest_ = 0.0;
   ToolShape::Grown grown_;
   std::unique_ptr<ContactQuery> near_;
-  ContactBuffer contacts_;  ///< the points near the tool
-  ContactBuffer probe_;     ///< the points that hold the tool, at poses nearby
+  ContactBuffer contacts_;  ///< constraints of the points near the tool
+  ContactBuffer probe_;     ///< constraints of the holding points at nearby poses, for second derivatives
   std::vector<Vec6> rows_, scaled_rows_;
   std::vector<double> scaled_depths_, scales_;
   std::array<Holding, 6> holding_;

@@ -65,7 +65,7 @@ const ModelInfo kPassivityControllerInfo = {
 };
 
 Vec3 EnergyTank::force(const StageStep& step) noexcept {
-  // Fill the tank with the energy absorbed since the last step.
+  // Change the level by the energy that the rendering absorbed or released since the last step, up to the capacity.
   level_ = std::min(config_.capacity, begun_ ? level_ + (step.energy - energy_) : config_.initial + step.energy);
   energy_ = step.energy;
   begun_ = true;
@@ -86,8 +86,9 @@ Vec3 ActuatorLimitedPassivity::force(const StageStep& step) noexcept {
   double owed = f.dot(v) - step.energy / dt_;  // power to dissipate [W]
   if (size == 0.0 || !(owed > 0.0)) return f;
   const Vec3 limit = config_.max_force.value_or(Vec3::Constant(std::numeric_limits<double>::infinity()));
-  // Damps the velocity component `part`. The damping a is the smallest that dissipates the power `owed`, but at most
-  // b. Keeps the force within the limits, |g - a part|_j <= F_j for each axis j.
+  // Returns the force g plus a damping force on the velocity component `part`. The damping a is the smallest that
+  // dissipates the power `owed`, but at most b. Keeps the force within the limits, |g - a part|_j <= F_j for each axis
+  // j.
   const auto damped = [&](const Vec3& g, const Vec3& part) -> Vec3 {
     double a = std::min(max_damping_, owed / part.squaredNorm());
     for (int j = 0; j < 3; ++j) {
@@ -123,7 +124,7 @@ void StagedRendering::reset() noexcept {
 
 void StagedRendering::compute(const ToolState& tool, ContactBuffer& contacts, RenderedForce& out) noexcept {
   algorithm_->compute(tool, contacts, out);
-  // For a state within a step, add the change that the stage made in this step.
+  // If an integrator evaluates another state within the step, add the change that the stage computed for this step.
   const std::uint64_t row = scene_.row != nullptr ? *scene_.row : row_ ? *row_ + 1 : 0;
   if (row_ == row) {
     if (!change_.isZero(0.0)) out.rendered += change_;
@@ -133,8 +134,8 @@ void StagedRendering::compute(const ToolState& tool, ContactBuffer& contacts, Re
   row_ = row;
   // Update the observed energies for the motion since the last step.
   for (ObservedEnergy* port : {&rendered_energy_, &requested_energy_}) port->move(tool, scene_.handle_moves_tool);
-  // The springs at the start of a run are energy that may be returned. The stage's port is the tool's
-  // translation only, so the moment is zero.
+  // At the start of a run, the rendering may return the elastic energy of the springs. The stage observes only the
+  // translation of the tool, so the moment is zero.
   const SpringState springs{first ? algorithm_->spring_state(tool, contacts).energy : 0.0, Vec3::Zero()};
   requested_energy_.answer(tool, out.rendered, springs);
   // Call the stage. Before its force is set, the observer gives the energy at the start of the step.
@@ -142,7 +143,7 @@ void StagedRendering::compute(const ToolState& tool, ContactBuffer& contacts, Re
   const Vec3 answer =
       limited_to(stage_->force({out.rendered, tool.velocity, rendered_energy_.energy()}), config_.max_force);
   rendered_energy_.answer(tool, answer, springs);
-  // Store the change for states within the step.
+  // Store the change for further states within the step.
   if (answer == out.rendered) {
     change_.setZero();
     return;
@@ -159,8 +160,8 @@ AlgorithmWork StagedRendering::work() const noexcept {
   return work;
 }
 
-/// Returns the largest s in [0, 1] with a s^2 + b s <= c, where a >= 0. If there is no such s, returns the s that
-/// comes closest.
+/// Returns the largest s in [0, 1] with a s^2 + b s <= c, where a >= 0. If there is no such s, returns the s in [0, 1]
+/// with the smallest a s^2 + b s.
 static double largest_scale(double a, double b, double c) noexcept {
   if (a + b <= c) return 1.0;
   const double discriminant = std::max(0.0, b * b + 4.0 * a * c);
@@ -195,7 +196,8 @@ void PassivityController::reset() noexcept {
 void PassivityController::compute(const ToolState& tool, ContactBuffer& contacts, RenderedForce& out) noexcept {
   algorithm_->compute(tool, contacts, out);
   if (row_ == nullptr || last_row_ == *row_) {
-    // For a state within a step, do not update the observed energy, and use the scale and the damping of the step.
+    // If an integrator evaluates another state within the step, use the scale and the damping of this step, and do not
+    // update the observed energy.
     if (acts(contacts, out)) render(tool, out);
     return;
   }
@@ -203,7 +205,8 @@ void PassivityController::compute(const ToolState& tool, ContactBuffer& contacts
   last_row_ = *row_;
   observed_.move(tool);
   if (!observed_.first()) {
-    // The largest change of the rotation so far is the largest change that is expected in the coming step.
+    // Update the largest change of the rotation between two steps. control() keeps energy in reserve for twice this
+    // change.
     const Vec3 turn = observed_.turned();
     if (last_turn_) largest_change_ = std::max(largest_change_, (turn - *last_turn_).norm());
     last_turn_ = turn;
@@ -222,8 +225,8 @@ void PassivityController::compute(const ToolState& tool, ContactBuffer& contacts
 
 /// Computes scale and damping for the step, and scales energy and moment of the springs.
 void PassivityController::control(const ToolState& tool, const Vec3& force) noexcept {
-  // Energy that the scripted rotation drew from the moment over the last step and is predicted to draw over the
-  // coming step.
+  // Energy [J] that the scripted rotation draws from the moment: one half for the rotation of the last step, one half
+  // for the equal rotation that is predicted for the coming step.
   const double drawn = springs_.moment.dot(observed_.turned());
   const double energy = observed_.energy();
   const double weakened = 0.5 * drawn > energy && drawn > 0.0 ? std::max(0.0, 2.0 * energy / drawn) : 1.0;

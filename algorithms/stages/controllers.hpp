@@ -31,7 +31,7 @@ class ForceStage {
   /// Called once before the first step; may allocate. `time_step`: [s]. `mass`: mass of the virtual tool [kg],
   /// 0 if a device's handle or a script moves the tool.
   virtual void prepare(double time_step, double mass) = 0;
-  /// Returns to t = 0; the next run is bitwise identical.
+  /// Returns to t = 0, so that the next run is bitwise identical to a run with a new object.
   virtual void reset() noexcept {}
   /// Returns the force to render [N]. Called once in every step.
   virtual Vec3 force(const StageStep& step) noexcept = 0;
@@ -112,7 +112,8 @@ class StagedRendering final : public ForceAlgorithm {
   Scene scene_;
   std::optional<std::uint64_t> row_;  ///< last step in which the stage was called
   Vec3 change_ = Vec3::Zero();        ///< rendered force minus the algorithm's force in this step [N]
-  /// Observed energy of the rendered forces, and of the algorithm's forces.
+  /// Energy [J] that the passivity observer computes for the rendered forces, and for the algorithm's forces before the
+  /// stage.
   ObservedEnergy rendered_energy_{0.0}, requested_energy_{0.0};
   std::uint64_t steps_staged_ = 0;
 };
@@ -130,10 +131,10 @@ class StagedRendering final : public ForceAlgorithm {
 /// nearest to f. The controller is adaptive damping: at s = 0 it stops the tool, and it never reverses the
 /// velocity.
 ///
-/// Before this computation, the springs are weakened if the scripted rotation would take more energy than E from
-/// their moment. The rotation of the coming step is predicted as the last step's rotation, plus or minus twice the
-/// largest change of rotation between two steps so far. The work of half the moment over this change is kept in
-/// reserve. In free air the controller renders nothing.
+/// Before this computation, the springs are weakened if the scripted rotation would draw more energy than E from the
+/// moment of the springs. The rotation of the coming step is predicted as the last step's rotation, plus or minus twice
+/// the largest change of rotation between two steps so far. The work of half the moment over twice this largest change
+/// is kept in reserve. In free air the controller renders nothing.
 ///
 /// Guarantee for the leapfrog integrator and a free position: E is never negative, up to rounding, while no
 /// change of the rotation exceeds twice the largest earlier change. (In a run that starts in contact, the first
@@ -148,7 +149,7 @@ class PassivityController final : public ForceAlgorithm {
 
   void prepare(const Scene& scene) override;
   void reset() noexcept override;
-  /// Computes the controlled force, and scales f_spring and S like the springs.
+  /// Computes the controlled force. Multiplies f_spring and S by the rendered fraction of the algorithm's force.
   void compute(const ToolState& tool, ContactBuffer& contacts, RenderedForce& out) noexcept override;
   SpringState spring_state(const ToolState&, const ContactBuffer&) const noexcept override { return springs_; }
   ForceJacobian jacobian() const noexcept override;
@@ -161,7 +162,7 @@ class PassivityController final : public ForceAlgorithm {
  private:
   void control(const ToolState& tool, const Vec3& force) noexcept;
   void render(const ToolState& tool, RenderedForce& out) const noexcept;
-  /// Returns the velocity change by f_in over half a step [m/s].
+  /// Returns the change of velocity that f_in causes in half a step [m/s].
   Vec3 half_kick() const noexcept { return *input_ * (0.5 * dt_ / mass_); }
 
   std::unique_ptr<ForceAlgorithm> algorithm_;
@@ -173,8 +174,8 @@ class PassivityController final : public ForceAlgorithm {
   const Vec3* input_ = nullptr;            ///< Scene::input, f_in [N]
   std::optional<std::uint64_t> last_row_;  ///< step of the last call of `compute`; empty before the first call
   SpringState springs_;                    ///< energy and moment of the springs after scaling
-  double scale_ = 1.0;                     ///< s, rendered fraction of the algorithm's force
-  double alpha_ = 0.0;                     ///< alpha, damping [N s/m]
+  double scale_ = 1.0;  ///< rendered fraction of the algorithm's force: s times the weakening of the springs
+  double alpha_ = 0.0;  ///< alpha, damping [N s/m]
   std::optional<Vec3> last_turn_;
   double largest_change_ = 0.0;  ///< largest change of the rotation vector between two steps so far [rad]
   std::uint64_t steps_controlled_ = 0;

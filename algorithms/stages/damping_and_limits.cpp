@@ -42,7 +42,7 @@ Vec3 DryFriction::force(const Mat3& loads, const Vec3& v) noexcept {
   slip_scale_ = size > limit ? limit / size : 1.0;
   g *= slip_scale_;
   if (first_of_row) {
-    // Deflection that gives this force.
+    // Set the deflection of the bristle that gives this force.
     bristle_ = (dt_ * g + B_t_ * previous_bristle_) / resistance;
     state_ = slip_scale_ < 1.0 ? Friction::slides : Friction::sticks;
   }

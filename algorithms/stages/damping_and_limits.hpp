@@ -15,16 +15,16 @@ namespace hapbench {
 /// B_t v and e <- e + dt v.
 SpringDamper bristle_of(const DryFrictionConfig& config, const RenderingConfig& rendering, double dt) noexcept;
 
-/// Dry friction with one bristle of deflection e [m] for the whole tool (Kikuuwe, Takesue, Sano, Mochiyama and
-/// Fujimoto 2006; their single contact is extended to many). The tool sticks until the bristle's force reaches
-/// mu N, and slides above it. N = sum N_i is the sum of the contact loads N_i = K c_i d_i > 0. Formula:
+/// Dry friction with one bristle of deflection e [m] for the whole tool (Kikuuwe, Takesue, Sano, Mochiyama and Fujimoto
+/// 2006; their model has a single contact, this class has many). The tool sticks until the bristle's force reaches mu
+/// N, and slides above it. N = sum N_i is the sum of the contact loads N_i = K c_i d_i > 0. Formula:
 /// kDampingAndLimitsInfo.
 ///
-/// On one face, between the two faces of a slot and along the line of a wedge, the result is Coulomb's friction
-/// force; in a corner it is never larger. Guarantee: passive for any motion, loads and normals, -<f, p_k - p_k-1> >=
-/// K_t/2 (||e_k||^2 - ||e_k-1||^2) if the velocity v passed to `force` is (p_k - p_k-1) / dt. Known failure: an
-/// explicit step is stable only up to a K_t of about the limit of K. Beyond it, a sticking tool chatters with forces
-/// of at most mu N.
+/// On one face, between the two faces of a slot and along the line of a wedge, the result is Coulomb's friction force.
+/// In a corner, the result is at most Coulomb's friction force. Guarantee: passive for any motion, loads and normals,
+/// -<f, p_k - p_k-1> >= K_t/2 (||e_k||^2 - ||e_k-1||^2) if the velocity v passed to `force` is (p_k - p_k-1) / dt.
+/// Known failure: an explicit step is stable only up to a K_t of about the limit of K. Beyond it, a sticking tool
+/// chatters with forces of at most mu N.
 class DryFriction {
  public:
   DryFriction(const DryFrictionConfig& config, const RenderingConfig& rendering);
@@ -53,9 +53,9 @@ class DryFriction {
   std::optional<std::uint64_t> last_row_;
   /// Deflection e at the end of this step, and of the previous step [m].
   Vec3 bristle_ = Vec3::Zero(), previous_bristle_ = Vec3::Zero();
-  /// P, projector of the last force onto the tangential directions.
+  /// P = I - sum N_i u_i u_i^T / N of the last force. If all u_i are parallel, P projects onto the tangential plane.
   Mat3 tangential_ = Mat3::Zero();
-  /// Factor in [0, 1] that limits the force to mu N; 1 while sticking.
+  /// Factor in [0, 1] that limits the force to mu N; 1 while the tool sticks, 0 without load.
   double slip_scale_ = 0.0;
   Friction state_ = Friction::none;
 };
@@ -75,7 +75,8 @@ double normal_damping(const RenderingConfig& config) noexcept;
 /// Returns the load tensor f f^T / ||f|| [N] of a single load ||f|| along the force f; zero for zero force.
 Mat3 load_along(const Vec3& force) noexcept;
 
-/// Returns the force, scaled down to the length `limit` [N] if it is longer. nullopt: no limit.
+/// Returns `force` [N], scaled down to the norm `limit` [N] if its norm is larger. Returns `force` unchanged if `limit`
+/// is nullopt.
 inline Vec3 limited_to(const Vec3& force, const std::optional<double>& limit) noexcept {
   const double length = limit ? force.norm() : 0.0;
   return limit && length > *limit ? Vec3(force * (*limit / length)) : force;
@@ -135,8 +136,8 @@ class DampingAndLimits {
   Friction friction_state() const noexcept { return dry_friction_ ? dry_friction_->state() : Friction::none; }
 
  private:
-  /// Returns B, or 1 with Hunt and Crossley's damping, scaled down so that no eigenvalue of its product with S
-  /// exceeds max_damping.
+  /// Returns B [N s/m], scaled down so that no eigenvalue of the returned value times S exceeds max_damping. With Hunt
+  /// and Crossley's damping, 1 replaces B, and S is the damping matrix [N s/m].
   double limited_damping(const Mat3& S) const noexcept;
   double friction(const Vec3& spring) const noexcept { return config_.mu_s + config_.mu_f * spring.norm(); }
 

@@ -44,8 +44,8 @@ const ModelInfo kGradientReductionInfo = {
 
 namespace {
 
-/// A merged contact has the index, point and normal of the first colliding point of its cell. Merged contacts
-/// are in the order in which their cells first appear.
+/// Merges the contacts of each grid cell into one contact. The merged contact has the index, point and normal of the
+/// first colliding point of its cell. Merged contacts are in the order in which their cells first appear.
 class LocalAverage final : public PointStage {
  public:
   void prepare(const Scene& scene) override {
@@ -127,10 +127,12 @@ class LocalAverage final : public PointStage {
   std::vector<std::uint32_t> cell_of_point_;
   /// Position of each cell's merged contact in the buffer; kNone between steps.
   std::vector<std::uint32_t> slot_of_cell_;
-  AlignedDoubles count_;  ///< number of contacts in each merged contact, by its position
+  /// Number of contacts that each merged contact replaces, by the position of the merged contact in the buffer.
+  AlignedDoubles count_;
 };
 
-/// Greedy filter. Takes O(n * kept) inner products.
+/// Keeps the deepest of the contacts with similar gradients by a greedy filter (kGradientReductionInfo). Takes O(n *
+/// kept) inner products.
 class GradientReduction final : public PointStage {
  public:
   explicit GradientReduction(const ReductionConfig& config) : config_(config) {}
@@ -163,7 +165,7 @@ class GradientReduction final : public PointStage {
     using simd::load, simd::Pack;
     const Pack x = load(&c.ux[i]), y = load(&c.uy[i]), z = load(&c.uz[i]), depth = load(&c.depth[i]);
     const Pack threshold(config_.threshold);
-    // Pointers in local variables, so that they are not loaded again for each test.
+    // Keep the pointers in local variables, so that the program does not load them again for each test.
     const double *const ux = c.ux.data(), *const uy = c.uy.data(), *const uz = c.uz.data(), *const d = c.depth.data();
     const auto first = [i](unsigned lanes) { return i + static_cast<std::size_t>(std::countr_zero(lanes)); };
     // Returns the lanes, out of `lanes`, that are not similar to the contact at index `index`, which is kept as

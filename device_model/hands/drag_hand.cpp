@@ -7,15 +7,15 @@
 
 namespace hapbench {
 
-/// Number of projections onto the local plane; see SmoothedSurface::nearest.
+/// Number of projections of a position onto the local plane in SmoothedSurface::nearest.
 constexpr int kProjections = 3;
 /// A path ends where the sine of the angle between its direction and the normal falls below this value. The path also
 /// ends if a step advances by less than this value squared times the length of the step: beyond the border of a
 /// surface, all projections lie on the border.
 constexpr double kMinProgress = 0.1;
 
-/// Calls visit(i) for the points i in those grid cells that intersect the cube with the given centre and half width
-/// [m].
+/// Calls visit(i) for all points i in the grid cells that intersect the cube with this centre and half width [m]. Some
+/// of these points may lie outside the cube.
 template <class Visit>
 static void for_each_near(const GridIndex& grid, const Vec3& centre, double half, const Visit& visit) {
   const Box cube{centre - Vec3::Constant(half), centre + Vec3::Constant(half)};
@@ -82,7 +82,7 @@ SurfacePath::SurfacePath(const SmoothedSurface& surface, std::span<const Surface
   const auto intervals = static_cast<std::size_t>(std::ceil(total / spacing_));
   if (intervals > 0) spacing_ = total / static_cast<double>(intervals);
   // Interpolate entries along the polyline.
-  double left = spacing_;  // distance to the next entry
+  double left = spacing_;  // distance along the path to the next entry [m]
   for (std::size_t i = 1; i < points.size(); ++i) {
     const double leg = (points[i].position - points[i - 1].position).norm();
     double done = 0.0;
@@ -117,7 +117,8 @@ SurfacePath SurfacePath::over(const SmoothedSurface& surface, std::span<const Ve
   return {surface, projections};
 }
 
-/// Returns positions on the surface from `first` along the unit vector `forward`, at distances of `step` [m].
+/// Returns positions on the surface from `first` along the unit vector `forward`, about `step` [m] apart, over `length`
+/// [m]. Ends earlier where a path ends (kMinProgress).
 static std::vector<SurfacePoint> walk(const SmoothedSurface& surface, const SurfacePoint& first, const Vec3& forward,
                                       double length, double step) {
   std::vector<SurfacePoint> points = {first};
@@ -138,8 +139,8 @@ SurfacePath SurfacePath::along(const SmoothedSurface& surface, const Vec3& start
   const double step = spacing(surface.radius());
   const SurfacePoint first = surface.nearest(start);
   std::vector<SurfacePoint> points = walk(surface, first, forward, length, step);
-  // A first projection from far above a rough surface may lie off the surface, and then the first step leads back.
-  // Project it once more.
+  // The projection of a start far above a rough surface may lie off the surface. The first step then leads backwards,
+  // and the path has one point only. In this case, project the start once more.
   if (points.size() == 1) points = walk(surface, surface.nearest(first.position), forward, length, step);
   return {surface, points};
 }

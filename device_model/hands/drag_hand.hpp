@@ -29,8 +29,8 @@ class SmoothedSurface {
   double radius() const { return radius_; }
   /// Returns the projection of `at` [m] onto the surface, and the outward normal there. Starts at the nearest shell
   /// point and projects `at` three times onto the plane near the last position. Stops before a position without
-  /// neighbours, for example further than R beyond the surface's border. If `at` is a distance a from the shell,
-  /// visits the points within about a once, and the points within R three times.
+  /// neighbours, for example further than R beyond the surface's border. Cost: if `at` has the distance a to the shell,
+  /// visits the points within about a of `at` once, and the points within R three times.
   SurfacePoint nearest(const Vec3& at) const;
 
  private:
@@ -41,9 +41,9 @@ class SmoothedSurface {
   double radius_;
 };
 
-/// Path over a surface, tabulated over the arc length, with the surface's normals on the path and up to two
-/// smoothing radii to either side. Computed before a run from the shell alone, so it does not depend on the
-/// rendering algorithm.
+/// Path over a surface, tabulated over the arc length. The table contains the surface's normals on the path and up to
+/// two smoothing radii to either side of the path. The path is computed before a run, only from the shell, so it does
+/// not depend on the rendering algorithm.
 class SurfacePath {
  public:
   /// Returns the projection onto the surface of the straight legs between `points` [m]. Precondition: at least two
@@ -62,8 +62,8 @@ class SurfacePath {
   /// Returns position and normal at arc length s [m], linearly interpolated; constant beyond the ends.
   SurfacePoint at(double s) const noexcept;
   /// Returns a unit vector along the path at s, within the surface. It points from one smoothing radius before s to one
-  /// smoothing radius after s, so it turns gradually around corners. If the path has no length, any direction within
-  /// the surface.
+  /// smoothing radius after s, so it turns gradually around corners. If the path has no length, returns any unit vector
+  /// within the surface.
   Vec3 direction(double s) const noexcept;
   /// Returns the surface's outward normal near the position x [m]. Precondition: s is the arc length of the path
   /// position nearest to x. Includes the curvature of the surface to the sides of the path; constant beyond two
@@ -71,13 +71,13 @@ class SurfacePath {
   Vec3 normal_near(const Vec3& x, double s) const noexcept;
 
  private:
-  /// Makes table entries at equal distances on the path through `points`, in their order.
+  /// Creates table entries at equal distances on the path through `points`, in the order of `points`.
   SurfacePath(const SmoothedSurface& surface, std::span<const SurfacePoint> points);
 
   static constexpr std::size_t kSide = 2;  ///< number of normals to either side of the path, one smoothing radius apart
   using Normals = std::array<Vec3, 2 * kSide + 1>;
 
-  /// Indices of the entries before and after s, and the fraction between them.
+  /// Indices of the entries before and after s, and the fraction of the interval between these entries at which s lies.
   struct Position {
     std::size_t before, after;
     double fraction;
@@ -116,16 +116,16 @@ class DragHand final : public Hand {
 
   void reset() noexcept override { nearest_ = progress_ = 0.0; }
   Vec3 force(double t, const HandView& view) noexcept override;
-  /// Linearisation with the normal n held constant, without the curvature of the surface.
+  /// Returns the linearisation with the normal n held constant, without the curvature of the surface.
   HandImpedance impedance() const noexcept override;
 
   const Drag& drag() const noexcept { return drag_; }
   const SurfacePath& path() const noexcept { return *path_; }
-  /// Arc length of the path position nearest to the handle [m], from the last call of force().
+  /// Returns the arc length of the path position nearest to the handle [m], from the last call of force().
   double nearest() const noexcept { return nearest_; }
-  /// Arc length up to which the handle has followed the path [m], from the last call of force(). It is the arc length
-  /// of the path position nearest to the handle. If several legs of the path pass near the handle, the leg of the
-  /// moving point counts.
+  /// Returns the arc length up to which the handle has followed the path [m], from the last call of force(). This is
+  /// the arc length of the path position nearest to the handle. If several legs of the path pass equally
+  /// near the handle, the position is on the leg of the moving point q.
   double progress() const noexcept { return progress_; }
 
  private:

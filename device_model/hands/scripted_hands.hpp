@@ -23,8 +23,8 @@ struct TremorConfig {
   double low = 8.0, high = 12.0;     ///< frequency band [Hz]
 };
 
-/// Random displacement within a frequency band: a sum of tones with random frequency and phase, with one tone in
-/// each of kTones equal parts of the band. It is a function of time alone, so it does not depend on the time step.
+/// Random displacement within a frequency band: a sum of tones with random frequency and phase, with one tone in each
+/// of kTones equal parts of the band. The displacement depends only on the time t, and not on the time step of the run.
 class Tremor {
  public:
   Tremor(const TremorConfig& config, std::uint64_t seed) {
@@ -77,7 +77,7 @@ class ForceHand final : public Hand {
 /// A hand that pushes with a scripted force in one direction.
 class PushHand final : public Hand {
  public:
-  /// `direction`: unit vector in the world frame. `force`: signed force along it over time [N].
+  /// `direction`: unit vector in the world frame. `force`: signed force along `direction` over time [N].
   PushHand(Profile force, const Vec3& direction) : force_(std::move(force)), direction_(direction) {}
 
   Vec3 force(double t, const HandView&) noexcept override { return force_(t) * direction_; }
@@ -91,7 +91,7 @@ class PushHand final : public Hand {
 /// b (v_target - v_handle). A tremor displaces the target.
 class ImpedanceHand final : public Hand {
  public:
-  /// Stiffness k [N/m], damping b [N s/m], and the target's x, y, z [m] over time.
+  /// `stiffness`: k [N/m]. `damping`: b [N s/m]. `target`: x, y, z of the target over time [m].
   ImpedanceHand(double stiffness, double damping, std::array<Profile, 3> target, std::optional<Tremor> tremor = {})
       : stiffness_(stiffness), damping_(damping), target_(std::move(target)), tremor_(tremor) {}
 

@@ -42,8 +42,8 @@ Vec3 TrackingHand::force(double, const HandView& view) noexcept {
   started_ = true;
   task_.advance(view.tool.position, view.spring_force.z(), view.model_force.z(), dt_);
   follow(delayed_display(view));
-  // Limit the spring force and add motor noise.
-  // Distance at which the hand's force reaches its limit.
+  // Limit the spring force by moving the intended position, and add motor noise. `reach` is the distance [m] between
+  // intended position and handle at which the spring force in an axis is max_force.
   const Vec3 reach = Vec3::Constant(subject_.max_force / subject_.stiffness);
   intended_ = intended_.cwiseMax(view.handle.position - reach).cwiseMin(view.handle.position + reach);
   for (double& component : force_noise_) component = next_noise(component);
@@ -65,7 +65,7 @@ TrackingHand::Display TrackingHand::delayed_display(const HandView& view) noexce
 void TrackingHand::follow(const Display& seen) noexcept {
   const auto limited = [](double rate, double limit) { return std::clamp(rate, -limit, limit); };
   const double follow_rate = kTwoPi * subject_.bandwidth;
-  // Follow the target: the hand on the panel, the wrist with the height meter.
+  // Follow the target: on the panel by moving the hand, on the height meter by rotating the wrist.
   if (task_.rules().display == TargetDisplay::panel) {
     intended_.x() += limited(follow_rate * seen.error.x(), subject_.max_speed) * dt_;
     intended_.y() += limited(follow_rate * seen.error.y(), subject_.max_speed) * dt_;
@@ -80,8 +80,8 @@ void TrackingHand::follow(const Display& seen) noexcept {
   intended_.z() -= limited(press_rate * (subject_.press - seen.gauge), subject_.max_speed) * dt_;
 }
 
-/// Returns the next sample of first-order low-pass noise with unit variance and the hand's bandwidth, given the
-/// last sample `state`.
+/// Returns the next sample of first-order low-pass noise with unit variance and the subject's noise_bandwidth. `state`
+/// is the previous sample.
 double TrackingHand::next_noise(double state) noexcept {
   return noise_memory_ * state + std::sqrt(1.0 - noise_memory_ * noise_memory_) * random_.normal();
 }

@@ -26,8 +26,7 @@ struct Subject {
   double height_per_tilt = 0.004;  ///< rise of the tip per tilt that the subject expects [m/rad]
   double max_speed = 0.02;         ///< largest speed of the intended position [m/s]
   double max_turn = 1.0;           ///< largest angular speed of the wrist [rad/s]
-  double max_force = 6.0;  ///< limit of the force k (x_e - x_handle) in each axis; the intended position x_e yields to
-                           ///< keep it [N]
+  double max_force = 6.0;          ///< largest force k (x_e - x_handle) in each axis [N]; x_e moves to keep this limit
 };
 
 /// A simulated subject who follows one target after the other on a display and presses the tool down. The subject
@@ -50,19 +49,20 @@ class TrackingHand final : public Hand {
 
   void reset() noexcept override;
   Vec3 force(double t, const HandView& view) noexcept override;
-  /// Linearisation with the intended position held constant; the subject corrects it more slowly than 1 Hz.
+  /// Returns the linearisation with the intended position held constant, because the subject corrects this position
+  /// more slowly than 1 Hz.
   HandImpedance impedance() const noexcept override {
     return {subject_.stiffness * Mat3::Identity(), subject_.damping * Mat3::Identity()};
   }
   const TargetTask* task() const noexcept override { return &task_; }
 
-  /// The handle position x_e that the subject intends [m].
+  /// Returns the handle position x_e that the subject intends [m].
   const Vec3& intended() const noexcept { return intended_; }
-  /// Tilt of the tool, including noise [rad].
+  /// Returns the tilt of the tool, including noise [rad].
   double tilt() const noexcept { return tilt_; }
 
  private:
-  /// The display in one sample.
+  /// Values that the display shows in one sample.
   struct Display {
     Vec3 error = Vec3::Zero();  ///< displayed components of the vector from tip to target [m]
     double gauge = 0.0;         ///< force shown on the gauge [N]
@@ -77,7 +77,7 @@ class TrackingHand final : public Hand {
   double initial_tilt_;
   double dt_;
   std::uint64_t seed_;
-  double noise_memory_;  ///< coefficient of correlation of the noise between consecutive samples
+  double noise_memory_;  ///< correlation coefficient of the noise between consecutive samples
 
   std::vector<Display> seen_;  ///< ring buffer of the displays within the reaction delay
   std::size_t next_ = 0;

@@ -29,9 +29,10 @@
  * Tool:   origin at the tip's centre; the tool points along -z, as the tools of a scenario do.
  *
  * Threads: a renderer is used by one thread at a time. Several renderers work in several threads at the same time.
- * Real time: hapbench_renderer_step does not allocate, lock, wait or throw. This holds for the code of hapbench; a
- * module that you load does what its author wrote. All other functions may do these things. Every function sets the
- * floating-point mode that it needs (round to nearest, subnormal numbers on, traps off) and restores the caller's. */
+ * Real time: hapbench_renderer_step does not allocate, lock, wait or throw. This guarantee holds for the code of
+ * hapbench, but not for the code of a module that you load. All other functions may do these things.
+ * Floating point: every function sets the mode that it needs (round to nearest, subnormal numbers on, traps off) and
+ * restores the mode of the caller. */
 
 #define HAPBENCH_RENDERER_VERSION 1u
 #define HAPBENCH_ERROR_SIZE 1000
@@ -48,8 +49,8 @@ extern "C" {
 
 /* Modes of a renderer.
  *
- * IMPEDANCE: the pose of the handle goes in, a force comes out. The tool is at the measured pose. Also for devices
- * whose own controller has an admittance loop that takes a force.
+ * IMPEDANCE: the pose of the handle goes in, a force comes out. The tool is at the measured pose. Use this mode also
+ * for an admittance device whose own controller takes a force as its input.
  *
  * ADMITTANCE: the hand's force and the pose of the handle go in, set-points of the handle's position and velocity come
  * out. The hand's force, after the scenario's input force limit, and the rendered force move the scenario's virtual
@@ -67,7 +68,7 @@ typedef struct HapbenchPose3 {
   double orientation[4]; /* unit quaternion w, x, y, z; a norm within 0.001 of 1 is normalised */
 } HapbenchPose3;
 
-/* How the device is mounted in the scene, and what protects the hand. */
+/* Pose and scale of the device in the scene, and the limits that protect the hand. */
 typedef struct HapbenchMount {
   HapbenchPose3 world_from_device; /* position in the world's metres, applied after `scale` */
   /* Virtual metres per metre of the device, > 0: x_world = scale rotation x_device + position. A force is not scaled.
@@ -79,10 +80,11 @@ typedef struct HapbenchMount {
   double max_force, max_force_rate;
   double ramp_s;       /* time in which the force rises from 0 and falls to 0 [s], 0 to 60 */
   double stale_s;      /* longest time between two calls [s], > 0 */
-  double engage_force; /* the force begins to rise after four calls below this norm of the rendered force [N], > 0 */
+  double engage_force; /* the force begins to rise after four successive rendered forces below this norm [N], > 0 */
 } HapbenchMount;
 
-/* `max_force` is 0, which is refused: state a force that your device and the hand bear. */
+/* Default values. `max_force` is 0, which hapbench_renderer_open refuses: set a force that your device and the hand
+ * bear. */
 #define HAPBENCH_MOUNT_INIT \
   { {{0, 0, 0}, {1, 0, 0, 0}}, 1, {{0, 0, 0}, {1, 0, 0, 0}}, 0, INFINITY, 0.5, 0.01, 0.2 }
 
@@ -106,7 +108,8 @@ typedef struct HapbenchSetup {
 #define HAPBENCH_SETUP_INIT \
   { HAPBENCH_RENDERER_VERSION, HAPBENCH_IMPEDANCE, 0, 0, NULL, NULL, NULL, NULL, HAPBENCH_MOUNT_INIT }
 
-/* Bits of HapbenchInput::has. The first four say which vectors are given; the others are read and ignored.
+/* Bits of HapbenchInput::has. The first four bits say which vectors are given. A step ignores a vector whose bit is not
+ * set.
  * CLUTCH: the handle moves while the tool stays. The force falls to 0. When the bit is released, world_from_device is
  *         moved so that the tool continues from its last position; its orientation follows the handle. The renderer is
  *         WAITING then. In admittance mode, the hand moves the virtual mass without contact meanwhile. A FAULT ends
@@ -166,7 +169,7 @@ enum {
 enum {
   HAPBENCH_NO_FAULT = 0,
   HAPBENCH_NOT_FINITE = 1,       /* a given number of the input is NaN or infinite */
-  HAPBENCH_BAD_ORIENTATION = 2,  /* the norm of the orientation is not 1 */
+  HAPBENCH_BAD_ORIENTATION = 2,  /* the norm of the orientation differs from 1 by more than 0.001 */
   HAPBENCH_BAD_TIME = 3,         /* time_ns is not later than in the previous call */
   HAPBENCH_BAD_BITS = 4,         /* an unknown bit in `has`, or `reserved` is not 0 */
   HAPBENCH_NO_VELOCITY = 5,      /* the scenario has no velocity filter and the velocity is not given */
@@ -187,16 +190,17 @@ typedef struct HapbenchOutput {
   /* Moment of the contact forces about the handle's origin [N m], which a 3-DOF device cannot render; `gain` applies,
    * the limits do not. 0 without HAPBENCH_TORQUE. */
   double torque[3];
-  /* Admittance mode: where the handle's origin shall be one period after this call [m], and its velocity [m/s]. While a
-   * force falls to 0 (CLUTCH, STALE, FAULT) and during FAULT, the last position and velocity 0. Impedance mode: 0. */
+  /* Admittance mode: position that the handle's origin shall have one period after this call [m], and its velocity
+   * [m/s]. While a force falls to 0 (CLUTCH, STALE, FAULT) and during FAULT, the last position and velocity 0 are
+   * written. Impedance mode: both are 0. */
   double set_position[3], set_velocity[3];
-  double gain;       /* factor on the rendered force, 0 to 1 */
+  double gain;       /* factor on the rendered force, from 0 to 1 */
   double dt;         /* time since the previous call [s]; 0 in the first call */
   uint64_t call;     /* number of the call, from 0 */
   uint32_t status;   /* HAPBENCH_WAITING … HAPBENCH_FAULT */
   uint32_t contacts; /* number of points in contact; 0 if nothing was rendered */
   uint32_t reason;   /* HAPBENCH_NO_FAULT, or why status is FAULT */
-  uint32_t limited;  /* limits that act */
+  uint32_t limited;  /* bits of the limits that act, such as HAPBENCH_MAX_FORCE */
 } HapbenchOutput;
 
 typedef struct HapbenchRenderer HapbenchRenderer;
@@ -216,9 +220,9 @@ HAPBENCH_API uint32_t hapbench_renderer_step(HapbenchRenderer* renderer, const H
  * mass use this value and not the measured time. "time.step_s=…" as an override changes it. */
 HAPBENCH_API double hapbench_renderer_period(const HapbenchRenderer* renderer);
 
-/* Returns what was opened, as lines of text: scenario, mode, period, the fields of the scenario's device that are used,
- * and the fields that are ignored because they describe hardware or the simulated hand. Valid until the renderer is
- * closed. */
+/* Returns a description of the renderer as lines of text: scenario, mode, period, the fields of the scenario's device
+ * that are used, and the fields that are ignored because they describe hardware or the simulated hand. Valid until the
+ * renderer is closed. */
 HAPBENCH_API const char* hapbench_renderer_inspect(const HapbenchRenderer* renderer);
 
 /* Returns the reason of the last FAULT as one line; empty if there was no FAULT. Valid until the next step. */

@@ -56,7 +56,8 @@ class Renderer {
     list.push_back(nullptr);
     return list;
   }
-  /// The setup refers to the arguments, which outlive the constructor's call.
+  /// Returns a setup with pointers to the arguments. The arguments exist until the constructor that uses the setup
+  /// returns.
   static HapbenchSetup setup_of(const std::string& scenario, const HapbenchMount& mount,
                                 const std::vector<const char*>& overrides, std::uint32_t mode, std::uint32_t flags) {
     HapbenchSetup setup = HAPBENCH_SETUP_INIT;

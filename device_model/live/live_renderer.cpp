@@ -12,10 +12,10 @@
 namespace hapbench {
 namespace {
 
-constexpr int kCallsBeforeForce = 4;  ///< calls below engage_force before the force rises
+constexpr int kCallsBeforeForce = 4;  ///< number of successive calls below engage_force before the force rises
 constexpr std::uint32_t kKnownBits = HAPBENCH_VELOCITY | HAPBENCH_ANGULAR_VELOCITY | HAPBENCH_HAND_FORCE |
                                      HAPBENCH_APPLIED_FORCE | HAPBENCH_CLUTCH | HAPBENCH_REARM;
-constexpr double kNormTolerance = 1e-3;  ///< tolerance of the norm of an orientation
+constexpr double kNormTolerance = 1e-3;  ///< largest allowed difference between the norm of a quaternion and 1
 
 Vec3 vector_of(const double (&v)[3]) noexcept {
   return {v[0], v[1], v[2]};
@@ -87,7 +87,7 @@ void LiveRenderer::step(const HapbenchInput& input, HapbenchOutput& output) noex
   has_time_ = true;
   const bool rearmed = (input.has & HAPBENCH_REARM) != 0 && (last_bits_ & HAPBENCH_REARM) == 0;
   last_bits_ = input.has;
-  // Find out whether this call renders.
+  // End a fault, begin a fault, or react to a stale call. Then decide whether this call renders.
   if (reason_ != HAPBENCH_NO_FAULT && rearmed && problem == HAPBENCH_NO_FAULT) {
     reason_ = HAPBENCH_NO_FAULT;
     release_ = release_gain_ > 0.0 ? Release::rearm : Release::none;
@@ -136,7 +136,8 @@ LiveRenderer::Measurement LiveRenderer::measured(const HapbenchPose3& handle) co
   return now;
 }
 
-/// Returns the angular velocity of the handle in the device frame [rad/s].
+/// Returns the angular velocity of the handle in the device frame [rad/s]: the given value, or the turn since the
+/// previous call divided by the period. Returns zero if neither exists.
 Vec3 LiveRenderer::angular_velocity_of(const Measurement& now, const HapbenchInput& input) const noexcept {
   if ((input.has & HAPBENCH_ANGULAR_VELOCITY) != 0) return vector_of(input.angular_velocity);
   if (!has_tool_) return Vec3::Zero();
@@ -197,7 +198,8 @@ void LiveRenderer::handle_clutch(const Measurement& now, bool pressed) noexcept 
   is_clutched_ = pressed;
 }
 
-/// Writes the falling force of an earlier call. Returns true if this call renders nothing.
+/// Writes the falling force of an earlier call. Returns false and writes nothing if no force is falling and there is no
+/// fault; the call must then render.
 bool LiveRenderer::takes_rest(double elapsed, HapbenchOutput& output) noexcept {
   if (release_ == Release::none && reason_ == HAPBENCH_NO_FAULT) return false;
   const double ramp = config_.mount.ramp_s;
@@ -221,7 +223,7 @@ bool LiveRenderer::takes_rest(double elapsed, HapbenchOutput& output) noexcept {
 // NOLINTNEXTLINE(readability-function-cognitive-complexity): the phases of a call, in the documented order.
 void LiveRenderer::render(const Measurement& now, const HapbenchInput& input, double elapsed,
                           HapbenchOutput& output) noexcept {
-  // Place the tool. A virtual mass starts at the measured position, at rest.
+  // Set the pose and velocity of the tool. A virtual mass starts at rest at the measured position.
   set_orientation(now, input);
   if (!config_.is_admittance) {
     follow_handle(now, input);
@@ -229,7 +231,7 @@ void LiveRenderer::render(const Measurement& now, const HapbenchInput& input, do
     tool_.pose.position = to_world(now.tip);
     tool_.velocity.setZero();
   }
-  // Limit the hand's force and render. A clutched tool touches nothing.
+  // Limit the hand's force and render. In impedance mode, a clutched tool is not rendered.
   Vec3 hand = Vec3::Zero();
   if (config_.is_admittance) {
     hand = world_.turned(vector_of(input.hand_force));
@@ -244,7 +246,7 @@ void LiveRenderer::render(const Measurement& now, const HapbenchInput& input, do
       return;
     }
   }
-  // Decide on the factor of the force.
+  // Compute the factor on the rendered force, `gain_`.
   const Vec3& rendered = loop_.force().rendered;
   const HapbenchMount& mount = config_.mount;
   if (is_clutched_) {
@@ -304,7 +306,7 @@ void LiveRenderer::report_set_point(const Measurement& now, const HapbenchInput&
   if (output.limited != 0 && output.status == HAPBENCH_ON) output.status = HAPBENCH_CLAMPED;
 }
 
-/// Restarts: the renderer waits for a small force. Keeps mount and clutch.
+/// Restarts the loop: the status is WAITING until the rendered force is small. Keeps mount and clutch.
 void LiveRenderer::restart() noexcept {
   loop_.reset();
   gain_ = 0.0;
@@ -313,7 +315,7 @@ void LiveRenderer::restart() noexcept {
   tool_.angular_velocity.setZero();
 }
 
-/// Lets the force of the last call fall to 0.
+/// Starts to reduce the force of the last call to 0, for the reason `why`.
 void LiveRenderer::release(Release why) noexcept {
   release_ = why;
   release_gain_ = gain_ > 0.0 ? 1.0 : 0.0;

@@ -11,7 +11,7 @@
 /// device, with the protection of the hand.
 namespace hapbench {
 
-/// A rotation that is skipped if it is the identity, so that an identity changes no bit.
+/// Rotation of vectors by a quaternion. If the rotation is the identity, it returns vectors unchanged, bit for bit.
 class MountRotation {
  public:
   /// `wxyz`: quaternion whose norm is close to 1.
@@ -32,7 +32,8 @@ class MountRotation {
 struct LiveRendererConfig {
   bool is_admittance = false;
   bool wants_torque = false;
-  HapbenchMount mount = HAPBENCH_MOUNT_INIT;  ///< checked; with the smaller limits of mount and scenario
+  HapbenchMount mount = HAPBENCH_MOUNT_INIT;  ///< checked mount, in which each force limit is the smaller of the limits
+                                              ///< of the mount and of the scenario
   std::optional<VelocityFilterConfig> velocity_filter = {};
   std::optional<LowPassFilter> position_filter = {};
   std::optional<double> input_force_limit = {};  ///< [N]
@@ -41,7 +42,7 @@ struct LiveRendererConfig {
 /// Renders measured poses, call by call. Allocates in the constructor only.
 class LiveRenderer {
  public:
-  /// Throws the exceptions of LiveLoop.
+  /// Throws the exceptions of the constructor of LiveLoop.
   LiveRenderer(const LiveRendererConfig& config, SimulationConfig simulation, SimulationParts parts);
 
   void step(const HapbenchInput& input, HapbenchOutput& output) noexcept;
@@ -50,7 +51,7 @@ class LiveRenderer {
   double period() const { return loop_.dt(); }
 
  private:
-  /// Reason why the force of an earlier call falls to 0.
+  /// Reason why the held force of an earlier call is falling to 0; `none` if no force is falling.
   enum class Release { none, clutch, stale, fault, rearm };
   /// A measurement in the device's frame, and the orientation of the tool in the world.
   struct Measurement {
@@ -93,7 +94,7 @@ class LiveRenderer {
   ToolState tool_;
   Measurement last_measurement_;
   bool has_tool_ = false;      ///< true if tool_ belongs to the previous call; false after a restart
-  bool has_position_ = false;  ///< true if tool_ has a position; a clutch then holds the tool there
+  bool has_position_ = false;  ///< true if tool_ has a valid position, at which a pressed clutch keeps the tool
 
   Release release_ = Release::none;
   double release_gain_ = 0.0;         ///< factor on held_force_, from 1 to 0

@@ -18,8 +18,8 @@ Eigen::VectorXcd eigenvalues(const Eigen::MatrixXd& A) {
 
 namespace {
 
-/// Range of K T^2 / m that is searched for the limit. For smaller values the eigenvalues are so close to 1 that
-/// rounding decides.
+/// Range of K T^2 / m (dimensionless) in which linear_stability_limit() searches. Below this range, the eigenvalues are
+/// so close to 1 that rounding decides about the stability.
 constexpr double kMinLimit = 1e-8;
 constexpr double kMaxLimit = 1e6;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -84,12 +84,13 @@ void add_motion(Eigen::MatrixXd& A, const std::vector<Eigen::Index>& body, doubl
   for (Eigen::Index i = 0; i < n; ++i) A.row(body[static_cast<std::size_t>(i)]) = next.row(i);
 }
 
-/// Return the modes of the low-pass filter of the velocity, and of the position; empty if there is no such filter.
+/// Returns the modes of the low-pass filter of the velocity; empty without this filter.
 std::vector<LowPassMode> velocity_modes(const SampledLoop& loop) {
   const auto* filter = std::get_if<LowPassFilter>(&loop.device.velocity_filter);
   return filter != nullptr ? low_pass_modes(*filter, loop.period) : std::vector<LowPassMode>{};
 }
 
+/// Returns the modes of the position filter; empty without this filter.
 std::vector<LowPassMode> position_modes(const SampledLoop& loop) {
   const auto& filter = loop.device.position_filter;
   return filter ? low_pass_modes(*filter, loop.period) : std::vector<LowPassMode>{};
@@ -124,7 +125,8 @@ Eigen::MatrixXd SampledLoop::state_matrix() const {
   const auto unit = [n](Eigen::Index i) -> Eigen::RowVectorXd { return Eigen::RowVectorXd::Unit(n, i); };
   Eigen::MatrixXd A = Eigen::MatrixXd::Zero(n, n);
 
-  // Adds a filter with the input `u` to A, in the next free state components. Returns its output as a row vector.
+  // Adds a filter with the input `u` to A, in the next free state components. Returns the filter's output as a row
+  // vector.
   Eigen::Index next = kModes;
   const auto filtered = [&](const std::vector<LowPassMode>& modes, const Eigen::RowVectorXd& u) {
     Eigen::RowVectorXd output = Eigen::RowVectorXd::Zero(n);
@@ -142,7 +144,7 @@ Eigen::MatrixXd SampledLoop::state_matrix() const {
     }
     return output;
   };
-  // The wall's force as a row vector over the state.
+  // Compute the wall's force as a row vector over the state.
   const Eigen::RowVectorXd measured = unit(kPosition);
   A.row(kLastPosition) = measured;
   Eigen::RowVectorXd force = -(wall_damping * T / m) * filtered(velocity, measured - unit(kLastPosition));
@@ -152,7 +154,7 @@ Eigen::MatrixXd SampledLoop::state_matrix() const {
     return age == 0 ? force : unit(forces + age - 1);
   };
 
-  // Motion over the period under the delayed forces, then shift of the delay line.
+  // Add the motion over the period under the delayed forces, then shift the delay line.
   const Eigen::RowVectorXd before = part > 0.0 ? force_of(whole + 1) : Eigen::RowVectorXd();
   std::vector<Eigen::Index> body = {kPosition, kVelocity};
   if (device.transmission) body.insert(body.end(), {n - 2, n - 1});
@@ -206,15 +208,16 @@ static Eigen::MatrixXd mechanics_step(const HandleMechanicsConfig& m, double dt)
   return (Eigen::MatrixXd::Identity(4, 4) - 0.5 * dt * rate).partialPivLu().solve(right);
 }
 
-/// Motion of the virtual mass over one step in d dimensions: the maps of its state (x, v) and of a held force [N].
+/// Motion of the virtual mass over one step in d dimensions: the matrices by which the next state (x, v) depends on the
+/// current state and on a held force [N].
 struct ToolStep {
   Eigen::MatrixXd state;  ///< 2 d x 2 d
   Eigen::MatrixXd force;  ///< 2 d x d
 };
 
 /// Returns the state matrix of an admittance device in d dimensions, with d components for each component of
-/// AdmittanceLoop::state_matrix(). `hand_stiffness`, `hand_damping`: of the hand. `input`: derivative of the force
-/// that drives the virtual mass with respect to the hand's force. All three are d x d.
+/// AdmittanceLoop::state_matrix(). `hand_stiffness` [N/m], `hand_damping` [N s/m]: linearised force of the hand.
+/// `input`: derivative of the force that drives the virtual mass with respect to the hand's force. All three are d x d.
 static Eigen::MatrixXd admittance_matrix(const AdmittanceLoop& loop, const ToolStep& tool,
                                          const Eigen::MatrixXd& hand_stiffness, const Eigen::MatrixXd& hand_damping,
                                          const Eigen::MatrixXd& input) {
@@ -230,12 +233,12 @@ static Eigen::MatrixXd admittance_matrix(const AdmittanceLoop& loop, const ToolS
   Eigen::MatrixXd A = Eigen::MatrixXd::Zero(n * d, n * d);
   const auto rows = [&A, d](Eigen::Index i) { return A.middleRows(i * d, d); };
 
-  // Virtual mass under the forces of hand and wall.
+  // Write the rows of the virtual mass under the forces of hand and wall.
   const Eigen::MatrixXd hand = -hand_stiffness * unit(kHandle) - hand_damping * unit(kHandleVelocity);
   A.block(kTool * d, kTool * d, 2 * d, 2 * d) = tool.state;
   A.middleRows(kTool * d, 2 * d) += tool.force * (input * hand);
 
-  // Carriage and handle under the delayed servo force and the hand's force.
+  // Write the rows of carriage and handle under the delayed servo force and the hand's force.
   const Eigen::MatrixXd command = loop.servo.stiffness * (rows(kTool) - unit(kCarriage)) +
                                   loop.servo.damping * (rows(kToolVelocity) - unit(kCarriageVelocity));
   const Eigen::MatrixXd actuator = delay == 0 ? command : unit(kCommands + delay - 1);
@@ -302,7 +305,8 @@ bool has_feedback_between_axes(const Eigen::MatrixXd& A) {
 std::vector<Eigen::MatrixXd> by_axes(const Eigen::MatrixXd& A, const LinearContact& contact) {
   constexpr Eigen::Index kMaxRows = 300;
   const auto& [rendered, hand, input] = contact;
-  // Frames to try: the world's, and the principal axes of the contact and of the hand.
+  // Try these frames: the world frame, and the principal axes of the contact's stiffness and damping and of the hand's
+  // damping.
   std::vector<Mat3> frames = {Mat3::Identity()};
   for (const Mat3& M : {rendered.stiffness, rendered.damping, hand.damping})
     frames.push_back(Eigen::SelfAdjointEigenSolver<Mat3>(M * M.transpose()).eigenvectors());
@@ -378,8 +382,8 @@ namespace {
 // The passivity conditions hold for every passive hand, and an elastic transmission counts as part of the hand. The
 // other conditions assume a single mass.
 
-/// Returns true if neither position nor velocity is filtered by a low-pass. An adaptive window, which is not
-/// linear, counts as the plain difference.
+/// Returns true if neither position nor velocity is filtered by a low-pass. An adaptive window, which is not linear, is
+/// treated as the difference of positions without a filter.
 bool differentiates(const SampledLoop& loop) {
   return velocity_modes(loop).empty() && !loop.device.position_filter;
 }
@@ -389,8 +393,8 @@ std::optional<double> colgate_schenkel(const SampledLoop& loop) {
   return std::max(0.0, 2.0 * (loop.device.viscous - std::abs(loop.wall_damping)) / loop.period);
 }
 
-/// Coefficients of the passivity condition b > K p + B r at one angle theta = omega T. With e = exp(-j theta) and
-/// the filters F of the velocity and G of the position:
+/// Coefficients of the passivity condition b > K p + B r at one angle theta = omega T. T is the period and d the delay
+/// in samples. With e = exp(-j theta) and the transfer functions F of the velocity filter and G of the position filter:
 ///
 ///   p = T/2 Re{(1 - e) G e^d} / (1 - cos theta),   r = 1/2 Re{(1 - e)^2 F e^d} / (1 - cos theta)
 struct PassivityAt {
@@ -412,8 +416,8 @@ PassivityAt passivity_at(const SampledLoop& loop, double theta) {
           -(F.real() * math::cos(full_delay_angle) + F.imag() * math::sin(full_delay_angle))};
 }
 
-/// Returns the smallest value of f between two angles: evaluates eight grids, each around the best point of
-/// the grid before.
+/// Returns the smallest value of f between the angles `low` and `high`. Evaluates f on eight grids; each grid covers
+/// the neighbourhood of the best point of the previous grid.
 template <class Function>
 double minimum(Function f, double low, double high, int points) {
   double smallest = kInfinity;
@@ -431,8 +435,8 @@ double minimum(Function f, double low, double high, int points) {
   return smallest;
 }
 
-/// Passivity with a delay: the condition gives an upper bound of K at angles where p > 0, and a lower bound where p <
-/// 0.
+/// Returns the largest passive K for a whole delay; nullopt for a fractional delay. The condition gives an upper bound
+/// of K at angles where p > 0, and a lower bound where p < 0.
 std::optional<double> passive_with_delay(const SampledLoop& loop) {
   const double d = loop.device.delay_samples;
   if (d != std::floor(d)) return std::nullopt;

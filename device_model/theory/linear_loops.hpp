@@ -13,8 +13,8 @@
 #include "device_model/impedance_device.hpp"
 #include "sim/loop/integrators/table.hpp"
 
-/// Linear models of the closed loop of device, hand and wall: one step is a linear map of the state. Computes where
-/// these loops become unstable.
+/// Linear models of the closed loop of device, hand and wall, in which one step is a linear map of the state, and the
+/// stability limits of these loops.
 namespace hapbench {
 
 /// Returns the eigenvalues of a square matrix, in no particular order.
@@ -80,8 +80,8 @@ struct SampledLoop {
   /// Returns the matrix that maps the state at sample k to the state at sample k + 1. The state is
   ///   (x_k, T v_k, y'_{k-1}, modes of T w_{k-1} and of y_{k-1}, T^2/m f_{k-1}, T^2/m f_{k-2}, …),
   /// with the true velocity v of the handle, the moving mass m and the forces that are still delayed. In each filter, a
-  /// pair of complex poles has two state components and a real pole has one component. Without a velocity filter the
-  /// state has one component in its place; without a position filter it has no component in its place. With a
+  /// pair of complex poles has two state components and a real pole has one component. Without a velocity filter, the
+  /// state has one component T w_{k-1}. Without a position filter, the state has no component for this filter. With a
   /// transmission, x and v belong to the motors, and the handle's x and T v are the last two components. All components
   /// are in metres, so that rounding does not disturb the eigenvalues. The motion between samples is exact (matrix
   /// exponential).
@@ -107,12 +107,12 @@ struct StiffnessLimit {
   const char* formula;  ///< formula with the symbols defined above
   const char* source;   ///< citation, or "derived"
   const char* applies;  ///< conditions under which the limit is valid
-  /// Returns the largest K [N/m]; the loop's stiffness is ignored. Returns nothing if the limit does not apply,
-  /// zero if it allows no K, infinity if it allows every K.
+  /// Returns the largest K [N/m]; the loop's stiffness is ignored. Returns nullopt if the limit does not apply to this
+  /// loop, zero if no K > 0 satisfies the limit, infinity if every K does.
   std::optional<double> (*largest)(const SampledLoop& loop);
 };
 
-/// Returns the table of limits. Every plot and table of limits is made from it.
+/// Returns the table of limits. Every plot and every printed table of limits is generated from this table.
 std::span<const StiffnessLimit> stiffness_limits();
 
 /// Linear model of an AdmittanceDevice at a virtual wall along one axis, valid while neither the input-force
@@ -132,26 +132,26 @@ struct AdmittanceLoop {
   Eigen::MatrixXd state_matrix() const;
 };
 
-/// Largest delay for which eigenvalues are computed [samples]; with longer delays they would take seconds.
+/// Largest delay [samples] for which eigenvalues are computed. With longer delays, the computation would take seconds.
 inline constexpr double kMaxLoopDelay = 200.0;
 
 /// Linearisation of a tool in contact that a hand holds, in three dimensions: stiffness and damping of the rendered
 /// force and of the hand. The axes may be coupled.
 struct LinearContact {
   LinearForce rendered;  ///< derivatives of the rendered force with respect to position and velocity of the tool
-  HandImpedance hand;    ///< sampled hand
+  HandImpedance hand;    ///< linearised force of a sampled hand, which is held over each step
   /// Derivative of the force that drives a virtual mass with respect to the hand's force. Not the identity if the
   /// input-force limiter acts.
   Mat3 input = Mat3::Identity();
 };
 
 /// Returns the matrices that map the state at one step to the state at the next step, for the loop of a device in three
-/// dimensions. Their eigenvalues together are the eigenvalues of the loop. One matrix for each axis if no axis drives
-/// another in both directions, otherwise a single matrix for all axes. Omits axes in which neither contact nor hand
-/// acts. All components of the state are in metres. Returns an empty list if the axes are coupled and the matrix would
-/// be larger than 300 x 300, which takes a second.
+/// dimensions. Their eigenvalues together are the eigenvalues of the loop. Returns one matrix for each axis if there is
+/// a frame in which no axes drive each other in both directions, otherwise a single matrix for all axes. Omits axes in
+/// which neither contact nor hand acts. All components of the state are in metres. Returns an empty list if the axes
+/// are coupled and the matrix would be larger than 300 x 300, because its eigenvalues would take longer than a second.
 ///
-/// The stiffness and damping of the wall, of the sampled hand and of the tool in the loop itself are ignored.
+/// Ignores the stiffness and damping of wall, sampled hand and tool in the first argument; `contact` replaces them.
 std::vector<Eigen::MatrixXd> contact_loop(const SampledLoop& loop, const LinearContact& contact);
 std::vector<Eigen::MatrixXd> contact_loop(const AdmittanceLoop& loop, const LinearContact& contact);
 /// Returns the matrices for the loop without a device: the hand's force drives the virtual mass of `tool`.
@@ -165,7 +165,7 @@ bool is_stable_loop(const std::vector<Eigen::MatrixXd>& loop);
 /// Linear loop of device, hand and wall, valid while nothing saturates and the contact lasts.
 struct DeviceLoop {
   std::variant<SampledLoop, AdmittanceLoop> loop;
-  std::string no_theory;  ///< why the eigenvalues do not decide the stability; empty if they do
+  std::string no_theory;  ///< reason why the eigenvalues do not decide the stability; empty if they decide it
 
   Eigen::MatrixXd state_matrix() const {
     return std::visit([](const auto& linear) { return linear.state_matrix(); }, loop);

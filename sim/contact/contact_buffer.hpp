@@ -90,8 +90,9 @@ class ContactBuffer {
 /// the contacts are padded (ContactBuffer::pad).
 Mat3 stiffness_tensor(const ContactBuffer& contacts);
 
-/// Returns sum c_i d_i u_i u_i^T [m] over the contacts with c_i d_i > 0. Times K it is the tensor of the spring
-/// loads, and its trace is the sum of the loads [N]. O(n). Precondition: the contacts are padded.
+/// Returns sum c_i d_i u_i u_i^T [m] over the contacts with c_i d_i > 0. Multiplied by the spring stiffness K, this is
+/// the tensor of the spring loads [N]; the trace of that tensor is the sum of the loads. O(n). Precondition: the
+/// contacts are padded.
 Mat3 load_tensor(const ContactBuffer& contacts);
 
 /// Returns sum c_i d_i u_i [m], the rendered penetration depth vector (thesis Eq. 6). O(n). Precondition: the

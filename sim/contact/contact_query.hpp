@@ -40,7 +40,7 @@ class ContactQuery {
   virtual void contacts_at(const ToolPose& pose, ContactBuffer& contacts) noexcept = 0;
   /// Upper bound of the number of contacts at any pose.
   virtual std::size_t capacity() const noexcept = 0;
-  /// Returns to t = 0 and sets all counters to zero.
+  /// Resets the state to t = 0 and all counters to zero.
   virtual void reset() noexcept { work_ = {}; }
   virtual const SearchWork& work() const noexcept { return work_; }
 

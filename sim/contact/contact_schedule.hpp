@@ -14,7 +14,7 @@ struct MultiRateSchedule {
   bool linear = false;     ///< true: depths follow the tool's motion until the next result; false: depths are held
   double dropout = 0.0;    ///< probability that a query is lost; the first query is never lost
 
-  /// Returns false if every step uses its own contacts: no hold, delay or loss.
+  /// Returns true if contacts are held, delayed or lost; false if every step searches and uses its own contacts.
   bool any() const { return every > 1 || delay > 0 || dropout > 0.0; }
 };
 

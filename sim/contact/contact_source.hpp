@@ -8,15 +8,15 @@ namespace hapbench {
 
 struct ContactSchedule;
 
-/// The environment as the step loop sees it: contacts with depth and gradient, in a padded buffer. A shell of
-/// points needs a search and a depth model for this (ShellSource in algorithms/depth/depth_model.hpp). Springs
-/// and modules (algorithms/module) compute their depths themselves. Queried once in every step, and again
-/// within a step by integrators that evaluate the force more than once.
+/// Interface through which the step loop queries the environment. A query returns contacts with depth and gradient, in
+/// a padded buffer. A shell of points needs a search and a depth model for this (ShellSource in
+/// algorithms/depth/depth_model.hpp). Springs and modules (algorithms/module) compute their depths themselves. The
+/// source is queried once in every step, and again within a step by integrators that evaluate the force more than once.
 class ContactSource : public ContactQuery {
  public:
-  /// Gives the source access to the number of the current step, for sources whose contacts depend on more than
-  /// the pose. `*row` changes before the first query of each step. Called once, before the first step. Not
-  /// called if no Simulation steps the source.
+  /// Gives the source access to the number of the current step, for sources whose contacts depend on more than the
+  /// pose. `*row` changes before the first query of each step. Called once, before the first step. Not called if
+  /// neither a Simulation nor a LiveLoop runs the source.
   void follow(const std::uint64_t* row) { row_ = row; }
   /// Returns the schedule of a source that does not find contacts in every step; null if it finds them in every
   /// step. The pointer stays valid as long as the source. Called before the first step only.
@@ -27,7 +27,7 @@ class ContactSource : public ContactQuery {
 
  protected:
   const char* fault_ = nullptr;
-  const std::uint64_t* row_ = nullptr;  ///< number of the current step; null if no Simulation steps the source
+  const std::uint64_t* row_ = nullptr;  ///< number of the current step; null if follow() was not called
 };
 
 }  // namespace hapbench

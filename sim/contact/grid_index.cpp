@@ -48,8 +48,8 @@ SortedByCell sorted_by_cell(const GridCells& cells, std::size_t n, Position posi
   return sorted;
 }
 
-/// Replaces each of `count` numbers, which are `stride` entries apart, by the sum of `window` consecutive numbers of
-/// which it is the first.
+/// Replaces each of `count` numbers by the sum of itself and the next `window` - 1 numbers, or fewer at the end. The
+/// numbers are `stride` entries apart.
 void sum_windows(std::uint32_t* first, std::size_t count, std::size_t stride, std::size_t window) {
   for (std::size_t i = 0; i < count; ++i) {
     for (std::size_t k = 1; k < window && i + k < count; ++k) first[i * stride] += first[(i + k) * stride];

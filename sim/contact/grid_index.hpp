@@ -10,14 +10,15 @@
 
 namespace hapbench {
 
-/// Cells of a uniform grid around points. A cell is 2.5 point spacings wide, the fastest size measured: 0.25 mm
-/// for a shell with 0.1 mm spacing. The number of cells is at most a few times the number of points, whatever
-/// the extent.
+/// Uniform grid of cubic cells around points. for_spacing() makes the cells 2.5 point spacings wide, the fastest size
+/// measured (0.25 mm for a shell with 0.1 mm spacing). The number of cells is at most 8 times the number of points, or
+/// 4096 if that is more, whatever the extent.
 class GridCells {
  public:
-  /// Cells with edges of length `edge` [m], or longer edges if there would be too many cells.
+  /// Creates cells with edges of length `edge` [m], or longer edges if there would be too many cells.
   GridCells(const Box& bounds, std::size_t points, double edge);
-  /// Cells for points with the given distance between neighbours, `spacing` [m]; 0 if it is unknown.
+  /// Returns the cells for points whose neighbours are `spacing` [m] apart. With `spacing` 0, the spacing is unknown
+  /// and is estimated from the bounds and the number of points.
   static GridCells for_spacing(const Box& bounds, std::size_t points, double spacing);
 
   /// Cell numbers first … last along one axis; empty if first > last.
@@ -88,17 +89,17 @@ class GridIndex {
   bool keeps_order_ = true;
 };
 
-/// Returns the indices of the points in the order of their shell's GridIndex. `cell_size`: edge length of the cells
-/// of the PointShell [m]. O(n).
+/// Returns the indices of the points in the order in which the GridIndex of a PointShell sorts them. The PointShell has
+/// these points and this `cell_size` [m]. O(n).
 std::vector<std::uint32_t> grid_order(const std::vector<SurfacePoint>& points, double cell_size);
 /// Returns the points in the order of grid_order(). A search in a shell with this order need not sort its points
 /// (GridIndex::keeps_order).
 std::vector<SurfacePoint> in_grid_order(const std::vector<SurfacePoint>& points, double cell_size);
 
-/// Returns an upper bound of the number of shell points that can lie in the balls of `cover` at once, wherever
-/// the balls are. Used as the capacity of buffers. The bound is the number of balls times the number of points
-/// in the fullest cube of grid cells that can hold such a ball. For the thesis's drill it is a sixth of the
-/// block's points. O(shell size).
+/// Returns an upper bound of the number of shell points that can lie in the balls of `cover` at once, wherever the
+/// balls are. Used as the capacity of buffers. The bound is the number of balls times the number of points in the
+/// fullest cube of grid cells that can hold such a ball. For the drill and the block of the thesis, the bound is a
+/// sixth of the block's points. O(shell size).
 std::size_t max_points_in(const PointShell& shell, const ToolShape::Cover& cover);
 
 }  // namespace hapbench

@@ -12,13 +12,13 @@ namespace {
 
 /// Number of cells that are halved together; the tool evaluates their eight halves in one call.
 constexpr std::size_t kAtOnce = 4;
-/// Maximum size of the stack of cells. A cell is smaller than the tolerance after at most about 60 halvings,
-/// and each halving adds four cells.
+/// Maximum size of the stack of cells. A cell is smaller than the tolerance after at most about 60 halvings, and each
+/// round of the search adds at most kAtOnce cells.
 constexpr std::size_t kMaxCells = 1024;
 /// Maximum number of distance evaluations in one search, which bounds its time.
 constexpr std::size_t kMaxEvaluations = 20000;
-/// Tolerances relative to the half width. A point at most kOnTool outside the tool counts as in the tool. Cells
-/// smaller than kCoarse are not searched beyond the border of an open surface.
+/// Tolerances in half widths of the tool. A point at most kOnTool outside the tool counts as in the tool. Cells smaller
+/// than kCoarse are not searched beyond the border of an open surface.
 constexpr double kOnTool = 1e-9, kCoarse = 0.25;
 
 /// Lengths in half widths of the tool. A segment of the tool's axis shorter than kShort is not halved. A segment longer
@@ -57,7 +57,7 @@ std::optional<double> InsideSearch::depth(const ToolPose& pose, double known, do
   const Vec3 low = box.min.cwiseMax(solid_.region().min), high = box.max.cwiseMin(solid_.region().max);
   if ((low.array() <= high.array()).all()) {
     const Vec3 half = 0.5 * (high - low);
-    // This cell is halved first, so its own depth bound may be coarse.
+    // This cell is halved first, so its depth bound may be coarse.
     cells_.push_back({0.5 * (low + high), half, std::abs(tip.value) + 2.0 * tool_.reach(), known_distance});
   }
   // Halve cells until none can hold a deeper point.
@@ -240,8 +240,8 @@ InsideBound::Evaluation InsideBound::evaluate(Ball& ball, const BoundRequest& q)
   return {beyond - phi.value, phi.known};
 }
 
-/// Returns the bound for segment k: the smallest bound of its balls, or the larger bound of its two halves if
-/// this is smaller.
+/// Returns the bound for segment k: the smallest bound of its balls, or the larger bound of its two halves if that is
+/// smaller. Returns 0 if the segment is too short to be halved and no ball has a known distance.
 double InsideBound::bound_of_segment(std::size_t k, const BoundRequest& request) {
   if (segments_[k].balls.empty()) segments_[k].balls = balls_of(segments_[k]);
   double smallest = std::numeric_limits<double>::infinity();

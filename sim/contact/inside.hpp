@@ -9,7 +9,8 @@
 
 namespace hapbench {
 
-/// Step for differences of phi (surface normals), relative to the tool's half width.
+/// Step of the central differences that compute the gradient of the signed distance phi, relative to the tool's half
+/// width.
 inline constexpr double kGradientStep = 1e-3;
 
 /// Computes how deep a tool is inside a solid: max(0, -phi) over the tool's body, where phi is the signed
@@ -38,7 +39,8 @@ class InsideSearch {
   /// Default of the argument `tolerance`. The same number is the relative error of the depth that is allowed in
   /// addition.
   static constexpr double kTolerance = 0.02;
-  /// Further error of the depth [m], if the tool is sampled on a grid or points represent the surface; 0 otherwise.
+  /// Returns the error of the depth [m] in addition to the tolerance, if the tool is sampled on a grid or points
+  /// represent the surface; 0 otherwise.
   double error() const noexcept { return error_; }
   /// Approximate number of distances evaluated in all searches so far.
   std::size_t looks() const noexcept { return evaluations_; }
@@ -61,14 +63,14 @@ class InsideSearch {
   const ToolShape& tool_;
   const Solid& solid_;
   double error_;
-  ContactBuffer points_;      ///< query points for the tool
-  ContactBuffer one_;         ///< a single query point for the tool
+  ContactBuffer points_;      ///< points at which the tool is evaluated together
+  ContactBuffer one_;         ///< single point at which the tool is evaluated
   AlignedDoubles x_, y_, z_;  ///< support point returned by the tool
   std::vector<Cell> cells_;   ///< stack of cells that may hold the deepest point
   /// Depth of the deepest point found so far [m], and the tolerance of the current search.
   double best_ = 0.0, tolerance_ = kTolerance;
   std::size_t evaluations_ = 0;
-  std::optional<KnownDistance> tip_;  ///< tip centre of the last search
+  std::optional<KnownDistance> tip_;  ///< signed distance at the tip centre of the last search
   bool beyond_border_ = false;        ///< true if a point beyond the border may be deeper
 };
 
@@ -87,10 +89,10 @@ class InsideBound {
   /// Tool and solid must outlive the bound.
   InsideBound(const ToolShape& tool, const Solid& solid);
 
-  /// Returns an upper bound [m] of the depth of every point of the tool, negative if all points are outside. It
-  /// holds for this pose and for every pose whose tip centre is at most `moved` [m] away and whose axis, a unit
-  /// vector, differs by at most `turned` in length. A bound <= `enough` [m] is not improved. With `best` false,
-  /// a bound that clearly cannot fall to `enough` is not improved either. Points at which the solid's inside is
+  /// Returns an upper bound [m] of the depth of every point of the tool, negative if all points are outside. The bound
+  /// holds for this pose, and for every pose whose tip centre is at most `moved` [m] away and whose axis differs from
+  /// this unit axis by a vector of at most the length `turned`. A bound <= `enough` [m] is not improved. With `best`
+  /// false, a bound that clearly cannot fall to `enough` is not improved either. Points at which the solid's inside is
   /// unknown count as outside. Allocates when it uses a segment of the tool for the first time.
   double at(const ToolPose& pose, double moved, double turned, double enough, bool best);
   /// Returns a coarser bound with the same meaning, from one ball around the whole tool.

@@ -39,7 +39,7 @@ void MultiRateContacts::begin_step(std::uint64_t row, const ToolPose& pose) noex
       waiting_[(first_ + count_++) % waiting_.size()] = {pose, row};
   }
 
-  // Take the result that is due. At most one is due, because all queries have the same delay.
+  // Take the result that is due. At most one result is due in a step, because all queries have the same delay.
   if (count_ == 0 || waiting_[first_].row + static_cast<std::uint64_t>(timing.delay) > row) return;
   schedule_.latest = waiting_[first_];
   first_ = (first_ + 1) % waiting_.size();

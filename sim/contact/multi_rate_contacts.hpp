@@ -21,12 +21,13 @@ namespace hapbench {
 ///
 ///   d_i + <u_i, (p - p_q) + (Q - I)(x_i - p_q)>
 ///
-/// with the tip centre p of the current pose, p_q of the query's pose, and Q = turn_matrix of the two poses.
-/// Contacts with a depth <= 0 are dropped, except for springs that may pull. Integrators that query within a
-/// step get the contacts of the step, held or moved to the pose of their query.
+/// with the tip centre p of the current pose, the tip centre p_q of the query's pose, the identity I, and Q =
+/// turn_matrix of the two poses. Contacts with a depth <= 0 are dropped, except for springs that may pull. Integrators
+/// that query within a step get the contacts of the step, held or moved to the pose of their query.
 ///
 /// A query first stores only its pose. The other source computes the contacts for this pose in the step in which they
-/// are due. Pending queries therefore store no contacts, and a source with a memory still gets all queries in order.
+/// are due. Pending queries therefore store no contacts, and a source with internal state still gets all queries in
+/// order.
 class MultiRateContacts final : public ContactSource {
  public:
   /// `may_pull`: true if contacts with negative depth are springs that pull, so that they are kept. `seed` determines
@@ -53,7 +54,7 @@ class MultiRateContacts final : public ContactSource {
   bool may_pull_;
   std::uint64_t seed_;
   Random random_;
-  std::uint64_t calls_ = 0;                 ///< steps so far, if no Simulation steps the source
+  std::uint64_t calls_ = 0;                 ///< number of steps so far; counts calls if follow() was not called
   std::optional<std::uint64_t> last_step_;  ///< last step that has begun; empty before the first step
 
   std::vector<ContactSchedule::Query> waiting_;  ///< ring buffer of pending queries

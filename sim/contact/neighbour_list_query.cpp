@@ -11,8 +11,8 @@
 namespace hapbench {
 namespace {
 
-/// Thickness of the skin in half widths of the tool. With a thicker skin every step tests more points. With a
-/// thinner skin lists must be rebuilt more often.
+/// Thickness of the skin (the layer around the tool whose points are listed), in half widths of the tool. With a
+/// thicker skin every step tests more points. With a thinner skin lists must be rebuilt more often.
 constexpr double kSkinPerHalfWidth = 0.2;
 /// Maximum number of times that a skin without points is doubled.
 constexpr int kMaxDoublings = 12;
@@ -98,13 +98,13 @@ class NeighbourListQuery final : public ContactQuery {
     }
   }
 
-  /// Returns the search margin [m] for a skin [m]. It covers rounding, so that no point within the skin is
-  /// missed. `scale` is the largest coordinate [m].
+  /// Returns the search margin [m] for a skin of the thickness `skin` [m]. The margin covers rounding, so that no point
+  /// within the skin is missed. `scale` is the largest coordinate [m].
   double margin_of(double skin, double scale) const noexcept {
     return skin + kSlack * (skin + tool_->reach()) + 1e-12 * scale;
   }
 
-  /// Sets bits for the points within `skin` [m] of the tool, and for some points slightly farther away.
+  /// Marks the points within `skin` [m] of the tool in `marks_`, and some points slightly farther away.
   void mark_near(const ToolPose& pose, double skin) noexcept {
     const double margin = margin_of(skin, pose.position.cwiseAbs().maxCoeff() + tool_->reach());
     runs_.clear();

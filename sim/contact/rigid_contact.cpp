@@ -18,7 +18,7 @@ constexpr int kMaxMoves = 200;
 constexpr double kPlaneRounding = 1e-16;
 constexpr std::size_t kMaxWorking = 24;
 
-/// Two points of two segments or of a segment and a triangle, as fractions and positions.
+/// Closest points of the tool's segment and of a triangle or an edge.
 struct Pair {
   Vec3 on_tool, on_triangle;
   double fraction;  ///< position of the point on the tool's segment: 0 at the tip centre, 1 at the far end
@@ -48,7 +48,7 @@ Pair closest_of_segments(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3
   return {p + s * along, a + t * edge, s};
 }
 
-/// Distance of a point from a segment.
+/// Returns the distance of a point from the segment p q [m].
 double distance_to_segment(const Vec3& point, const Vec3& p, const Vec3& q) {
   const Vec3 along = q - p;
   const double length2 = along.squaredNorm();
@@ -129,7 +129,7 @@ void RigidContact::linearise(const Vec3& axis, double reach) {
 }
 
 /// Projects `wanted` onto the intersection of the half-spaces of the working set: finds up to three planes whose common
-/// projection is in all half-spaces and whose multipliers are positive. Returns false if there is none.
+/// projection is in all half-spaces and whose multipliers are positive. Returns false if no such planes exist.
 // NOLINTNEXTLINE(readability-function-cognitive-complexity): loops over one, two and three planes.
 bool RigidContact::project(const Vec3& wanted, Vec3& result) const {
   const std::size_t n = working_.size();
@@ -165,8 +165,9 @@ bool RigidContact::project(const Vec3& wanted, Vec3& result) const {
   return false;
 }
 
-/// Returns the point of all half-spaces that is nearest to `wanted`. Adds the half-space that the result violates most
-/// to the working set, until the result violates none. Returns the free position if rounding prevents a solution.
+/// Returns the point nearest to `wanted` that lies in all half-spaces. Repeatedly adds the half-space that the result
+/// violates most to the working set, until the result violates none. Returns the free position if rounding prevents a
+/// solution or the working set is full.
 Vec3 RigidContact::nearest_in_half_spaces(const Vec3& wanted) {
   working_.clear();
   Vec3 result = wanted;
@@ -201,7 +202,7 @@ Vec3 RigidContact::follow(const Vec3& position, const Vec3& axis) {
     free_ = next;
     const bool rests = move <= kAtRest * tool_.radius;
     if (rests || i + 1 == kMaxMoves) {
-      // The moves shrink like a geometric series.
+      // Estimate the error: the moves shrink like a geometric series, so the sum of all further moves is bounded.
       const double ratio = last_move > 0.0 ? std::min(move / last_move, 0.999) : 0.0;
       error_ = std::max(error_, move / (1.0 - ratio) + kAtRest * tool_.radius);
       break;

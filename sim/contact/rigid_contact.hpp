@@ -14,15 +14,16 @@ struct RoundTool {
   double radius, length;
 };
 
-/// Follows the free position of a tool that is nearest to a prescribed position. A tool between rigid triangles, which
-/// a spring without friction pulls to the prescribed position x, rests at this free position x'; the force on it is K
-/// (x' - x).
+/// Computes the free position of a tool that is nearest to a prescribed position x. At a free position, the tool
+/// overlaps no triangle. A frictionless spring with the stiffness K pulls a tool between rigid triangles towards x. The
+/// tool rests at this free position x', and the force on it is K (x' - x).
 ///
 /// Method: a triangle T is touched if the distance of the tool's segment from T is the tool's radius. This distance is
-/// a convex function of the tool's position. Hence a half-space that is bounded by the plane of its linearisation lies
-/// in the free space, as does the straight path within the half-space. The search moves from the last free position
-/// to the point nearest to x in the half-spaces of all near triangles, and repeats this until it stays. It cannot pass
-/// a triangle, and ends at a local minimum of |x' - x| in the free space that the path has reached.
+/// a convex function of the tool's position. Hence, where the linearised distance is at least the radius, the tool does
+/// not overlap T. These positions form a half-space, and straight paths within the half-space are free of T as well.
+/// The search moves from the last free position to the point nearest to x in the half-spaces of all near triangles, and
+/// repeats this until the position stays. The search cannot pass a triangle. It ends at a local minimum of |x' - x| in
+/// the free space that the path has reached.
 class RigidContact {
  public:
   RigidContact(TriangleSoup surface, const RoundTool& tool);
@@ -45,7 +46,8 @@ class RigidContact {
     Vec3 a, b, c, centre;
     double radius;
   };
-  /// Distance of the tool's segment from a triangle [m], and its gradient by the tool's position.
+  /// Distance of the tool's segment from a triangle [m], and the gradient of this distance with respect to the tool's
+  /// position.
   struct Gap {
     double distance;
     Vec3 normal;
@@ -68,12 +70,13 @@ class RigidContact {
   Vec3 free_ = Vec3::Zero();  ///< last free position [m]
   double error_ = 0.0;
   bool touched_far_end_ = false;
-  // Triangles within near_reach_ of the tool at a position and axis.
+  // Indices of the triangles within near_reach_ [m] of the tool, at the position near_position_ with the axis
+  // near_axis_.
   std::vector<std::uint32_t> near_;
   Vec3 near_position_ = Vec3::Zero(), near_axis_ = Vec3::Zero();
   double near_reach_ = -1.0;
   std::vector<HalfSpace> half_spaces_;
-  std::vector<std::size_t> working_;  ///< half-spaces of which some bound the result
+  std::vector<std::size_t> working_;  ///< indices of the half-spaces in the working set; some of these bound the result
 };
 
 }  // namespace hapbench

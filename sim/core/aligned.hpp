@@ -18,8 +18,8 @@ constexpr std::size_t padded(std::size_t n) {
   return (n + lanes - 1) / lanes * lanes;
 }
 
-/// Sets the eight doubles from p on to zero; p need not be aligned. Faster than a loop that clears only the unused
-/// lanes of the last pack, because it has no branches.
+/// Sets the eight doubles that start at p to zero; p need not be aligned. This is faster than a loop that clears only
+/// the unused lanes of the last pack, because it has no branches.
 inline void zero_pack(double* p) {
   std::memset(p, 0, lanes * sizeof(double));
 }

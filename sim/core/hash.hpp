@@ -16,9 +16,9 @@ class Hash64 {
   constexpr void bytes(std::string_view text) noexcept {
     for (const char c : text) mix(static_cast<unsigned char>(c));
   }
-  /// Adds a 64-bit word in one round, eight times cheaper than byte by byte. The multiplication carries only
-  /// towards higher bits, so the upper half is folded into the lower half afterwards. Without folding, two flipped
-  /// sign bits would cancel, for example in a mirrored run.
+  /// Adds a 64-bit word in one round, eight times cheaper than byte by byte. The multiplication carries only towards
+  /// higher bits, so the upper half of the state is folded into the lower half afterwards. Without folding, the flips
+  /// of two sign bits would cancel, so a run and its mirror image could have equal hashes.
   constexpr void word(std::uint64_t value) noexcept {
     mix(value);
     state_ ^= state_ >> 32;

@@ -39,8 +39,8 @@ DoubleDouble fast_two_sum(double a, double b) {
   return {sum, b - (sum - a)};
 }
 
-/// Returns a b without rounding error, by splitting each factor into two halves of 26 bits (Dekker's and Veltkamp's
-/// algorithms). Precondition: |a|, |b| < 2^990.
+/// Returns the product a b without rounding error, by splitting each factor into two halves of 26 bits (Dekker's and
+/// Veltkamp's algorithms). Precondition: |a|, |b| < 2^990.
 DoubleDouble two_product(double a, double b) {
   const double split_a = 0x8000001p0 * a, split_b = 0x8000001p0 * b;
   const double a1 = split_a - (split_a - a), a2 = a - a1, b1 = split_b - (split_b - b), b2 = b - b1;
@@ -48,7 +48,7 @@ DoubleDouble two_product(double a, double b) {
   return {product, ((a1 * b1 - product) + a1 * b2 + a2 * b1) + a2 * b2};
 }
 
-/// Returns a b to double-double precision.
+/// Returns the product a b to double-double precision.
 DoubleDouble product(const DoubleDouble& a, const DoubleDouble& b) {
   const DoubleDouble p = two_product(a.high, b.high);
   return fast_two_sum(p.high, p.low + (a.high * b.low + a.low * b.high));
@@ -89,7 +89,8 @@ double cosine_of(const DoubleDouble& x) {
   return first + (((1.0 - first) - half) + (z * z * series - x.high * x.low));
 }
 
-/// Angle x = quadrant * pi/2 + rest, with |rest| <= pi/4 and quadrant from 0 to 3, modulo 2 pi.
+/// Decomposition of an angle x [rad]: x = quadrant * pi/2 + rest, up to a multiple of 2 pi, with quadrant from 0 to 3
+/// and |rest| <= pi/4.
 struct Reduced {
   int quadrant;
   DoubleDouble rest;
@@ -186,7 +187,7 @@ DoubleDouble log_of(double x) {
   tail = fast_two_sum(tail.high, tail.low + z.high * z.high * series);
   tail = product(ratio, tail);
   const DoubleDouble of_m = fast_two_sum(2.0 * ratio.high, 2.0 * (ratio.low + tail.high));
-  // The rounding error of the second of these sums is less than 2^-64 of the logarithm.
+  // The rounding error of `low` is less than 2^-64 of the logarithm.
   const DoubleDouble whole = two_sum(k * kLn2High, of_m.high);
   const double low = whole.low + (k * kLn2Low + (of_m.low + 2.0 * tail.low));
   return two_sum(whole.high, low);
@@ -231,7 +232,8 @@ double tan(double x) noexcept {
 
 double atan2(double y, double x) noexcept {
   if (std::isnan(x) || std::isnan(y)) return kNaN;
-  // Reduce to the angle of small / large in [0, pi/4], scaled against overflow and underflow.
+  // Reduce the problem to the angle arctan(small / large) in [0, pi/4]. Scale both numbers against overflow and
+  // underflow.
   double small = std::abs(y), large = std::abs(x);
   const bool steep = small > large;
   if (steep) std::swap(small, large);
@@ -265,7 +267,7 @@ double atan2(double y, double x) noexcept {
     base = kPi;
     sign = -1.0;
   }
-  // Sum the parts without losing their low digits.
+  // Add the offset and both arctangents without losing their low digits.
   const DoubleDouble first = two_sum(base.high, sign * arc.high);
   const DoubleDouble second = two_sum(first.high, sign * u);
   const double angle = second.high + (second.low + (first.low + (base.low + sign * (arc.low + atan_remainder(u)))));
@@ -301,7 +303,7 @@ double log(double x) noexcept {
   if (!(x >= 0.0)) return kNaN;
   if (x == 0.0) return -kInfinity;
   if (std::isinf(x)) return x;
-  // The series of log_of, with 2 s = f - s f, so that the term that is rounded last is small compared with f.
+  // Use the series of log_of() with 2 s = f - s f. The term that is rounded last is then small compared with f.
   const auto [k, m] = binary(x);
   const double f = m - 1.0, s = f / (m + 1.0), z = s * s;
   const double series = z * polynomial(z, 2.0 / 3.0, 2.0 / 5.0, 2.0 / 7.0, 2.0 / 9.0, 2.0 / 11.0, 2.0 / 13.0,

@@ -8,7 +8,7 @@
 /// -ffp-contract=off preserves. A test compares them with an 80-bit libm and checks the error bounds stated below,
 /// in units in the last place (ulp) of the result. All sources of hapbench use these functions instead of <cmath>.
 ///
-/// Cost: once to twice the time of the C library's functions; log10 and pow take 30 to 50 ns. Arguments outside a
+/// Cost: one to two times the time of the C library's functions; log10 and pow take 30 to 50 ns. Arguments outside a
 /// function's domain and NaN return NaN. No function sets errno.
 namespace hapbench::math {
 

@@ -23,8 +23,8 @@ auto isolate(const Work& work) {
 /// Calls body(i) for every index from first to last - 1.
 using oneapi::tbb::parallel_for;
 
-/// Returns work(). While the calling thread waits in a nested parallel loop, it runs no tasks from outside of
-/// `work`.
+/// Calls work() and returns its result. While the calling thread waits for a parallel loop inside work(), it runs no
+/// tasks that were created outside of work().
 using oneapi::tbb::this_task_arena::isolate;
 
 #endif

@@ -31,8 +31,8 @@ class Random {
   /// Returns a uniform integer in [0, n). Precondition: n > 0. The modulo bias is below n / 2^64.
   std::uint64_t below(std::uint64_t n) { return engine_() % n; }
   /// Returns a normally distributed number with mean 0 and standard deviation 1 (Box-Muller). Discards the second
-  /// number of each Box-Muller pair, so that the result does not depend on whether earlier calls were odd or even
-  /// in number.
+  /// number of each Box-Muller pair, so that the result does not depend on whether the number of earlier calls is odd
+  /// or even.
   double normal() {
     const double r = std::sqrt(-2.0 * math::log(1.0 - uniform()));
     return r * math::cos(2.0 * std::numbers::pi * uniform());

@@ -146,9 +146,9 @@ HAPBENCH_INLINE std::uint8_t bits(const Mask& m) {
 #endif
 }
 
-/// Copies, of eight elements, the elements whose bit in `selected` is set to `to`, in order and without gaps.
-/// Precondition: `from` is aligned to a whole pack, and `to` has room for eight elements, because all eight may be
-/// overwritten.
+/// Copies elements to `to`, in order and without gaps: copies element k of the eight elements of `from` if bit k of
+/// `selected` is set. Precondition: `from` is aligned to a whole pack, and `to` has room for eight elements, because
+/// all eight may be overwritten.
 #if HAPBENCH_SIMD && defined(__AVX512VL__)
 inline void store_selected(std::uint8_t selected, const double* from, double* to) {
   _mm512_storeu_pd(to, _mm512_maskz_compress_pd(selected, _mm512_load_pd(from)));
@@ -167,10 +167,10 @@ void store_selected(std::uint8_t selected, const T* from, T* to) {
 }
 #endif
 
-/// Copies the selected points among the eight points from index i on to index k on, and returns the number of
-/// copied points. The points are stored as one array per coordinate; copying array by array is faster than copying
-/// point by point, which would take longer than the contact search. Always inline: the search would otherwise save
-/// and restore the packs in its registers around the call. Precondition: i is a multiple of eight.
+/// Copies points to `to`, starting at its index k, and returns the number of copied points. Copies point i + b of
+/// `from` if bit b of `selected` is set (b = 0 … 7). The points are stored as one array per coordinate and are copied
+/// array by array; copying point by point would take longer than the contact search. Always inline: the search would
+/// otherwise save and restore the packs in its registers around the call. Precondition: i is a multiple of eight.
 template <class From, class To>
 HAPBENCH_INLINE std::size_t copy_selected(std::uint8_t selected, const From& from, std::size_t i, To& to,
                                           std::size_t k) {

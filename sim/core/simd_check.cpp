@@ -1,4 +1,5 @@
-// Runs during the build, compiled with the flags of the simulation kernels, before every target that depends on it.
+// Program that checks the SIMD operations. The build compiles this program with the flags of the simulation kernels and
+// runs it before it compiles the kernels.
 #include "sim/core/simd_check.hpp"
 
 #include <cstdio>

@@ -81,7 +81,7 @@ inline const Comparison kComparisons[] = {
      [](double a, double b) { return a < b || a >= 1.0; }},
 };
 
-/// Returns false if the mask of the comparison, `bits` of it or `any` of it is wrong.
+/// Returns false if bits() or any() of the comparison's mask is wrong for the numbers in a and b.
 inline bool masks_are_right(const Comparison& comparison, const AlignedDoubles& a, const AlignedDoubles& b) {
   const Mask mask = comparison.packs(load(a.data()), load(b.data()));
   unsigned expected = 0;

@@ -55,8 +55,9 @@ inline double distance_to(const Box& box, const Vec3& point) noexcept {
   return (point - point.cwiseMax(box.min).cwiseMin(box.max)).norm();
 }
 
-/// Tip of a solid of revolution. `flat`: it ends in the tip plane. `round`: a half ball of the same radius, centred
-/// at the tip centre, extends beyond that plane.
+/// Shape of the tip of a solid of revolution. `flat`: the body ends in the tip plane, which is perpendicular to the
+/// axis at the tip centre. `round`: a half ball about the tip centre extends beyond the tip plane; its radius is the
+/// radius of the body in this plane.
 enum class Tip { flat, round };
 
 /// Point on the profile of a solid of revolution, in the half plane that the axis bounds [m].
@@ -67,9 +68,9 @@ struct ProfilePoint {
   bool operator==(const ProfilePoint&) const = default;
 };
 
-/// Selects whether a run may use optimizations that do not change its results. `off` computes everything by brute
-/// force, even values that nothing reads; it exists to test that the output is identical. It is therefore not a field
-/// of a scenario file, but a scenario in memory carries it (RenderingConfig).
+/// Selects whether a run may skip computations that do not change its results. `off` computes everything by brute
+/// force, also values that nothing reads. Tests use `off` to verify that skips do not change the output. A scenario
+/// file has no field for this setting; RenderingConfig::skips holds it.
 enum class Skips { on, off };
 
 /// Allowed values of a number that the user sets. Both bounds are allowed unless `above_min` is set. The unit is

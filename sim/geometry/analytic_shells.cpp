@@ -9,8 +9,8 @@
 namespace hapbench {
 namespace {
 
-/// Returns the number of equal intervals of a length, none longer than the spacing. The term 1e-9 covers rounding
-/// if the length is a multiple of the spacing.
+/// Returns the number of equal intervals into which a length is divided, so that none is longer than the spacing. The
+/// term 1e-9 covers rounding if the length is a multiple of the spacing.
 double intervals(double length, double spacing) {
   return std::max(1.0, std::ceil(length / spacing - 1e-9));
 }
@@ -169,10 +169,8 @@ double signed_distance(const BlockWithHole& block, const Vec3& q) {
     const double beyond_sides = length(std::max(x, 0.0), std::max(y, 0.0));
     return length(beyond_sides, std::max({z, below, 0.0}));
   }
-  if (rho < R && z > -H)
-    return std::min(R - rho, z + H);  // a point in the hole: distance to the wall or the bottom
-                                      // of the hole In the material: distance to the closest
-                                      // face or to the hole.
+  if (rho < R && z > -H) return std::min(R - rho, z + H);  // in the hole: distance to its wall or bottom
+  // In the material: distance to the closest face or to the hole.
   const double to_hole = length(std::max(rho - R, 0.0), std::max(-H - z, 0.0));
   return -std::min({-x, -y, -z, -below, to_hole});
 }

@@ -20,8 +20,8 @@ Box bounds_of(const std::vector<SurfacePoint>& points);
 /// Points of a shell, and the grid cell to which each point belongs.
 struct ShellPoints {
   std::vector<SurfacePoint> points;
-  /// Cell number of each point, 0 … cells - 1 in order of first appearance. Empty if the cells follow from the
-  /// positions (see PointShell::cell_of_points).
+  /// Cell number of each point. The numbers start at 0 and increase in the order in which the cells first appear. Empty
+  /// if the cells follow from the positions (see PointShell::cell_of_points).
   std::vector<std::uint32_t> cells;
 };
 
@@ -72,10 +72,10 @@ class PointShell {
   SurfacePoint point(std::size_t i) const { return {{x()[i], y()[i], z()[i]}, {nx()[i], ny()[i], nz()[i]}}; }
   std::vector<SurfacePoint> points() const;
 
-  /// Returns the cell number of each point, 0 … cells - 1 in order of first appearance. If the shell was created with
-  /// cells, returns these cells. Otherwise the cells are the cubes between half-integer multiples of cell_size, so that
-  /// points at integer multiples of cell_size have one cell each. O(size log size): call it before a run, not in a
-  /// step.
+  /// Returns the cell number of each point, from 0 in the order in which the cells first appear. If the shell was
+  /// created with cells, returns these cells. Otherwise the cells are the cubes between half-integer multiples of
+  /// cell_size, so that points at integer multiples of cell_size have one cell each. O(size log size): call it before a
+  /// run, not in a step.
   std::vector<std::uint32_t> cell_of_points() const;
 
  private:

@@ -73,7 +73,7 @@ class MeshSolid final : public Solid {
     const auto nearest = nearest_triangle(q, near);
     if (!nearest) return Vec3::UnitZ();
     const Vec3 away = q - nearest->position, n = normal(nearest->triangle);
-    // Closer to the surface, the direction from the closest point is dominated by rounding.
+    // If the point is closer to the surface than this, the direction from the closest point is dominated by rounding.
     if (away.norm() < 1e-6 * step) return n;
     return away.normalized() * (signed_distance(q, *nearest, near).value < 0.0 ? -1.0 : 1.0);
   }
@@ -180,7 +180,8 @@ class PointSolid final : public Solid {
     const double h = n.dot(q - p);
     const Vec3 along = q - p - h * n;
     const double tangential = along.norm(), beyond = std::max(0.0, tangential * tangential - spacing_ * spacing_);
-    // Beyond the spacing, the distance is known only if the shell has a point further along.
+    // If the tangential distance exceeds the spacing, phi is known only if the shell has a point farther along in the
+    // tangential direction.
     const bool continues =
         beyond == 0.0 || tree_.nearest(p + 2.0 * spacing_ / tangential * along, 1.5 * spacing_).has_value();
     return {std::copysign(std::sqrt(h * h + beyond), h), continues};

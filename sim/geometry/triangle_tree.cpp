@@ -11,7 +11,7 @@ namespace hapbench {
 namespace {
 
 constexpr std::uint32_t kMaxLeafTriangles = 4;  ///< maximum number of triangles in a leaf
-/// Size of the search stack. Halving 2^32 triangles takes 32 levels, and a search stores one box a level.
+/// Size of the search stack. Halving 2^32 triangles takes 32 levels, and a search stores one box for each level.
 constexpr std::size_t kStackSize = 64;
 /// A plane whose squared distance is larger than the squared distance of a known triangle by this factor is not closer.
 constexpr double kPlaneMargin = 1.0 + 1e-9;
@@ -96,7 +96,8 @@ std::optional<Crossing> vertical_crossing(const std::array<Vec3, 3>& t, double x
   // Interpolate z at the line.
   const double whole = a + b + c;
   const double z = whole != 0.0 ? (a * t[0].z() + b * t[1].z() + c * t[2].z()) / whole : t[0].z();
-  // Triangles that face up are counter-clockwise seen from above; an upward line leaves the solid there.
+  // Triangles that face up are counter-clockwise seen from above; an upward line leaves the solid through such a
+  // triangle.
   return Crossing{z, left ? -1 : 1};
 }
 
@@ -160,7 +161,7 @@ void TriangleTree::split(std::size_t node, std::vector<Item>& items) {
 
 /// Calls `use` with the triangles of the leaves, closest boxes first. `distance_to(node)` returns the distance of a
 /// box, `is_less` compares two distances, and `may_be_nearer(distance)` returns false for a box that need not be
-/// searched. It is called when the search reaches the box.
+/// searched. `may_be_nearer` is called when the search reaches the box.
 template <class DistanceTo, class IsLess, class MayBeNearer, class Use>
 [[gnu::always_inline]] inline void TriangleTree::visit_nearest_first(const DistanceTo& distance_to,
                                                                      const IsLess& is_less,

@@ -13,7 +13,8 @@ struct HandleState {
   Vec3 velocity = Vec3::Zero();  ///< [m/s]
 };
 
-/// Exact simulated values that the user perceives in one step: the motion of the handle, and the display.
+/// Inputs of a hand model in one step: the exact simulated motion of the handle, the tool on the display, and the
+/// forces of the previous step.
 struct HandView {
   const HandleState& handle;
   const ToolPose& tool;      ///< tool as shown on the display
@@ -21,7 +22,8 @@ struct HandView {
   const Vec3& spring_force;  ///< f_spring of the previous step [N], an input of the hand's target task
 };
 
-/// Linearisation of a hand's force for small motions of the handle: df = -stiffness dx - damping dv.
+/// Linearisation of a hand's force for small motions of the handle: df = -stiffness dx - damping dv, with displacement
+/// dx [m] and velocity change dv [m/s] of the handle.
 struct HandImpedance {
   Mat3 stiffness = Mat3::Zero();  ///< [N/m]
   Mat3 damping = Mat3::Zero();    ///< [N s/m]
@@ -32,7 +34,7 @@ struct HandImpedance {
 class Hand {
  public:
   virtual ~Hand() = default;
-  /// Returns to t = 0.
+  /// Resets the hand to its state at t = 0.
   virtual void reset() noexcept {}
   /// Returns the force of the hand on the handle at time t [N]. Called once in every step.
   virtual Vec3 force(double t, const HandView& view) noexcept = 0;
@@ -68,7 +70,7 @@ struct DeviceEnergy {
 class Device {
  public:
   virtual ~Device() = default;
-  /// Returns to t = 0 with the handle at the tool.
+  /// Resets the device to t = 0, with the handle at the position of the tool.
   virtual void reset(const ToolState& tool) noexcept = 0;
   /// Returns the hand's force [N] as measured in this step.
   virtual MeasuredForce measure(const Vec3& hand_force) noexcept = 0;

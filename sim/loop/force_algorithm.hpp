@@ -12,22 +12,23 @@
 
 namespace hapbench {
 
-/// The scene as a force algorithm sees it before the first step. All objects behind the pointers outlive the
-/// algorithm.
+/// Description of the scene that a force algorithm receives before the first step. All objects behind the pointers
+/// outlive the algorithm.
 struct Scene {
   std::size_t capacity = 0;            ///< maximum number of contacts in a step
   const ToolShape* tool = nullptr;     ///< the tool, for algorithms that keep a proxy of it
   const PointShell* shell = nullptr;   ///< the environment; null if it is a spring set
   const SpringSet* springs = nullptr;  ///< the environment; null if it is a shell
   double dt = 0.0005;                  ///< time step [s]
-  /// Steps in which an algorithm with its own contact search may search; null: in every step.
+  /// Schedule of the steps in which an algorithm with its own contact search may search; null if it may search in every
+  /// step.
   const ContactSchedule* schedule = nullptr;
-  /// Number of the current step, and its input force f_in [N], which drives the tool together with f_render
-  /// over the coming step. Both change before the first `compute` of each step. Null if no Simulation steps the
-  /// algorithm.
+  /// `row`: number of the current step. `input`: input force f_in [N] of the current step, which drives the tool
+  /// together with f_render until the next step. The caller updates both before the first `compute` of each step. Both
+  /// are null if neither a Simulation nor a LiveLoop runs the algorithm.
   const std::uint64_t* row = nullptr;
   const Vec3* input = nullptr;
-  bool position_is_free = true;    ///< false: a script moves the tool
+  bool position_is_free = true;    ///< false if a script prescribes the tool's position
   bool handle_moves_tool = false;  ///< true: the tool follows the measured handle; there is no virtual mass
 };
 
@@ -39,7 +40,7 @@ struct RenderedForce {
   Vec3 spring = Vec3::Zero();          ///< f_spring, force of the penalty springs on the tool [N]
   Vec3 rendered = Vec3::Zero();        ///< f_render = spring + damping + friction, after limits [N]
   Mat3 S = Mat3::Zero();               ///< stiffness tensor in units of the spring stiffness K
-  double depth_max = 0.0;              ///< largest depth of the colliding points, before any point stage [m]
+  double depth_max = 0.0;              ///< largest depth of the colliding points [m], before point stages change them
   Friction friction = Friction::none;  ///< `none` if dry friction is off or no contact has a load
 };
 
@@ -109,14 +110,14 @@ class ForceAlgorithm {
 
   /// Called once before the first step. Only this function may allocate or throw.
   virtual void prepare(const Scene& scene) = 0;
-  /// Returns to t = 0; the next run is bitwise identical.
+  /// Resets the algorithm to t = 0; the next run is then bitwise identical.
   virtual void reset() noexcept = 0;
   /// Computes the force for the state of the step. Some integrators then also call it for states within the
   /// step. On entry, `contacts` holds the contacts at the tool's pose with depth and gradient (ContactSource).
   /// On return it holds the rendered contacts with their weights.
   virtual void compute(const ToolState& tool, ContactBuffer& contacts, RenderedForce& out) noexcept = 0;
-  /// Returns elastic energy and moment of the springs of the last `compute`; the arguments are its tool and its
-  /// rendered contacts. Called only if an observer or a controller needs them.
+  /// Returns the elastic energy and the moment of the springs in the last `compute`. The arguments are the tool and the
+  /// rendered contacts of this `compute`. Called only if an observer or a controller needs the result.
   virtual SpringState spring_state(const ToolState& tool, const ContactBuffer& contacts) const noexcept = 0;
   /// Returns the Jacobian of the force of the last `compute` with the contacts held constant. Called by
   /// implicit integrators only.

@@ -8,7 +8,8 @@
 
 namespace hapbench {
 
-/// The force between two steps, for the integrator: the contacts at the given position with the current orientation.
+/// Computes the force between two steps for the integrator, with the contacts at the given position. The tool keeps the
+/// orientation of the current step.
 class LiveLoop::ForceWithinStep final : public ForceField {
  public:
   ForceWithinStep(LiveLoop& loop, const ToolState& tool, double gain) : loop_(loop), tool_(tool), gain_(gain) {}

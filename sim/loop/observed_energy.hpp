@@ -10,10 +10,10 @@ namespace hapbench {
 ///
 ///   E_0 = E_spring(0),  E_(k+1) = E_k - f_render_k . (v_k + v_(k+1))/2 dt - (m_k + m_(k+1))/2 . turn_k
 ///
-/// m is the moment of the springs, and turn_k the rotation vector from pose k to pose k + 1. The energy ledger
-/// uses the same work terms. For a rendering that only stores energy in springs and dissipates, E_k is never
-/// negative. max(0, -min E_k) is the created energy. Dissipated energy counts as absorbed, so it can hide
-/// energy that is created later.
+/// v_k is the velocity of the tip centre in step k, dt the time step, m_k the moment of the springs about the tip
+/// centre, and turn_k the rotation vector from pose k to pose k + 1. The energy balance of a run uses the same work
+/// terms. For a rendering that only stores energy in springs and dissipates, E_k is never negative. max(0, -min E_k) is
+/// the created energy. Dissipated energy counts as absorbed, so it can hide energy that is created later.
 ///
 /// If a device's handle moves the tool, the force is held while the tool moves, and its work is f_render_k .
 /// (p_(k+1) - p_k). E then is the energy of the display and includes the energy created by sampling and
@@ -21,17 +21,18 @@ namespace hapbench {
 /// rule, (f_k + f_(k+1))/2 . (p_(k+1) - p_k). This rule has an error of up to K d^2 / 8 where a contact of
 /// stiffness K begins or ends between two steps at a distance d.
 ///
-/// Call `move`, then `answer` in every step. Observer and controller share this code, so their results agree
-/// bitwise. A step without force and moment costs a few comparisons and a copy of the pose.
+/// Call `move`, then `answer` in every step. The passivity observer and the passivity controller share this code, so
+/// their results agree bitwise. A step without force and moment costs a few comparisons and a copy of the pose.
 class ObservedEnergy {
  public:
   /// `dt`: time step [s]. `position_is_free`: false if a script prescribes the tool's position.
   explicit ObservedEnergy(double dt, bool position_is_free = true) : dt_(dt), free_(position_is_free) {}
 
-  /// Returns to t = 0.
+  /// Resets the observer to t = 0.
   void reset() noexcept { *this = ObservedEnergy(dt_, free_); }
 
-  /// Begins the next step; `tool` is the tool's state in this step.
+  /// Begins the next step. `tool` is the tool's state in this step. `handle_moves_tool`: true if the tool follows the
+  /// handle of a device.
   void move(const ToolState& tool, bool handle_moves_tool = false) noexcept {
     first_ = !begun_;
     begun_ = true;

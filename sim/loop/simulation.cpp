@@ -9,8 +9,8 @@
 
 namespace hapbench {
 
-/// The force between step k and step k + 1, for the integrator. It overwrites the contact buffer, which is not
-/// read any more after the observers have been notified.
+/// Computes the force between step k and step k + 1 for the integrator. Overwrites the contact buffer, because nothing
+/// reads the buffer after the observers have been notified.
 class Simulation::ForceWithinStep final : public ForceField {
  public:
   explicit ForceWithinStep(Simulation& simulation) : s_(simulation) {}

@@ -16,8 +16,8 @@
 
 namespace hapbench {
 
-/// How the stepping of a run ended. Whether the tool got stuck, lost contact or passed through the surface is judged
-/// afterwards from the recorded steps (results/summary/outcome.hpp).
+/// Reason why the step loop of a run ended. Whether the tool got stuck, lost contact or passed through the surface is
+/// judged afterwards from the recorded steps (results/summary/outcome.hpp).
 enum class Ending {
   completed,        ///< all steps are done, or the hand has finished its task
   left_hole,        ///< stopped by a StopRule
@@ -34,7 +34,8 @@ struct StopRule {
   Vec3 up;  ///< unit vector against gravity
 };
 
-/// Bounds beyond which a run is stopped as diverged. They are absurd for a dental drill, but far from overflow.
+/// Bounds of the simulated quantities. A run that exceeds a bound is stopped as diverged. The bounds are far beyond the
+/// values of a dental drill, and far below overflow.
 struct DivergenceBounds {
   double position = 1e3;  ///< position of tool and handle [m]
   double speed = 1e6;     ///< speed of tool and handle [m/s]
@@ -48,11 +49,11 @@ struct SimulationConfig {
   double mass = 0.2;        ///< mass of the virtual tool [kg]; not used if there is no virtual tool
   const IntegratorEntry* integrator = &kLeapfrog;  ///< moves a virtual tool whose position is free; never null
   double event_tolerance = kEventTolerance;        ///< time tolerance of the integrator `event` [s]
-  Vec3 position = Vec3::Zero();                    ///< tip centre at t = 0 [m]; ignored if the motion prescribes it
-  Vec3 velocity = Vec3::Zero();                    ///< velocity at t = 0 [m/s]
-  std::vector<StopRule> stop_when;                 ///< the first rule whose condition holds ends the run
+  Vec3 position = Vec3::Zero();     ///< tip centre at t = 0 [m]; ignored if the motion prescribes the position
+  Vec3 velocity = Vec3::Zero();     ///< velocity at t = 0 [m/s]
+  std::vector<StopRule> stop_when;  ///< the first rule whose condition holds ends the run
   DivergenceBounds bounds;
-  Skips skips = Skips::on;  ///< whether to skip ratios and energies that no observer reads
+  Skips skips = Skips::on;  ///< `on`: skips ratios and energies that no observer reads
 };
 
 /// The components of a run, owned by the simulation.
@@ -83,7 +84,8 @@ struct SimulationResult {
   Divergence divergence;   ///< set if the run diverged
 };
 
-/// State of step k: everything evaluated from (p_k, v_k, axis(t_k)) before the integrator moves the tool.
+/// Record of step k: the tool at time t_k, and everything that is evaluated from this state before the integrator moves
+/// the tool.
 struct StepRecord {
   std::uint64_t step = 0;
   double time = 0.0;  ///< t_k = k dt [s]
@@ -96,7 +98,7 @@ struct StepRecord {
   HandleState handle;
   bool handle_moves_tool = false;           ///< true if the tool follows the handle; there is then no virtual mass
   const TargetTask* task = nullptr;         ///< target task of the hand; null if the hand has no task
-  std::size_t colliding = 0;                ///< number of colliding points before any point stage
+  std::size_t colliding = 0;                ///< number of colliding points, before point stages merge or drop contacts
   const ContactBuffer* rendered = nullptr;  ///< contacts that the law used; valid during on_step only
   const ContactBuffer* found = nullptr;     ///< contacts before any point stage; null unless an observer reads them
   /// Stiffness ratios of the rendered contacts; computed only if an observer reads them.
@@ -104,7 +106,8 @@ struct StepRecord {
   SpringState springs;                 ///< computed only if an observer reads springs or energy
   std::optional<DeviceEnergy> device;  ///< computed only if an observer reads the energy
 
-  /// Velocity of the moving body, virtual mass or handle [m/s], without the effects of encoder and filter.
+  /// Returns the velocity of the moving body [m/s]: of the handle if the tool follows the handle, and of the tool
+  /// otherwise. The effects of encoder and filter are not included.
   const Vec3& body_velocity() const noexcept { return handle_moves_tool ? handle.velocity : tool.velocity; }
 };
 
@@ -138,7 +141,7 @@ class Simulation {
   Simulation(const Simulation&) = delete;
   Simulation& operator=(const Simulation&) = delete;
 
-  /// Returns to t = 0; the next run is bitwise identical. Does not reset the observers.
+  /// Resets the run to t = 0; the next run is then bitwise identical. Does not reset the observers.
   void reset() noexcept;
   /// Evaluates the next step k, passes it to the observers and moves the tool on to step k + 1. Returns false
   /// and does nothing if the run has ended. Allocates nothing.
@@ -147,7 +150,8 @@ class Simulation {
   bool advance(std::uint64_t steps) noexcept;
   /// Takes all remaining steps and returns the result.
   SimulationResult run() noexcept;
-  /// Notifies no observer of further steps, and computes nothing that only observers read. The motion does not change.
+  /// Removes all observers. Later steps do not compute the ratios, springs, energies and found contacts that only
+  /// observers read. The motion does not change.
   void drop_observers() noexcept;
 
   const SimulationResult& result() const { return result_; }
@@ -176,7 +180,7 @@ class Simulation {
   bool ratio_wanted_ = false;
   bool springs_wanted_ = false;
   bool energy_wanted_ = false;
-  /// Copy of the contacts before any point stage; null unless an observer reads them.
+  /// Copy of the contacts before point stages merge or drop any of them; null unless an observer reads them.
   std::unique_ptr<ContactBuffer> found_;
   bool position_is_free_ = false;
   bool tool_rolls_ = false;                        ///< true if the tool is not a solid of revolution, so that its pose

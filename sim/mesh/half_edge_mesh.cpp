@@ -53,8 +53,8 @@ struct Hinge {
 };
 
 constexpr std::uint32_t kNone = 0xffffffffu;
-/// Maximum number of outermost parts whose boxes are tested for enclosing another part. Without it a mesh with a
-/// million small parts would take minutes.
+/// Maximum number of outermost parts whose boxes are tested for enclosing another part. Without this limit, a mesh with
+/// a million small parts would take minutes.
 constexpr std::size_t kMaxEnclosingParts = 1000;
 
 /// Returns for each triangle and corner the index of the hinge at the edge from this corner; kNone if there is
@@ -79,8 +79,8 @@ struct Shape {
   bool holds(const Shape& other) const {
     return (other.box.min.array() >= box.min.array()).all() && (other.box.max.array() <= box.max.array()).all();
   }
-  /// The threshold is larger than the rounding error, so that two sheets back to back, which enclose no volume, are
-  /// not inside out.
+  /// The threshold is larger than the rounding error. Two sheets back to back, which enclose no volume, therefore do
+  /// not count as inside out.
   bool is_inside_out() const { return volume < -1e-12 * size() * size() * size(); }
   /// The threshold is a thickness of a millionth of the size. The two sides of a plane quadrilateral, divided along
   /// different diagonals, can enclose this volume if coordinates have six or seven digits.
@@ -90,8 +90,8 @@ struct Shape {
 /// Connected parts of a surface, and the triangles to reverse so that each part is wound consistently.
 class MeshParts {
  public:
-  /// Finds the parts, and reverses triangles until all neighbours agree with the first triangle of their part.
-  /// O(triangles).
+  /// Finds the parts, and marks the triangles to reverse so that all neighbours agree with the first triangle of their
+  /// part. O(triangles).
   MeshParts(std::size_t triangles, const std::vector<Hinge>& hinges)
       : hinges_(hinges), part_(triangles, kNone), reversed_(triangles, false) {
     const auto at = hinges_at_triangles(triangles, hinges);
@@ -140,7 +140,7 @@ class MeshParts {
   /// Returns the number of reversed parts. Only the kMaxEnclosingParts largest parts are tested for enclosing other
   /// parts.
   std::size_t orient_outwards(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles) {
-    // Bounding box and volume of each part.
+    // Compute the bounding box and the volume of each part.
     shapes_.assign(count(), Shape{});
     std::vector<Shape>& shapes = shapes_;
     for (std::size_t t = 0; t < part_.size(); ++t) {
@@ -270,7 +270,7 @@ Copies copies_in(const std::vector<Triangle>& triangles, const std::vector<Trian
   std::vector<TriangleSide> same;
   for_each_edge(sides, [&](std::span<const TriangleSide> edge) {
     if (edge.size() < 2 || (edge.size() == 2 && third(edge[0]) != third(edge[1]))) return;
-    // Compare the triangles at the edge between their two lowest vertices, so that they are found once.
+    // Compare the triangles only at the edge between their two lowest vertices, so that each copy is found once.
     same.assign(edge.begin(), edge.end());
     std::erase_if(same, [&](const TriangleSide& side) { return third(side) < side.high; });
     std::ranges::stable_sort(same, {}, third);
@@ -309,7 +309,7 @@ std::vector<bool> drop_copies(std::vector<Triangle>& triangles, std::vector<Tria
   return copies.has_opposite;
 }
 
-/// Returns the pairs of triangles at edges that have two. Adds the midpoints of all other edges to the findings.
+/// Returns the two triangles of every edge that has exactly two. Adds the midpoints of all other edges to the findings.
 std::vector<Hinge> hinges_of(const std::vector<TriangleSide>& sides, const std::vector<Vec3>& vertices,
                              MeshFindings& found) {
   std::vector<Hinge> hinges;
@@ -331,7 +331,7 @@ class Fans {
  public:
   explicit Fans(std::size_t triangles) : parent_(3 * triangles) { std::iota(parent_.begin(), parent_.end(), 0u); }
 
-  /// Returns the representative corner of the vertex, and shortens the path to it.
+  /// Returns the representative corner of the vertex to which `corner` belongs, and shortens the path to it.
   std::uint32_t root(std::uint32_t corner) {
     while (parent_[corner] != corner) corner = parent_[corner] = parent_[parent_[corner]];
     return corner;
@@ -434,7 +434,7 @@ void HalfEdgeMesh::split(OpenMesh::EdgeHandle edge, OpenMesh::VertexHandle middl
 }
 
 std::vector<SurfacePoint> vertices_with_normals(const HalfEdgeMesh& mesh) {
-  // Unit normals of the faces.
+  // Compute the unit normals of the faces.
   std::vector<Vec3> face_normals;
   face_normals.reserve(mesh.n_faces());
   for (const auto face : mesh.faces()) {
@@ -462,7 +462,7 @@ void refine(HalfEdgeMesh& mesh, double longest_edge) {
 }
 
 double refined_face_count(const HalfEdgeMesh& mesh, double longest_edge, double max_count) {
-  // Reject early by a lower bound from the area.
+  // Return early if a lower bound from the area already exceeds max_count.
   const double largest = longest_edge * longest_edge;
   double area = 0.0, count = 0.0;
   for (const auto face : mesh.faces()) area += mesh.calc_face_area(face);
@@ -503,7 +503,7 @@ std::vector<SurfacePoint> subsampled(const std::vector<SurfacePoint>& points, do
     const auto [entry, is_new] = nearest.try_emplace(key_of(cube, points[i].normal), here);
     if (!is_new) entry->second = std::min(entry->second, here);
   }
-  // Restore the order of the points.
+  // Keep the found points in their original order.
   std::vector<std::size_t> kept;
   for (const auto& [key, point] : nearest) kept.push_back(point.second);
   std::sort(kept.begin(), kept.end());
@@ -518,7 +518,7 @@ CheckedMesh mesh_from_triangles(const TriangleSoup& soup) {
     if (!soup.vertices[i].allFinite()) throw MeshError("vertex " + std::to_string(i) + " is not finite");
   }
   CheckedMesh result;
-  // Merge vertices.
+  // Merge vertices at equal positions, and omit degenerate triangles.
   std::vector<Triangle> triangles = welded_triangles(soup);
   if (triangles.empty()) throw MeshError("has no faces; allowed: at least one, with three different corners");
   result.findings.degenerate_triangles = soup.triangles.size() - triangles.size();

@@ -47,9 +47,9 @@ struct MeshComponent {
   /// triangles.
   bool is_closed = true;
   bool is_cavity = false;    ///< true if the component is closed, with normals towards its inside
-  bool is_reversed = false;  ///< true if the component is closed, and was inside out
-  bool is_flat = false;      ///< true if the component is closed, and encloses no volume: both sides of a sheet,
-                             ///< divided in different ways
+  bool is_reversed = false;  ///< true if the component is closed, and its winding was reversed
+  bool is_flat = false;  ///< true if the component is closed but encloses no volume, such as the two sides of a sheet
+                         ///< that are divided into different triangles
 
   double diameter() const { return box.size().norm(); }
 };
@@ -60,8 +60,9 @@ struct MeshFindings {
   std::size_t repeated_triangles = 0;    ///< triangles with the corners and the winding of an earlier triangle; omitted
   std::size_t opposite_triangles = 0;    ///< triangles with the corners of an earlier triangle, reversed; omitted
   bool is_double_sided = false;          ///< every triangle was present in both windings
-  std::size_t flipped_triangles = 0;     ///< triangles wound against the majority of their part; reversed
-  std::size_t inverted_parts = 0;        ///< closed parts whose normals pointed inwards; reversed
+  std::size_t flipped_triangles = 0;     ///< triangles wound against the majority of their connected part; reversed
+  std::size_t inverted_parts = 0;  ///< closed parts that were reversed, because their normals or the normals of the
+                                   ///< part around them pointed inwards
   /// Midpoints [m] of the edges with more than two triangles (non-manifold edges). The surface is cut along them.
   std::vector<Vec3> non_manifold_edges = {};
   /// Midpoints [m] of the edges with one triangle only, where the surface is open.

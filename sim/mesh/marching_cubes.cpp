@@ -22,7 +22,7 @@ int edge_between(int a, int b) {
 }
 
 /// Returns the corners of a face, counter-clockwise seen from outside. `side`: 0 for the face with the smaller
-/// coordinate along `axis`, 1 for the other.
+/// coordinate along `axis`, 1 for the opposite face.
 std::array<int, 4> face_corners(int axis, int side) {
   const int u = 1 << (axis + 1) % 3, v = 1 << (axis + 2) % 3, base = side << axis;
   return side == 1 ? std::array{base, base | u, base | u | v, base | v}
@@ -131,7 +131,7 @@ class GridLayer {
 
   std::size_t words() const { return words_; }
   std::uint64_t inside(std::size_t w, std::size_t j) const { return inside_[j * words_ + w]; }
-  /// Returns the bits inside(w, j) of the nodes that follow the nodes of word w along x.
+  /// Returns a word whose bit b is set if the node that follows node b of word w along line j is inside.
   std::uint64_t next_inside(std::size_t w, std::size_t j) const {
     return inside(w, j) >> 1u | (w + 1 < words_ ? inside(w + 1, j) << 63u : 0);
   }
@@ -303,14 +303,14 @@ class SlabBuilder {
   /// Adds the triangles of one cell, and their normals to their vertices.
   void add_cell(std::size_t i, std::size_t j, const CutCase& cut) {
     auto& [vertices, triangles, cells] = slab_.surface;
-    // Numbers of the vertices on the crossed edges.
+    // Determine the numbers of the vertices on the crossed edges.
     std::array<std::uint32_t, kEdgeNumbers> numbers{};
     for (const std::size_t edge : cut.edges) {
       const std::size_t corner = edge / 3;
       numbers[edge] = (corner < 4 ? low_ : high_).vertex(i + (corner & 1), j + (corner >> 1 & 1), edge % 3);
       if (options_.cells) cells.vertices.push_back(numbers[edge]);
     }
-    // Triangles, with their normals added to their vertices.
+    // Add the triangles, and add their normals to the normals of their vertices.
     for (const CubeTriangle& edges : cut.triangles) {
       const auto number = [&](std::size_t k) { return numbers[static_cast<std::size_t>(edges[k])]; };
       const std::array triangle{number(0), number(1), number(2)};

@@ -10,7 +10,7 @@
 
 namespace hapbench {
 
-/// Field whose iso surface marching cubes extracts.
+/// Scalar field whose iso surface marching_cubes() extracts.
 enum class Density {
   signed_distance,  ///< minus the signed distance [m], iso value 0
   binary            ///< 1 inside and 0 outside, iso value 0.5: the "raw density field" of thesis 2.1 taken literally
@@ -56,10 +56,10 @@ struct IsoSurfaceOptions {
 /// cells of the face.
 ///
 /// Evaluates the field only near the surface: skips a square of nodes in a layer if the distance at its middle shows
-/// that all its nodes are inside or all are outside. Time and memory are proportional to the area of the surface. Two
-/// parts are not: the memory for a few layers of the grid, and the time for a few operations for every 64 nodes. A
+/// that all its nodes are inside or all are outside. Time and memory are proportional to the area of the surface, with
+/// two exceptions: the memory for a few layers of the grid, and the time for a few operations for every 64 nodes. A
 /// vertex takes 48 bytes in the result. During the computation, a vertex takes 48 bytes in the growing array of its
-/// slab of the grid. Runs on oneTBB's threads; the result does not depend on their number.
+/// slab (a range of grid layers). Runs on oneTBB's threads; the result does not depend on their number.
 IsoSurface marching_cubes(const DensityField& field, IsoSurfaceOptions options = {});
 
 /// Returns the density field of the block for marching_cubes(). `spacing` of the grid [m]. Precondition: spacing >

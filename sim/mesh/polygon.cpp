@@ -10,11 +10,13 @@ namespace {
 
 /// Rounding error of coordinates in single precision, relative to the largest coordinate; with a margin.
 constexpr double kSingleRounding = 2.5e-7;
-/// Length that does not count, relative to the diameter of a polygon. Files often hold six or seven digits.
+/// Length that counts as zero, relative to the diameter of a polygon. Files often hold coordinates of six or seven
+/// digits.
 constexpr double kSmallLength = 1e-6;
-/// Area vector, relative to the square of the diameter, below which the plane of a polygon is not determined.
+/// Length of the area vector, relative to the square of the diameter, up to which the plane of a polygon is not
+/// determined.
 constexpr double kSmallArea = 1e-9;
-/// Doubled area of a triangle, relative to the square of the diameter, up to which its corners are on a line.
+/// Doubled area of a triangle, relative to the square of the diameter, up to which its corners count as collinear.
 constexpr double kFlat = 1e-12;
 /// Quality of a spike, whose neighbours are at the same position. Larger than the quality of every triangle, because an
 /// ear beside a spike may lie outside the polygon.
@@ -51,7 +53,7 @@ const DividedPolygon& PolygonDivider::divide(std::span<const Vec3> corners) {
 }
 
 bool PolygonDivider::project(std::span<const Vec3> corners) {
-  // Diameter of the polygon (of its bounding box), and the mean of the corners relative to the first corner.
+  // Compute the diameter of the polygon, defined as the diagonal of its bounding box.
   Box box = Box::nothing();
   double largest = 0.0;
   for (const Vec3& p : corners) {
@@ -63,7 +65,7 @@ bool PolygonDivider::project(std::span<const Vec3> corners) {
   if (diameter == 0.0) return false;
   rounding_ = kSmallLength + kSingleRounding * largest / diameter;
   const auto relative = [&](std::size_t i) { return Vec3((corners[i] - corners[0]) / diameter); };
-  // Area vector.
+  // Compute the area vector and the mean of the corners, relative to the first corner and in units of the diameter.
   Vec3 area = Vec3::Zero(), mean = Vec3::Zero();
   for (std::size_t i = 1; i < corners.size(); ++i) {
     if (i + 1 < corners.size()) area += relative(i).cross(relative(i + 1));
@@ -71,7 +73,8 @@ bool PolygonDivider::project(std::span<const Vec3> corners) {
   }
   const double size = area.norm();
   if (size <= kSmallArea) {
-    // Corners on a line have no plane. Otherwise parts of the polygon cancel each other.
+    // Determine whether all corners are on a line, which has no plane. Otherwise parts of the polygon with opposite
+    // winding cancel each other.
     Eigen::Index axis = 0;
     box.size().maxCoeff(&axis);
     const auto on_axis = [&](const Vec3& a, const Vec3& b) { return a[axis] < b[axis]; };
@@ -83,7 +86,7 @@ bool PolygonDivider::project(std::span<const Vec3> corners) {
     if (!is_line) throw PolygonError("crosses itself: its parts have opposite winding; allowed: a simple polygon");
     return false;
   }
-  // Axes of the plane, and the corners in this frame.
+  // Choose axes in the plane, and compute the coordinates of the corners along these axes.
   const Vec3 normal = area / size;
   const Vec3 x_axis = normal.unitOrthogonal(), y_axis = normal.cross(x_axis);
   for (std::size_t i = 0; i < corners.size(); ++i) {
@@ -94,8 +97,8 @@ bool PolygonDivider::project(std::span<const Vec3> corners) {
   return true;
 }
 
-/// Judges the fan by the directions from the first corner to the other corners. They must turn counter-clockwise only,
-/// and by less than a full turn in sum.
+/// Tests the fan by the directions from the first corner to the other corners. These directions must turn
+/// counter-clockwise only, and by less than a full turn in sum.
 PolygonDivider::Fan PolygonDivider::fan() const {
   const Point &first = points_[0], *start = nullptr, *last = nullptr;
   bool is_past_half = false, has_flat = false;
@@ -111,7 +114,7 @@ PolygonDivider::Fan PolygonDivider::fan() const {
       if (turn < -rounding_ || (turn <= 0.0 && dot < 0.0)) return Fan::invalid;
       if (from_start < -rounding_) is_past_half = true;
       if (is_past_half && from_start > rounding_) return Fan::invalid;
-      // A triangle is flat if its height over the longest side does not count.
+      // A triangle is flat if its height over the longest side is at most rounding_.
       const double longest =
           std::max({squared_distance(first, *last), squared_distance(first, p), squared_distance(*last, p)});
       if (turn <= rounding_ * std::sqrt(longest)) has_flat = true;
@@ -153,7 +156,7 @@ void PolygonDivider::refuse_crossings() const {
     edges.push_back({&a, &b, std::min(a.x, b.x), std::max(a.x, b.x), std::sqrt(squared_distance(a, b))});
   }
   std::ranges::stable_sort(edges, {}, &Edge::min_x);
-  // Returns true if the ends of the other edge are clearly on different sides.
+  // Returns true if the ends of `other` are clearly on different sides of `edge`.
   const auto separates = [this](const Edge& edge, const Edge& other) {
     const double one = doubled_area(*edge.from, *edge.to, *other.from);
     const double two = doubled_area(*edge.from, *edge.to, *other.to);
@@ -172,7 +175,8 @@ void PolygonDivider::refuse_crossings() const {
   if (!turns_once()) throw PolygonError("crosses itself: its boundary makes several turns; allowed: a simple polygon");
 }
 
-/// Returns true if the direction along the boundary makes one full turn in sum, or if rounding decides.
+/// Returns true if the direction along the boundary makes one full turn in sum. Also returns true if rounding would
+/// decide the result.
 bool PolygonDivider::turns_once() const {
   int turns = 0;
   for (std::size_t i = 0; i < points_.size(); ++i) {
@@ -181,7 +185,7 @@ bool PolygonDivider::turns_once() const {
     const double cross = ux * vy - uy * vx, dot = ux * vx + uy * vy;
     const double length = std::sqrt(ux * ux + uy * uy);
     if (length < rounding_ || (dot < 0.0 && std::abs(cross) <= rounding_ * length)) return true;
-    // Count the passes of the direction over the x axis.
+    // Count the turns: +1 if the direction crosses +x counter-clockwise, -1 if it crosses +x clockwise.
     if (uy < 0.0 && vy >= 0.0 && cross > 0.0) ++turns;
     if (uy >= 0.0 && vy < 0.0 && cross < 0.0) --turns;
   }
@@ -203,11 +207,11 @@ bool PolygonDivider::blocks(std::size_t j, const Point& a, const Point& b, const
   if (doubled_area(a, b, p) < 0.0 || doubled_area(b, c, p) < 0.0) return false;
   const double inside = doubled_area(c, a, p);
   if (inside >= 0.0) {
-    // Only reflex corners and corners on a line need a test.
+    // A corner in the ear blocks the ear only if the corner is reflex or collinear with its neighbours.
     if (is_same_position(p, a) || is_same_position(p, b) || is_same_position(p, c)) return false;
     return doubled_area_at(j) <= kFlat;
   }
-  // A corner on the new edge, except for rounding, would remain with a flat triangle.
+  // A corner that lies on the new edge up to rounding would later form a flat triangle with this edge.
   const double length2 = squared_distance(c, a), along = (p.x - c.x) * (a.x - c.x) + (p.y - c.y) * (a.y - c.y);
   return -inside <= rounding_ * std::sqrt(length2) && along > 0.0 && along < length2;
 }
@@ -248,7 +252,7 @@ void PolygonDivider::clip_ears() {
     }
     clip(*best > 0.0 ? static_cast<std::size_t>(best - qualities_.begin()) : flattest_corner());
   }
-  // Triangles without a reversed triangle cover a polygon that does not cross itself exactly once.
+  // If no triangle is reversed, the triangles cover the polygon exactly once, provided that it does not cross itself.
   if (doubled_area_at(1) < -rounding_) throw PolygonError("crosses itself; allowed: a simple polygon");
   clip(1);
 }

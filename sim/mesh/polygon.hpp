@@ -19,15 +19,15 @@ class PolygonError : public std::runtime_error {
 /// Maximum number of corners of a polygon that is not star-shaped from its first corner. The time to divide it grows
 /// with the square of this number.
 inline constexpr std::size_t kMaxPolygonCorners = 10'000;
-/// Largest distance of a corner from the plane of its polygon, relative to the diameter of the polygon. Polygons with
-/// a larger distance are refused.
+/// Largest allowed distance of a corner from the plane of its polygon, relative to the diameter of the polygon.
+/// Polygons with a larger distance are refused.
 inline constexpr double kMaxUnevenness = 0.1;
 
 /// Triangles of a polygon.
 struct DividedPolygon {
   std::vector<TriangleCorners> triangles;  ///< corners as indices into the polygon, in the winding of the polygon
   double unevenness = 0.0;           ///< largest distance of a corner from the plane, divided by the polygon's diameter
-  std::size_t repeated_corners = 0;  ///< corners that repeat a neighbour, or the tip of a spike without width; omitted
+  std::size_t repeated_corners = 0;  ///< omitted corners: repetitions of a neighbour, and tips of spikes without width
 };
 
 /// Divides polygons into triangles. One object serves many polygons and reuses its memory.
@@ -37,9 +37,9 @@ struct DividedPolygon {
 ///
 /// - as a fan around its first corner, if no triangle of the fan is reversed or flat. This includes all convex polygons
 /// without corners on a line, and polygons without area.
-/// - by ear clipping otherwise, the best-shaped ear first. O(n^2). A flat triangle would make an edge of the polygon
-/// the edge of three triangles, because the neighbour of the polygon has the same corners on this edge. A boundary that
-/// touches itself is allowed, such as the bridge between an outline and a hole.
+/// - by ear clipping otherwise, the best-shaped ear first. O(n^2). Flat triangles are avoided: if the corners a, b and
+/// c lie on a line, the edge from a to c would belong to the flat triangle and to a triangle on each of its sides. A
+/// boundary that touches itself is allowed, such as the bridge between an outline and a hole.
 ///
 /// Differences below the rounding error of single precision do not count. Throws PolygonError if the polygon crosses
 /// itself, is not planar (kMaxUnevenness), or has too many corners (kMaxPolygonCorners). Preconditions: at least 3
@@ -64,7 +64,9 @@ class PolygonDivider {
 
   /// Sets `points_`, `rounding_` and the unevenness. Returns false if all corners are on a line.
   bool project(std::span<const Vec3> corners);
-  /// Fan around the first corner: covers the polygon once, does so with triangles without area, or not at all.
+  /// Result of fan(), the test of the fan around the first corner. `good`: the fan covers the polygon once.
+  /// `has_flat_triangles`: it covers the polygon once, but some of its triangles have no area. `invalid`: it does not
+  /// cover the polygon once.
   enum class Fan { good, has_flat_triangles, invalid };
   Fan fan() const;
   void drop_repeated_corners();
@@ -73,9 +75,12 @@ class PolygonDivider {
   void clip_ears();
   /// Returns the shape quality of the ear at remaining corner `i`; 0 if there is no ear.
   double ear_quality(std::size_t i) const;
-  /// Returns true if remaining corner `j` forbids to clip the ear a, b, c: it is in the ear, or on its new edge c, a.
+  /// Returns true if the ear a, b, c cannot be clipped because remaining corner `j` lies in the ear, or on the ear's
+  /// new edge from c to a.
   bool blocks(std::size_t j, const Point& a, const Point& b, const Point& c) const;
-  /// Returns the remaining corner to clip if there is no ear because of rounding.
+  /// Returns the remaining corner to clip if rounding leaves no ear: the corner with the flattest triangle, or else the
+  /// corner with the largest triangle. Throws PolygonError if no corner has a flat triangle or a triangle with a
+  /// positive area.
   std::size_t flattest_corner() const;
   void clip(std::size_t i);
   std::size_t before(std::size_t i) const { return (i == 0 ? points_.size() : i) - 1; }
@@ -86,7 +91,7 @@ class PolygonDivider {
 
   std::vector<Point> points_;      ///< remaining corners
   std::vector<double> qualities_;  ///< shape qualities of the ears at the remaining corners; 0 if there is no ear
-  double rounding_ = 0.0;          ///< length that does not count, in units of the diameter
+  double rounding_ = 0.0;          ///< lengths up to this value count as zero, in units of the polygon's diameter
   DividedPolygon divided_;
 };
 

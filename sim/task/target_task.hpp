@@ -20,7 +20,8 @@ struct Gauge {
   double grace = 0.1;  ///< time for which the reading may stay below min_press_force without interrupting the hold [s]
 };
 
-/// The force that the task checks: f_render, the model reaction force, or f_spring.
+/// Force that the task checks. `rendered`: f_render, the model reaction force. `spring`: f_spring, the force of the
+/// penalty springs.
 enum class PressForce { rendered, spring };
 
 /// Effect on the time on the target (TargetRules::hold) if the force stays below min_press_force for longer than the
@@ -65,23 +66,23 @@ struct TargetResult {
   double time = 0.0;         ///< time from activation to the end [s]; the time limit if the target disappeared
 };
 
-/// The task of one trial. Targets appear one at a time in a pseudo-random order, equally often at each
-/// position. A target waits until the subject presses; the press activates the target and starts the time limit. The
-/// target is removed when the tip has stayed on it and pressed for the holding time. Dips of the force within the
-/// grace time do not count. A target that is never activated also disappears after the time limit, so that a trial
-/// always ends (our choice). Allocates in the constructor only.
+/// The task of one trial. Targets appear one at a time in a pseudo-random order, equally often at each position. A
+/// target waits until the subject presses; the press activates the target and starts the time limit. The target is
+/// removed when the tip has stayed on it and pressed for the holding time. Dips of the force within the grace time do
+/// not count. A target that is never activated also disappears after the time limit, so that a trial always ends; this
+/// rule is an assumption of this project. Allocates in the constructor only.
 class TargetTask {
  public:
-  /// Preconditions: at least one position, targets_per_place > 0. `seed` determines the order of the targets.
+  /// Preconditions: at least one position, targets_per_position > 0. `seed` determines the order of the targets.
   TargetTask(TargetRules rules, std::uint64_t seed);
 
-  /// Returns to the first target.
+  /// Resets the task to the first target.
   void reset() noexcept;
   /// Evaluates one sampling interval of `dt` [s], at whose end the tip is at `tip` [m]. `spring` and `rendered`
   /// are the components of f_spring and f_render along +z [N]. After the trial is finished, only the force
   /// readings are updated.
   void advance(const Vec3& tip, double spring, double rendered, double dt) noexcept;
-  /// Returns the reading of the gauge [N].
+  /// Returns the reading of the gauge [N]; without a gauge, the last sample of the rendered force.
   double reading() const noexcept { return reading_; }
 
   bool finished() const noexcept { return results_.size() == order_.size(); }
@@ -114,7 +115,7 @@ class TargetTask {
   bool active_ = false;
   double shown_ = 0.0;    ///< time since the target appeared or, once active, since its activation [s]
   double held_ = 0.0;     ///< uninterrupted time on the target [s]
-  double reading_ = 0.0;  ///< reading of the gauge [N]
+  double reading_ = 0.0;  ///< reading of the gauge, or the rendered force without a gauge [N]
   double checked_ = 0.0;  ///< force compared with min_press_force [N]
   double low_for_ = 0.0;  ///< time since `checked_` was last at least min_press_force [s]
 };

@@ -38,9 +38,10 @@ inline std::vector<ProfilePoint> closed_outline(std::vector<ProfilePoint> outlin
   return outline;
 }
 
-/// Eight points in the axial coordinates of the tool. x: position relative to the tip centre; s: component of x
-/// along the axis; rho = x - s * axis: radial vector. All lengths in m. The contact search and the depths of solids
-/// of revolution both use these numbers, so a colliding point never gets a negative depth.
+/// Eight points in the axial coordinates of the tool. (x, y, z) is the position relative to the tip centre, s its
+/// component along the axis, and (rho_x, rho_y, rho_z) the radial vector from the axis to the point. All lengths in m.
+/// The contact search and the depths of solids of revolution both use these numbers, so a colliding point never gets a
+/// negative depth.
 struct AxialPack {
   simd::Pack x, y, z;
   simd::Pack s;

@@ -82,10 +82,10 @@ struct GridNodes {
 /// Returns the winding number of the surface around each node: 0 outside and 1 inside a valid solid, convex or not.
 /// Other values occur where parts of the surface overlap or are inside out.
 ///
-/// The winding number is the sum of the signed intersections of the surface with any ray from the point. Here the
-/// rays run along z from below (vertical_crossing), so one sweep over each column of nodes suffices. Runs on
-/// oneTBB's threads; the result does not depend on their number. Cost: O(c + n) for n nodes, where c counts for each
-/// triangle the columns of nodes that it covers.
+/// The winding number is the sum of the signed intersections of the surface with any ray from the point. Here the rays
+/// run along z from below (vertical_crossing), so one sweep over each column of nodes suffices. Runs on oneTBB's
+/// threads; the result does not depend on their number. Cost: O(c + n) for n nodes, where c is the number of pairs of a
+/// triangle and a column of nodes that the triangle covers.
 std::vector<std::int8_t> winding_numbers(const ClosedSurface& surface, const GridNodes& nodes);
 
 }  // namespace hapbench

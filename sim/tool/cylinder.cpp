@@ -14,7 +14,8 @@ namespace {
 
 using simd::Mask, simd::Pack, simd::select;
 
-/// Largest |cosine| of the angle between a contact's normal and the axis at which the whole side line is extreme.
+/// Largest |cosine| of the angle between a contact's normal and the axis at which the side counts as parallel to the
+/// surface. All points of a line along the side are then extreme.
 constexpr double kAlongSide = 1e-9;
 
 Vec3 shortest_gradient(const Cylinder& tool, const ToolPose& pose, const ContactBuffer& contacts, std::size_t i) {

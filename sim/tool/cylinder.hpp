@@ -33,7 +33,7 @@ class Cylinder final : public ToolShape {
   void push_inside(const ToolPose& pose, const PointColumns& points, std::size_t packs,
                    ContactBuffer& contacts) const noexcept override;
   /// Marks the points in the cylinder that is enlarged by the margin. At the edges of a flat tip and of the bottom,
-  /// its points are up to sqrt(2) margin away from the tool.
+  /// marked points may be up to sqrt(2) times the margin away from the tool.
   void mark_near(const ToolPose& pose, double margin, const PointArrays& points, std::span<const PackRange> ranges,
                  std::uint8_t* marks) const noexcept override;
   Box box_near(const ToolPose& pose, double margin, const Box& bounds) const noexcept override;

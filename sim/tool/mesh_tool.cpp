@@ -213,7 +213,7 @@ Box turned(const Box& box, const Mat3& rotation, const Vec3& position) {
 constexpr double kUndefinedBelow = 1e-9;
 /// Smallest step along a ray, in grid spacings.
 constexpr double kMinStep = 0.125;
-/// Ten iterations of regula falsi usually shrink a bracket of some spacings to rounding.
+/// Maximum number of iterations of regula falsi. Ten iterations usually shrink a bracket of some spacings to rounding.
 constexpr int kMaxIterations = 40;
 
 /// The field at eight points anywhere, also outside of the grid; evaluated point by point.
@@ -363,9 +363,9 @@ Box MeshTool::box_near(const ToolPose& pose, double margin, const Box& bounds) c
 }
 
 ToolShape::Cover MeshTool::cover(double margin) const {
-  // With a, b and e as in mark_near (mesh_tool.hpp): the point of the grid closest to a marked point is within b +
-  // 3 e of the mesh, and a + b <= sqrt(2) margin.
-  // Divide the grown box along its longest side into equal slices, with one ball around each.
+  // With a and e as in mark_near (mesh_tool.hpp), and b the lower bound of the distance that mark_near computes: the
+  // point of the grid closest to a marked point is within b + 3 e of the mesh, and a + b <= sqrt(2) margin.
+  // Divide the grown box along its longest side into equal slices, with one ball around each slice.
   const Vec3 extent = grid_->box().size() + Vec3::Constant(3.0 * margin + 4.0 * grid_->error_bound());
   Eigen::Index longest = 0;
   const double length = extent.maxCoeff(&longest);
@@ -376,14 +376,14 @@ ToolShape::Cover MeshTool::cover(double margin) const {
 
 double MeshTool::displacement_bound(const ToolPose& from, const ToolPose& to) const noexcept {
   const double moved = (to.position - from.position).norm();
-  // In most steps the tool does not rotate.
+  // In most steps the tool does not rotate. All its points then move by the same displacement.
   if (to.axis == from.axis && to.roll == from.roll) return moved;
   return moved + (to.rotation() - from.rotation()).norm() / std::numbers::sqrt2 * reach();
 }
 
 std::vector<ProfilePoint> MeshTool::outline() const {
   const GridNodes& nodes = grid_->nodes();
-  // Largest distance from the axis in each layer of nodes.
+  // Find the largest distance from the axis in each layer of nodes.
   std::vector<double> widest(nodes.count[2], -1.0);
   for (std::size_t i = 0; i < nodes.count[0]; ++i) {
     for (std::size_t j = 0; j < nodes.count[1]; ++j) {
@@ -404,7 +404,7 @@ std::vector<ProfilePoint> MeshTool::outline() const {
 }
 
 ToolShape::Grown MeshTool::grown(double margin) const {
-  // A cylinder about the axis around the grown vertices.
+  // Compute a cylinder about the axis that contains the vertices, grown by the error bound and the margin.
   const double e = grid_->error_bound();
   double radius2 = 0.0;
   for (const Vec3& v : grid_->vertices()) radius2 = std::max(radius2, v.head<2>().squaredNorm());

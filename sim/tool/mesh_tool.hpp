@@ -28,7 +28,8 @@ class MeshTool final : public ToolShape {
   bool convex() const noexcept override { return grid_->convex(); }
   bool is_axisymmetric() const noexcept override { return false; }
   double surface_error() const noexcept override { return grid_->error_bound(); }
-  /// Computed from the nodes in the body and their depths; up to one grid spacing too narrow.
+  /// Computes the outline from the nodes in the body and their depths; the outline is up to one grid spacing too
+  /// narrow.
   std::vector<ProfilePoint> outline() const override;
 
   void push_inside(const ToolPose& pose, const PointColumns& points, std::size_t packs,
@@ -49,9 +50,9 @@ class MeshTool final : public ToolShape {
   double displacement_bound(const ToolPose& from, const ToolPose& to) const noexcept override;
   void shortest_depths(const ToolPose& pose, ContactBuffer& contacts) const noexcept override;
   void shortest_gradients(const ToolPose& pose, ContactBuffer& contacts) const noexcept override;
-  /// Marches along the ray and refines the last step by regula falsi. A step is too short to cross the surface (the
-  /// field changes by at most sqrt(3) times the step), unless this length is below an eighth of the grid spacing: then
-  /// the step is an eighth. Such a step may miss a gap that is thinner than the step.
+  /// Marches along the ray and refines the last step by regula falsi. The field changes by at most sqrt(3) times the
+  /// length of a step, so the steps are chosen too short to cross the surface. No step is shorter than an eighth of the
+  /// grid spacing. A step of this minimum length may cross the surface and miss a gap that is thinner than the step.
   void exit_distances(const ToolPose& pose, const ContactBuffer& contacts, double* exits) const noexcept override;
   /// For a concave body the constraints are the depths and gradients of the field.
   void surface_constraints(const ToolPose& pose, const Vec3& wanted, double slack,

@@ -10,7 +10,7 @@
 namespace hapbench {
 namespace {
 
-/// Returns the rotation about a unit axis by an angle, right-handed [rad].
+/// Returns the right-handed rotation about a unit axis by an angle [rad].
 Eigen::Quaterniond turn_about(const Vec3& axis, double angle) noexcept {
   const auto [sine, cosine] = math::sine_cosine(0.5 * angle);
   Eigen::Quaterniond q;
@@ -55,8 +55,8 @@ Segment segment_at(const Profile::Waypoints& w, double t) {
   return {last->second, next->second - last->second, duration, (t - last->first) / duration};
 }
 
-/// Unit vectors of the tilted tool: `up` is the reversed tool axis, and `side` is the lean direction, tilted with
-/// it.
+/// Unit vectors of the tilted tool: `up` is the reversed tool axis, and `side` is the lean direction after the same
+/// tilt.
 struct TiltedFrame {
   Vec3 up, side;
 };

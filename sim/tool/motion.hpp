@@ -54,8 +54,9 @@ inline Vec3 turn(const Vec3& a, const Vec3& b) noexcept {
 /// rotation about the new axis by the difference of the rolls. Exactly the identity if axes and rolls are equal.
 Mat3 turn_matrix(const ToolPose& from, const ToolPose& to) noexcept;
 
-/// Returns the rotation vector from one pose to another [rad]. If both rolls are 0, it is the shortest rotation
-/// between the axes, because the pose of a solid of revolution omits the roll, and no other rotation changes it.
+/// Returns the rotation vector from one pose to another [rad]. If both rolls are 0, the result is the shortest rotation
+/// between the axes: the pose of a solid of revolution omits the roll, and a rotation about the axis does not change
+/// such a pose.
 Vec3 turn(const ToolPose& from, const ToolPose& to) noexcept;
 
 /// Scalar function of time t [s]. Evaluation takes O(1), for n waypoints O(log n). The unit of the value depends on

@@ -16,9 +16,9 @@ namespace {
 
 using simd::Mask, simd::Pack, simd::select;
 
-/// Returns the points of `all` that lie in the section with s <= 0. s: axial coordinate; rho2: squared distance
-/// from the axis. Compares squared heights, because a square root costs as much as four lines. This function and
-/// the tests below are always inlined: as function calls, which pass packs through memory, they would make a
+/// Returns the points of `all` that lie in the section with s <= 0. s: axial coordinate; rho2: squared distance from
+/// the axis. Compares squared heights, because a square root costs as much as the tests of four lines. This function
+/// and the tests below are always inlined: as function calls, which pass packs through memory, they would make a
 /// simulation step with a bur 10 % slower.
 [[gnu::always_inline]] inline Mask in_section(const Meridian& meridian, const Mask& all, const Pack& s,
                                               const Pack& rho2) {
@@ -39,7 +39,7 @@ using simd::Mask, simd::Pack, simd::select;
   return in;
 }
 
-/// Test for points of a pack in the section of a body.
+/// Determines which points of a pack lie in the body, without the half ball of a round tip.
 struct InProfile {
   const Meridian& meridian;
   Pack low, high, widest2;
@@ -50,7 +50,7 @@ struct InProfile {
   }
 };
 
-/// Test for points of a pack in a body with a round tip.
+/// Determines which points of a pack lie in a body with a round tip.
 struct InProfileOrBall {
   InProfile in_profile;
   Pack ball2;
@@ -101,14 +101,14 @@ struct NearestPoint {
   return nearest;
 }
 
-/// Returns the distance to the closest point of the outline. nearest_place() is inlined, so its other results are
-/// not computed here.
+/// Returns the distance to the closest point of the outline. nearest_point() is inlined, so its other results are not
+/// computed here.
 Pack nearest_distance(const Meridian& meridian, const Pack& s, const Pack& rho) {
   return simd::sqrt(nearest_point(meridian, s, rho).distance2);
 }
 
-/// Ray x + d u in axial coordinates, with d the distance along it: s + d slope along the axis, and the vector rho +
-/// d u perpendicular to it.
+/// Ray in axial coordinates, where d is the distance along the ray. Its points have the coordinate s + d slope along
+/// the axis, and the radial vector rho + d u. The vectors rho and u are perpendicular to the axis.
 struct AxialRay {
   double s, slope;
   Vec3 rho, u;
@@ -134,7 +134,7 @@ struct AxialRay {
 /// computed without cancellation near the axis and the cone.
 struct ConeCrossing {
   double k, m, a, b, c, root;
-  bool meets;  ///< true if the ray meets the cone; not read for a ray from inside a convex cone, which always does
+  bool meets;  ///< true if the ray meets the cone; not read for a ray from inside a convex cone, which always meets it
 
   ConeCrossing(const HalfPlane& cone, const AxialRay& ray) : k(cone.offset - cone.ns * ray.s), m(cone.ns * ray.slope) {
     const double nr = cone.nr;
@@ -147,8 +147,8 @@ struct ConeCrossing {
   }
 };
 
-/// Returns the distance at which the ray leaves the half plane's cone. Precondition: the ray starts in the cone,
-/// and the cone is convex.
+/// Returns the distance at which the ray leaves the cone that the half plane describes. Precondition: the ray starts in
+/// the cone, and the cone is convex.
 double exit_of_convex(const HalfPlane& plane, const AxialRay& ray) {
   const double outwards = plane.ns * ray.slope + plane.nr * ray.u_length;  // rate of <n, (s, rho)> far along the ray
   if (outwards <= 0.0) return kNever;
@@ -204,7 +204,7 @@ double exit_through_ball(double radius, const Vec3& x, const Vec3& u, const Axia
   return there ? std::max(0.0, d) : kNever;
 }
 
-/// Returns the distance at which the ray from `point` along u first leaves the body.
+/// Returns the distance at which the ray from `point` along u first leaves the body; 0 if no exit is found.
 double exit_distance(const Meridian& meridian, const ToolPose& pose, const Vec3& point, const Vec3& u) {
   const Vec3 x = point - pose.position;
   const AxialRay ray(pose, x, u);
@@ -220,8 +220,8 @@ double exit_distance(const Meridian& meridian, const ToolPose& pose, const Vec3&
 /// every point of the segment is extreme.
 constexpr double kAlongLine = 1e-9;
 
-/// Returns the unit vector from the axis to the points, perpendicular to the axis however close the points are to
-/// it; `any` where `defined` is not set.
+/// Returns the unit vector from the axis to the points, perpendicular to the axis even if the points are close to the
+/// axis; `any` where `defined` is not set.
 PackVector away_from_axis(const AxialPack& q, const PackVector& axis, const Mask& defined, const PackVector& any) {
   const PackVector rho{q.rho_x, q.rho_y, q.rho_z};
   // Rounding of s gives a short radial vector a relatively large component along the axis; remove it.
@@ -307,7 +307,7 @@ void Revolved::shortest_gradients(const ToolPose& pose, ContactBuffer& contacts)
     const AxialPack q(pose, &contacts.x[i], &contacts.y[i], &contacts.z[i]);
     const Pack rho = simd::sqrt(q.rho2);
     const NearestPoint nearest = nearest_point(meridian_, q.s, rho);
-    // Unit vector to the closest point, from the half plane to the world frame.
+    // Transform the unit vector to the closest point from the half plane to the world frame.
     const Pack scale = one / simd::sqrt(nearest.vs * nearest.vs + nearest.vr * nearest.vr);
     const Pack vs = nearest.vs * scale, vr = nearest.vr * scale;
     const Mask on_axis = rho < undefined_rho;
@@ -351,11 +351,11 @@ void Revolved::surface_constraints(const ToolPose& pose, const Vec3& wanted, dou
     const Pack rho = simd::sqrt(q.rho2);
     const PackVector out = away_from_axis(q, axis, rho > on_axis, any);
     const Pack from_centre = simd::sqrt(q.distance2());
-    // Points inside the body.
+    // Determine which points lie inside the body.
     const Mask in_tip = q.s > zero && from_centre <= ball;
     const Mask inside = in_section(m, q.s >= low && q.s <= high, q.s, q.rho2) || in_tip;
 
-    // Signed distance and outward normal at the closest point of the outline.
+    // Compute the signed distance and the outward normal at the closest point of the outline.
     const NearestPoint nearest = nearest_point(m, q.s, rho);
     // Outside of the body, the vector to a corner is opposite to the normal.
     const Pack length = simd::sqrt(nearest.vs * nearest.vs + nearest.vr * nearest.vr);
@@ -456,7 +456,7 @@ ToolShape::Grown Revolved::grown(double margin) const {
 
   std::sort(corners.begin(), corners.end(),
             [](const ProfilePoint& a, const ProfilePoint& b) { return a.s < b.s || (a.s == b.s && a.rho < b.rho); });
-  // Upper convex hull of the corners.
+  // Compute the upper convex hull of the corners.
   std::vector<ProfilePoint> hull;
   for (const ProfilePoint& p : corners) {
     // Keep the widest point at each s.

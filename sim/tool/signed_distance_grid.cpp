@@ -77,7 +77,7 @@ constexpr double kMaxThinFraction = 0.1;
 /// Largest distance, in spacings, of a vertex in front of the plane of a triangle of a convex body. It is larger
 /// than the rounding of mesh files in single precision.
 constexpr double kConvexWithin = 0.01;
-/// Largest difference between normals that count as equal.
+/// Step to which the components of unit normals are rounded. Normals with the same rounded components count as equal.
 constexpr double kSameNormal = 1e-6;
 /// Maximum number of flat faces. A flat tool slides on few faces, and the faces of a round tool need no special
 /// treatment.
@@ -118,7 +118,7 @@ Vec3 area_vector(const ClosedSurface& surface, const TriangleCorners& t) {
   return 0.5 * (b - a).cross(c - a);
 }
 
-/// Returns the vertices except those that have only coplanar triangles around them, because such a vertex is never
+/// Returns the vertices whose adjacent triangles are not all coplanar. A vertex with only coplanar triangles is never
 /// the only extreme point along a direction.
 std::vector<Vec3> corners_of(const ClosedSurface& surface) {
   // Sum the unit normals of the triangles at each vertex. The normals are parallel if the length of the sum equals the
@@ -246,10 +246,10 @@ double SignedDistanceGrid::suggested_spacing(std::span<const Vec3> vertices) {
 }
 
 void SignedDistanceGrid::fill(const ClosedSurface& surface, const TriangleTree& tree) {
-  // The winding numbers give the sign.
+  // Compute the winding numbers, which give the sign of the distance.
   const std::vector<std::int8_t> numbers = winding_numbers(surface, nodes_);
   check_winding(numbers, nodes_);
-  // Allocate one more number, because kernels read a row of three nodes as four numbers.
+  // Allocate one more number, because the SIMD loops read a row of three nodes as four numbers.
   values_.assign(nodes_.size() + 1, 0.0);
   // Compute the distances column by column, eight nodes at a time.
   parallel_for(std::size_t{0}, nodes_.count[0] * nodes_.count[1], [&](std::size_t column) {

@@ -94,7 +94,7 @@ class SignedDistanceGrid {
   /// Vertices of the mesh [m], without duplicates.
   std::span<const Vec3> vertices() const noexcept { return vertices_; }
 
-  // For kernels (sim/tool/mesh_tool.cpp).
+  // Raw arrays for the SIMD loops in sim/tool/mesh_tool.cpp.
 
   const GridNodes& nodes() const noexcept { return nodes_; }
   const double* values() const noexcept { return values_.data(); }  ///< phi of each node [m], and one padding number

@@ -36,9 +36,9 @@ struct PackRange {
   }
 };
 
-/// Cosine of the largest angle, 6 degrees, between a tool's flat face and a surface at which the face counts as
-/// flush with the surface. The normals of shells are wrong by a few degrees. A face with a larger angle would stop
-/// the edge of the face above the surface too early.
+/// Cosine of the largest angle, 6 degrees, between a tool's flat face and a surface at which the face counts as flush
+/// with the surface. The normals of shells are wrong by a few degrees. If faces at larger angles counted as flush, they
+/// would stop the edge of the face above the surface too early.
 inline constexpr double kFlush = 0.9945;
 
 /// Shape of the tool: the geometry that contact search, depth models, the proxy and metrics need. Code outside of the

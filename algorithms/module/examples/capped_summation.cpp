@@ -1,5 +1,5 @@
-/* A force law in C++ with hapbench's library: the sum of all springs, scaled down if it is too stiff. Build from this
- * folder, with hapbench installed in /usr (elsewhere: -IPREFIX/include/hapbench and -LPREFIX/lib):
+/* A force law in C++ with hapbench's library: the sum of all springs, scaled down if its stiffness exceeds a limit.
+ * Build from this folder, with hapbench installed in /usr (elsewhere: -IPREFIX/include/hapbench and -LPREFIX/lib):
  *
  *     g++ -std=c++20 -O2 -fPIC -shared -ffp-contract=off -DEIGEN_DONT_VECTORIZE -I/usr/include/hapbench \
  *         -I/usr/include/eigen3 capped_summation.cpp -lhapbench_algorithms -lhapbench_sim -o capped_summation.so

@@ -15,7 +15,7 @@
 #include <time.h>
 
 #define PERIOD_NS 1000000u
-#define RING 4096u /* calls that the writer may lag behind; a power of 2 */
+#define RING 4096u /* number of calls that the writer may lag behind; a power of 2 */
 
 static uint64_t now_ns(void) {
   struct timespec t;
@@ -30,9 +30,9 @@ static int device_open(void) { /* vendor: open, initialise, enable forces; retur
   return 0;
 }
 static void device_read(HapbenchInput* input) {
-  /* vendor: position [m] and orientation of the handle. Impedance device: linear velocity if it has one; without it,
-   * leave out HAPBENCH_VELOCITY and give the scenario a device.velocity_filter. Admittance device: the force sensor,
-   * without the handle's weight, as hand_force with HAPBENCH_HAND_FORCE. */
+  /* vendor: position [m] and orientation of the handle. Impedance device: linear velocity if the device measures it;
+   * otherwise leave out HAPBENCH_VELOCITY and give the scenario a device.velocity_filter. Admittance device: the force
+   * sensor, without the handle's weight, as hand_force with HAPBENCH_HAND_FORCE. */
   const double z = 0.0055 - 0.0015 * (1.0 - cos(2.0 * stand_in_time)), rate = -0.003 * sin(2.0 * stand_in_time);
   stand_in_time += 1e-9 * PERIOD_NS;
   input->handle = (HapbenchPose3){{0.0, 0.0, z}, {1.0, 0.0, 0.0, 0.0}};

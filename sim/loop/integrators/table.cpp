@@ -33,10 +33,10 @@ double leapfrog_margin(const SpringDamper& s) {
 /// drift over the whole step, and a half kick with the force at the new position and the velocity after the
 /// first half kick. Damping therefore uses a velocity that is half a step old.
 ///
-/// Stability on one spring-damper, with k = K dt^2 / M, b = B dt / M and c = 1 - b/2: b < 4 and k (1 + c) < 4
-/// (1 + c^2). For B = 0 this is k < 4, as with leapfrog. For K = 0 it is b < 4, twice the limit of leapfrog.
-/// Symplectic on undamped springs: the energy oscillates about its value by up to the fraction k/4 and does not
-/// drift. Needs two forces in each step, because the next step needs the force at the final velocity.
+/// Stability on one spring-damper, with k = K dt^2 / M, b = B dt / M and c = 1 - b/2: b < 4 and k (1 + c) < 4 (1 +
+/// c^2). For B = 0 the condition is k < 4, as for leapfrog. For K = 0 the condition is b < 4, twice the limit of
+/// leapfrog. Symplectic on undamped springs: the energy oscillates about its value by up to the fraction k/4 and does
+/// not drift. Needs two forces in each step, because the next step needs the force at the final velocity.
 void velocity_verlet(ToolState& tool, const Vec3& force, double mass, double dt, ForceField& field, double) noexcept {
   const Vec3 half = tool.velocity + force / mass * (0.5 * dt);
   tool.pose.position += half * dt;
@@ -62,9 +62,9 @@ std::pair<Vec3, Vec3> runge_kutta(const Vec3& p, const Vec3& v1, const Vec3& for
   return {p + (v1 + 2.0 * v2 + 2.0 * v3 + v4) * (h / 6.0), v1 + (a1 + 2.0 * a2 + 2.0 * a3 + a4) * (h / 6.0)};
 }
 
-/// The classical Runge-Kutta method of order 4, which evaluates the force at t, t + dt/2 and t + dt with the
-/// tool axis of that time. Reference for smooth
-/// forces. Contacts that begin or end within a step reduce its order to 1, and so does the held force f_in.
+/// The classical Runge-Kutta method of order 4, which evaluates the force at t, t + dt/2 and t + dt with the tool axis
+/// of that time. Reference for smooth forces. Contacts that begin or end within a step reduce its order to 1, and so
+/// does the held force f_in.
 ///
 /// Stable on an undamped spring while K dt^2 / M < 8. Each step then loses the fraction (K dt^2 / M)^3 / 72 of
 /// the energy.
@@ -128,7 +128,8 @@ Vec3 velocity_change(const Mat3& resistance, const Vec3& impulse, double mass) n
   const Mat3 A = Mat3::Identity() + resistance / mass;
   const Vec3 explicit_change = impulse / mass;
   if (!A.allFinite()) return explicit_change;
-  // Usually all eigenvalues are at least 1 up to rounding, because the forces resist motion.
+  // Solve directly if all eigenvalues of A exceed 0.5. Usually they are at least 1 up to rounding, because the forces
+  // resist motion.
   if (Eigen::LLT<Mat3>(A - 0.5 * Mat3::Identity()).info() == Eigen::Success) return A.llt().solve(explicit_change);
   // Otherwise replace eigenvalues below 1 by 1, which treats these directions explicitly.
   const Eigen::SelfAdjointEigenSolver<Mat3> modes(A);

@@ -15,9 +15,9 @@ namespace hapbench {
 class ForceField {
  public:
   virtual ~ForceField() = default;
-  /// Returns f_in + f_render [N] at the time t_k + fraction dt, 0 < fraction <= 1, with the tip at `position` [m] and
-  /// `velocity` [m/s]. The scripted motion gives the tool's axis at this time. f_in is constant over the step. Costs a
-  /// contact search and a force computation.
+  /// Returns the input force plus the rendered force, f_in + f_render [N], at the time t_k + fraction dt, 0 < fraction
+  /// <= 1, with the tip at `position` [m] and `velocity` [m/s]. The scripted motion gives the tool's axis at this time.
+  /// f_in is constant over the step. Costs a contact search and a force computation.
   virtual Vec3 force_at(double fraction, const Vec3& position, const Vec3& velocity) noexcept = 0;
   /// Returns a hash of the set of contacts that were rendered in the last call of force_at, or at the start of the
   /// step if force_at has not been called in this step. Equal sets have equal hashes. Costs about a nanosecond for
@@ -32,9 +32,9 @@ inline constexpr double kEventTolerance = 1e-9;
 
 struct SpringDamper;
 
-/// An integrator: computes motion from forces. The functions in table.cpp document stability and energy. The theory
-/// functions apply to one spring-damper. A theory function is null if the integrator has no closed form; callers then
-/// evaluate steps of the integrator instead.
+/// An integrator: moves the tool under the forces of a step. The functions in table.cpp document stability and energy.
+/// The pointers step_matrix and stability_margin describe a step for one spring-damper (SpringDamper). They are null if
+/// the integrator has no closed form; callers then evaluate steps of the integrator instead.
 struct IntegratorEntry {
   ModelInfo info;
   /// Takes one step of dt [s]: moves position and velocity of the tool of `mass` [kg]. `force` [N] is the force at the
@@ -46,7 +46,7 @@ struct IntegratorEntry {
   /// True if the force at the start of the step acts unchanged over the step (M dv = f dt). The work of the force in
   /// the step then depends on this force only.
   bool holds_force = false;
-  /// Returns the matrix A of one step, (x, v) -> A (x, v).
+  /// Returns the matrix A of one step, (x, v) -> A (x, v), with position x and velocity v.
   Eigen::Matrix2d (*step_matrix)(const SpringDamper&) = nullptr;
   /// Returns a margin that is positive if and only if a step is stable. Leapfrog: 4 - 2 lambda B dt / M -
   /// lambda K dt^2 / M.
@@ -94,7 +94,7 @@ struct SpringDamper {
   /// Returns the matrix of one step, (x, v) -> A (x, v), from the integrator's closed form. Without a closed
   /// form, the columns are the results of steps from (1, 0) and (0, 1).
   Eigen::Matrix2d step_matrix() const;
-  /// Returns the change of (x, v) in one step for each newton of a force that is held over the step.
+  /// Returns (x, v) after one step from rest at x = 0, under a force of 1 N that is held over the step.
   Eigen::Vector2d input_step() const;
   /// Returns true if no eigenvalue of the step matrix lies outside the unit circle by more than rounding. Uses
   /// trace and determinant, because computed eigenvalues near -1 have an error of the square root of rounding.
