@@ -55,7 +55,7 @@ AtomicFile::AtomicFile(fs::path target)
     }
   } while (!refers_to(temporary_, descriptor));
   std::setvbuf(file_.get(), buffer_.get(), _IOFBF, kBufferSize);
-  if (::ftruncate(descriptor, 0) != 0) error_ = last_error();  // removes the bytes of a killed process
+  if (::ftruncate(descriptor, 0) != 0) error_ = last_error();  // removes the bytes that a killed process wrote
 }
 
 AtomicFile::~AtomicFile() {
@@ -108,7 +108,8 @@ void FileSet::commit() {
     if (::unlink(name.c_str()) != 0 && errno != ENOENT && errno != ENOTDIR) throw IoError("remove", name, last_error());
   }
   for (AtomicFile& file : files_) file.rename();
-  for (const fs::path& name : removed_) ::unlink(temporary_of(name).c_str());  // a killed process may have left it
+  // Remove temporary files that a killed process may have left.
+  for (const fs::path& name : removed_) ::unlink(temporary_of(name).c_str());
 }
 
 void write_file_atomically(const fs::path& target, std::string_view contents) {

@@ -21,10 +21,10 @@ class IoError : public std::runtime_error {
 
 class FileSet;
 
-/// A file that appears under its final name either complete or not at all. Bytes go to a hidden temporary file in
-/// the same directory, .NAME.tmp, which `commit` renames. The temporary file is locked (flock) while it is open, so
-/// a second writer gets an error. The next writer overwrites a temporary file that a killed process left. Not safe
-/// against a power failure: fsync would cost milliseconds for each of the thousands of files of a sweep, whose rows
+/// A file that appears under its final name either complete or not at all. Bytes go to a hidden temporary file in the
+/// same directory, .NAME.tmp, which `commit` renames. The temporary file is locked (flock) while it is open, so a
+/// second writer gets an error. The next writer overwrites a temporary file that a killed process left. Not safe
+/// against a power failure: fsync would cost milliseconds for each of the thousands of files of a sweep, and a sweep
 /// can be computed again.
 class AtomicFile {
  public:
@@ -40,9 +40,9 @@ class AtomicFile {
   /// error.
   void append(std::string_view bytes) noexcept;
 
-  /// Completes the file and renames it, which replaces an existing target. With `together`, hands the file over to
-  /// this set instead; FileSet::commit then completes and renames it. Throws IoError with the first error so far
-  /// (such as a full disk) and removes the temporary file in this case. Call once, last.
+  /// Completes the file and renames it, which replaces an existing target. If an earlier write failed (such as on a
+  /// full disk), removes the temporary file and throws IoError with the first error. If `together` is not null, only
+  /// moves the file to this set, and FileSet::commit completes and renames it. Call once, after the last `append`.
   void commit(FileSet* together = nullptr);
 
  private:
@@ -50,7 +50,7 @@ class AtomicFile {
 
   /// Writes the buffered bytes, so that only the renaming can still fail. Throws IoError like `commit`.
   void complete();
-  /// If there was an error, removes the temporary file and throws the first error.
+  /// Removes the temporary file and throws the first error. Does nothing if there was no error.
   void throw_error();
   void rename();
   void discard() noexcept;
@@ -76,8 +76,8 @@ class FileSet {
   }
   /// Marks an existing file for removal in `commit`: after all files are complete and before the first is renamed.
   void remove(std::filesystem::path file) { removed_.push_back(std::move(file)); }
-  /// Completes all files, removes the marked files and renames the files in the order in which they were added.
-  /// Throws IoError. Call once, last.
+  /// Completes all files, removes the marked files and renames the files in the order in which they were added. Throws
+  /// IoError. Call once, after the last file was added.
   void commit();
 
  private:

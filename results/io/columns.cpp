@@ -20,14 +20,15 @@ void write_plain(std::string& out, const ordered_json& value) {
   }
 }
 
-/// Appends a value that starts at a column of `indent` spaces.
+/// Appends a value. `indent`: number of spaces in front of the line on which the value starts.
 void write(std::string& out, const ordered_json& value, std::size_t indent) {
   if (!value.is_structured() || value.empty()) return write_plain(out, value);
   const bool is_object = value.is_object();
   const auto is_plain = [](const ordered_json& item) { return item.is_primitive(); };
   const bool one_line = !is_object && std::all_of(value.begin(), value.end(), is_plain);
   const std::string end_of_line = one_line ? "" : "\n" + std::string(indent, ' ');
-  // Write the items, separated by commas, with line breaks unless it is an array of plain values.
+  // Write the items of the object or array, separated by commas. Each item gets a line, except in an array of plain
+  // values.
   out += is_object ? '{' : '[';
   const char* separator = "";
   for (const auto& [key, item] : value.items()) {

@@ -33,7 +33,7 @@ class NumberText {
   operator std::string_view() const noexcept { return {text_.data(), size_}; }  // NOLINT: implicit on purpose
 
  private:
-  std::array<char, 32> text_{};  // the longest shortest double has 24 characters, an integer of 64 bits 20
+  std::array<char, 32> text_{};  // a double has at most 24 characters, a 64-bit integer at most 20
   std::size_t size_ = 0;
 };
 
@@ -62,7 +62,7 @@ inline std::string header_of(std::span<const Column> columns) {
   return header;
 }
 
-/// First columns of most tables that have a line per recorded row.
+/// First two columns of most tables that have one line for each recorded time step.
 inline constexpr Column kStepColumn = {"step", "1", "row number k, from 0"};
 inline constexpr Column kTimeColumn = {"time_s", "s", "time of the row, k times the time step"};
 
@@ -88,8 +88,8 @@ nlohmann::ordered_json cell_json(const Cell& cell);
 /// Returns the text of a cell in a CSV file before quoting (see csv_cell); an empty string for an empty cell.
 std::string cell_text(const Cell& cell);
 
-/// Direction in which a metric improves, all else equal. Metrics such as a position, a count or a work have no such
-/// direction.
+/// Direction in which a metric improves if all other metrics stay equal: `less` means that a smaller value is better.
+/// Metrics such as a position, a count or a work have the value `none`.
 enum class Better { none, less, more };
 
 /// A named number that describes a run.
@@ -99,15 +99,15 @@ struct Metric {
   const char* meaning;  ///< definition and computation; ||.|| is the Euclidean norm, f is f_render
   Cell value;           ///< a count or a number; empty if it does not exist (such as a ratio without contact)
   Better better = Better::none;
-  double relative = 0.0, absolute = 0.0;  ///< parts of the tolerance; see `within`
+  double relative = 0.0, absolute = 0.0;  ///< arguments of `within`, which define the tolerance
   bool bounded = false;                   ///< true if `within` has set a tolerance
-  /// True if the metric is the state at a fixed time, or a sum or mean over a fixed time. False if it is an extreme, a
-  /// percentile or a count, or if it depends on when contacts begin or end. Such metrics do not vary smoothly with the
-  /// time step.
+  /// True if the metric varies smoothly with the time step: a quantity at a fixed time, or a sum or mean over a fixed
+  /// interval of time. False if the metric is an extreme, a percentile or a count, or depends on the times at which
+  /// contacts begin or end.
   bool smooth = false;
   bool either_sign = false;  ///< true if the value can be negative
   /// If only every n-th step counts (TimeFields::stride): estimated range of the value over all n choices of the first
-  /// counted step [unit of the value]. 0 if every step counts, and without a value.
+  /// counted step [unit of the value]. 0 if every step counts, or if the metric has no value.
   double sampling_spread = 0.0;
 
   /// Marks a metric as `smooth`.
@@ -145,7 +145,7 @@ Cell metric_value(const std::optional<Given>& given) {
   return given ? metric_value(*given) : Cell();
 }
 
-/// Returns `value` if it exists, otherwise nothing.
+/// Returns `value` if `exists` is true, otherwise nothing.
 template <class Value>
 std::optional<Value> if_any(bool exists, Value value) {
   return exists ? std::optional(value) : std::nullopt;

@@ -8,7 +8,7 @@ MemoryTable::~MemoryTable() {
   if (data_ != nullptr) ::munmap(data_, capacity_ * sizeof(double));
 }
 
-/// Doubles the capacity if necessary. mremap moves pages within the address space without copying them.
+/// Doubles the capacity if `more` numbers do not fit. mremap moves pages within the address space without copying them.
 bool MemoryTable::reserve(std::size_t more) noexcept {
   if (size_ + more <= capacity_) return complete_;
   constexpr std::size_t kFirstNumbers = std::size_t{1} << 15;

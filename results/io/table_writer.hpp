@@ -20,7 +20,7 @@
 
 namespace hapbench {
 
-/// A range of several cells of a row; a text is one cell and not a range.
+/// A range whose elements are cells of a row. A text does not satisfy the concept, because a text is a single cell.
 template <class Values>
 concept CellRange = requires(const Values& values) {
   values.begin();
@@ -56,8 +56,8 @@ class CsvWriter {
     end_row();
   }
 
-  /// Gives the table its final name; with `together`, FileSet::commit of this set gives the name later. Throws
-  /// IoError, also for errors in earlier rows.
+  /// Completes the file and gives it its final name. If `together` is not null, FileSet::commit of this set does so
+  /// later. Throws IoError, also if an earlier row could not be written.
   void finish(FileSet* together = nullptr) { file_.commit(together); }
 
  private:
@@ -84,8 +84,8 @@ class CsvWriter {
   std::string row_;        ///< text of the current row so far
 };
 
-/// A table of numbers in memory, with the same rows as the CSV file; an empty cell is NaN. It grows by its own
-/// memory pages and not on the heap, so recording a step makes no heap allocation.
+/// A table of numbers in memory, with the same rows as the CSV file; an empty cell is NaN. The table allocates memory
+/// pages with mmap and not on the heap, so recording a step makes no heap allocation.
 class MemoryTable {
  public:
   explicit MemoryTable(std::vector<Column> columns) : columns_(std::move(columns)) {}
@@ -126,11 +126,12 @@ class MemoryTable {
   std::vector<Column> columns_;
   double* data_ = nullptr;
   std::size_t size_ = 0;      ///< count of numbers in the table
-  std::size_t capacity_ = 0;  ///< numbers that fit into the pages
+  std::size_t capacity_ = 0;  ///< count of numbers that fit into the allocated memory pages
   bool complete_ = true;      ///< true if no row was lost
 };
 
-/// Destination of a table of numbers: a CSV file, or a table in memory (never null, outlives the writer).
+/// Destination of a table of numbers: the path of a CSV file, or a table in memory. The pointer is never null, and the
+/// table outlives the writer.
 using TableTarget = std::variant<std::filesystem::path, MemoryTable*>;
 
 /// Writes a table of numbers, row by row. Allocates only in the constructor.

@@ -62,7 +62,7 @@ void HighPass::settle_at(const Vec3& value) noexcept {
 namespace {
 
 std::uint64_t rows_in(double time, double dt) noexcept {
-  // The bound exceeds every possible number of steps and fits into the integer.
+  // The bound 2^62 exceeds every possible number of steps, and fits into the integer.
   return static_cast<std::uint64_t>(std::min(std::round(time / dt), 0x1p62));
 }
 
@@ -105,7 +105,7 @@ void LastQuarterVibration::add(std::uint64_t step, const Vec3& velocity) noexcep
   const std::uint64_t quarter = step * 4 / steps_;
   if (quarter != std::exchange(quarter_, quarter)) vibration_.restart_count();
   vibration_.add(step, velocity);
-  // Keep the squares of the last quarter of any shorter run. The memory was reserved in the constructor.
+  // Keep enough squares for the last quarter of a run of any length. The constructor has reserved the memory.
   if (squares_.size() < squares_.capacity())
     squares_.push_back(vibration_.last_square());
   else
@@ -115,7 +115,7 @@ void LastQuarterVibration::add(std::uint64_t step, const Vec3& velocity) noexcep
 
 std::optional<double> LastQuarterVibration::of_trial() const noexcept {
   if (rows_ == steps_ || rows_ == 0) return vibration_.rms();
-  // The run ended early: sum over its own last quarter, the rows i with 4 i >= 3 rows_.
+  // Sum over the last quarter of the executed steps: the steps i with 4 i >= 3 rows_. The run may have ended early.
   const std::uint64_t from = (3 * rows_ + 3) / 4;
   double sum = 0.0;
   for (std::uint64_t i = from; i < rows_; ++i) sum += squares_[i % squares_.size()];
@@ -149,7 +149,8 @@ void ContactForces::begin() noexcept {
 
 ContactForces::Phase ContactForces::phase_of_next_row(bool in_contact) noexcept {
   if (in_contact) {
-    // Without a settling time, one step without contact is enough.
+    // A first touch follows the settling time without contact. If the settling time is 0, one step without contact is
+    // enough.
     const bool first_touch = rows_away_ >= settling_rows_ && (rows_away_ > 0 || !touched_);
     rows_away_ = 0;
     if (first_touch) {
@@ -236,7 +237,7 @@ void ContactForces::report(Section& s) const {
        "99th percentile (nearest rank) of the force step ||f_k - f_(k-1)|| from one time step to the next in settled "
        "contact; "
        "relative error at most 0.8 %; no value if settled_s < 1/30 s",
-       // The middle of a bin can exceed all numbers in it, so limit it to the maximum.
+       // A quantile is the middle of a bin and can exceed all numbers in this bin. Limit it to the largest force step.
        if_any(is_settled, std::min(steps_.quantile(0.99), std::sqrt(step_max_squared_))), Better::less)
       .within(MagnitudeHistogram::kRelativeError, MagnitudeHistogram::kSmallest);
   s.metric(

@@ -15,7 +15,8 @@ namespace hapbench {
 /// squares, because the caller computes norms as squares.
 class MagnitudeHistogram {
  public:
-  /// Largest relative error of a quantile between kLeast and kMost: half a bin width of sqrt(33 / 32) - 1 = 1.55 %.
+  /// Largest relative error of a quantile between kSmallest and kLargest: half of the relative bin width, which is
+  /// sqrt(33 / 32) - 1 = 1.55 %.
   static constexpr double kRelativeError = 0.0078;
   static constexpr double kSmallest = 0x1p-30;  ///< numbers below this value count as 0
   static constexpr double kLargest = 0x1p20;    ///< numbers from this value on count as infinite
@@ -23,15 +24,16 @@ class MagnitudeHistogram {
   /// Counts the number whose square is `square`. Precondition: square >= 0; at most 2^32 - 1 numbers in total.
   void add_square(double square) noexcept { ++counts_[bin_of(square)]; }
 
-  /// Returns the p-quantile by nearest rank: the smallest number that is not exceeded by at least the fraction p of
-  /// all numbers. Returns 0 without numbers. Precondition: 0 < p <= 1.
+  /// Returns the p-quantile by nearest rank: the smallest number x for which at least the fraction p of all numbers is
+  /// not larger than x. Returns 0 without numbers. Precondition: 0 < p <= 1.
   double quantile(double p) const noexcept;
 
  private:
   static constexpr int kDroppedBits = 52 - 5;
   static constexpr std::uint64_t kFirst = std::bit_cast<std::uint64_t>(kSmallest * kSmallest) >> kDroppedBits;
   static constexpr std::uint64_t kEnd = std::bit_cast<std::uint64_t>(kLargest * kLargest) >> kDroppedBits;
-  static constexpr std::size_t kBins = kEnd - kFirst + 2;  ///< including one bin for smaller and one for larger numbers
+  /// Number of bins, including one bin below kSmallest and one bin from kLargest on.
+  static constexpr std::size_t kBins = kEnd - kFirst + 2;
 
   static std::size_t bin_of(double square) noexcept {
     const std::uint64_t bits = std::bit_cast<std::uint64_t>(square) >> kDroppedBits;
@@ -68,8 +70,8 @@ class HighPass {
 /// and the sense of touch is most sensitive well above 30 Hz.
 inline constexpr double kVibrationCutoff = 30.0;
 
-/// Returns the high-pass filter at kVibrationCutoff for a sample each `dt` seconds; nothing at a sampling rate of
-/// 60 Hz or less.
+/// Returns the high-pass filter with the cutoff kVibrationCutoff for a signal that is sampled every `dt` seconds.
+/// Returns nothing at a sampling rate of 60 Hz or less.
 std::optional<HighPass> vibration_filter(double dt);
 
 /// Mean square of a signal after the high-pass filter at kVibrationCutoff.
@@ -77,8 +79,8 @@ class Vibration {
  public:
   /// `dt`: time step [s].
   explicit Vibration(double dt) : high_pass_(vibration_filter(dt)) {}
-  /// Adds step number `row` of a trial; row 0 sets the filter to the steady state of `signal`. If `counts` is
-  /// false, the sample is filtered but not added to the mean.
+  /// Adds the sample `signal` of step `row` of a trial. Step 0 sets the filter to the steady state of `signal`. If
+  /// `counts` is false, the sample is filtered but not added to the mean.
   void add(std::uint64_t row, const Vec3& signal, bool counts = true) noexcept;
   /// Returns the squared norm of the last sample after the filter; 0 at sampling rates of 60 Hz or less.
   double last_square() const noexcept { return last_square_; }
@@ -96,8 +98,9 @@ class Vibration {
   double last_square_ = 0.0;
 };
 
-/// Root mean square of the handle's velocity above kVibrationCutoff in the last quarter of a run [m/s]. Of a run that
-/// ends early, this is the last quarter of the steps that were made. Uses two bytes for each planned step.
+/// Measures the root mean square of the handle's velocity after the high-pass filter at kVibrationCutoff, in the last
+/// quarter of a run [m/s]. If a run ends early, the last quarter of the executed steps counts. Uses two bytes for each
+/// planned step.
 class LastQuarterVibration {
  public:
   /// The run has at most `steps` steps of `dt` seconds. Allocates here only.
@@ -107,16 +110,17 @@ class LastQuarterVibration {
   /// Begins the next trial of the run.
   void begin() noexcept;
   void add(std::uint64_t step, const Vec3& velocity) noexcept;
-  /// Returns the root mean square over the last quarter of the steps so far; the largest value if there were several
-  /// trials. Returns nothing at sampling rates of 60 Hz or less, and nothing without samples.
+  /// Returns the root mean square over the last quarter of the executed steps of a trial; the largest of these values
+  /// if there were several trials. Returns nothing at sampling rates of 60 Hz or less, and nothing without samples.
   std::optional<double> value() const noexcept;
 
  private:
   std::optional<double> of_trial() const noexcept;
 
   std::uint64_t steps_, quarter_ = 0;
-  std::uint64_t rows_ = 0;       ///< steps of this trial so far
-  std::vector<double> squares_;  ///< ring buffer of squared velocities, a quarter of the planned steps long
+  std::uint64_t rows_ = 0;  ///< steps of this trial so far
+  /// Ring buffer of the squared norms of the filtered velocity [m^2/s^2], for a quarter of the planned steps.
+  std::vector<double> squares_;
   Vibration vibration_;
   std::optional<double> of_earlier_trials_;
 };
@@ -128,7 +132,7 @@ class EvaluationWindow {
  public:
   /// The run has `steps` steps. `period`: period of the script [steps]; 0: it does not repeat.
   EvaluationWindow(std::uint64_t steps, double period) : steps_(steps), period_(period) {}
-  /// Reports contact in a step; only the first call has an effect.
+  /// Records that the tool is in contact in `step`. Only the first call has an effect.
   void touch(std::uint64_t step) noexcept;
   bool contain(std::uint64_t step) const noexcept { return begin_ && step >= *begin_; }
   /// First evaluated step; empty before the first touch.
@@ -141,8 +145,9 @@ class EvaluationWindow {
   std::optional<std::uint64_t> begin_;
 };
 
-/// Settled contact shorter than this has no metrics [s]: one period of the vibration cutoff. Without this minimum,
-/// a run that hammers on the surface and hardly settles would seem to vibrate least.
+/// If settled contact in a run lasts shorter than this [s], its metrics have no value. The limit is one period at
+/// kVibrationCutoff. Without this minimum, a run in which the tool repeatedly hits the surface and hardly settles would
+/// have the smallest vibration.
 inline constexpr double kMinSettledTime = 1.0 / kVibrationCutoff;
 
 /// Separates landings from settled contact, because the impact of a landing is similar under every algorithm. A
@@ -162,9 +167,9 @@ struct ForceChange {
   bool reverses = false;  ///< true if the inner product of f_k and f_(k-1) is negative
 };
 
-/// Classifies the steps of a run as landing, settled contact or away, and accumulates force statistics of each
-/// class. Constant memory; a few nanoseconds a step. The high-pass filter restarts at steady state after each
-/// landing, so that the impact does not make it ring.
+/// Classifies each step of a run as landing, settled contact or away (no contact), and accumulates force statistics of
+/// landings and of settled contact. Constant memory; a few nanoseconds a step. After each landing, the high-pass filter
+/// restarts in steady state, so that the impact does not make the filter ring.
 class ContactForces {
  public:
   enum class Phase { away, landing, settled };
@@ -190,21 +195,21 @@ class ContactForces {
   std::uint64_t settling_rows_;
   std::optional<std::uint64_t> settled_from_;  ///< the rule's `from` as a step number
   std::optional<HighPass> high_pass_;          ///< empty if the sampling rate is too low
-  bool filtering_ = false, touched_ = false;   ///< in this trial: true while the high-pass filter runs; true after the
-                                               ///< first contact
-  std::uint64_t row_ = 0, landing_end_ = 0;    ///< number of the next step; number of the first step after the last
-                                               ///< landing
-  std::uint64_t rows_away_;                    ///< steps since the last contact
+  /// filtering_: true while the high-pass filter runs. touched_: true after the first contact of this trial.
+  bool filtering_ = false, touched_ = false;
+  /// row_: number of the next step. landing_end_: number of the first step after the last landing.
+  std::uint64_t row_ = 0, landing_end_ = 0;
+  std::uint64_t rows_away_;  ///< steps since the last contact
 
   std::uint64_t landings_ = 0, landing_rows_ = 0, settled_rows_ = 0;
-  double landing_max_squared_ = 0.0, landing_step_max_squared_ = 0.0;  ///< during landings: largest ||f||^2 and largest
-                                                                       ///< ||f_k - f_(k-1)||^2 [N^2]
+  /// During landings: largest ||f||^2, and largest ||f_k - f_(k-1)||^2 [N^2].
+  double landing_max_squared_ = 0.0, landing_step_max_squared_ = 0.0;
   /// In settled contact: largest ||f||^2 and largest ||f_k - f_(k-1)||^2 [N^2].
   double max_squared_ = 0.0, step_max_squared_ = 0.0;
-  double sum_ = 0.0, above_cutoff_squares_ = 0.0;  ///< sums of ||f|| [N] and of ||f||^2 after the high-pass filter
-                                                   ///< [N^2]
-  MagnitudeHistogram steps_;                       ///< ||f_k - f_(k-1)||
-  std::uint64_t reversals_ = 0;                    ///< steps whose f_k has a negative inner product with f_(k-1)
+  /// In settled contact: sum of ||f|| [N], and sum of the squared norm of the high-pass filtered force [N^2].
+  double sum_ = 0.0, above_cutoff_squares_ = 0.0;
+  MagnitudeHistogram steps_;     ///< force steps ||f_k - f_(k-1)|| in settled contact [N]
+  std::uint64_t reversals_ = 0;  ///< steps whose f_k has a negative inner product with f_(k-1)
 };
 
 }  // namespace hapbench

@@ -78,9 +78,9 @@ class ContactAgeObserver final : public MetricObserver {
   std::vector<std::uint64_t> rows_of_age_;
 };
 
-/// Observes the lost torque (thesis Fig. 1), tau = sum r_i x f_i about the tip centre. f_i is the part of f_spring
-/// due to contact i (SpringState::moment), r_i the contact's position relative to the tip centre. A device with
-/// three degrees of freedom renders sum f_i but no torque. Constant memory, a nanosecond a step.
+/// Observes the lost torque (thesis Fig. 1), tau = sum r_i x f_i about the tip centre. f_i is the part of f_spring due
+/// to contact i (SpringState::moment), r_i the contact's position relative to the tip centre. A device with three
+/// degrees of freedom renders sum f_i but no torque. Constant memory; about 1 ns a step.
 class LostTorqueObserver final : public MetricObserver {
  public:
   void begin(const TrialParts&) override { *this = {}; }

@@ -34,7 +34,7 @@ void EnergyLedger::on_step(const StepRecord& record) noexcept {
   const auto& index = record.rendered->index;
   rendered_.assign(index.begin(), index.begin() + static_cast<std::ptrdiff_t>(record.rendered->size()));
   std::sort(rendered_.begin(), rendered_.end());
-  // Update the stored energies, and from the second step on the works.
+  // Update the kinetic and the stored energy. From the second step on, also add the works.
   balance_.kinetic = record.handle_moves_tool ? 0.0 : 0.5 * mass_ * record.tool.velocity.squaredNorm();
   balance_.stored = record.springs.energy;
   if (has_row_) {
@@ -93,7 +93,7 @@ void EnergyLedger::add_step(const StepRecord& now) noexcept {
     b.actuator += w.actuator;
   }
 
-  // Find the created energy, and keep the largest events.
+  // Compute the energy created in this step. Keep the step as an event if it is among the largest.
   const double created = created_in_step(now, w.spring);
   b.created += created;
   if (created > 0.0) created_sum_ += created;

@@ -33,14 +33,13 @@ namespace hapbench {
 struct EnergyBalance {
   double kinetic = 0.0, stored = 0.0;  ///< current energy of the virtual mass and of the penalty springs
   double input = 0.0, spring = 0.0;    ///< work of f_in and f_spring on the tool
-  /// Work of f_render - f_spring: damping, friction and the force limit. With angular damping, part of it may come
-  /// from the tool's rotation, which has no energy balance.
+  /// Work of f_render - f_spring: damping, friction and the force limit. With angular damping, part of this work may
+  /// come from the tool's rotation, which has no energy balance.
   double damping = 0.0;
   double rotation = 0.0;  ///< work that the tool's rotation does on the springs, against their torque; the device does
                           ///< not render this torque
-  /// Energy stored in the springs beyond the work done on them by translation and rotation (trapezoidal rule).
-  /// Contacts that appear, vanish or change their weight create it; it is zero for linear springs in lasting
-  /// contact.
+  /// Energy stored in the springs beyond the work done on them by translation and rotation (trapezoidal rule). Contacts
+  /// that appear, vanish or change their weight create this energy. It is zero for linear springs in permanent contact.
   double created = 0.0;
   /// Energy created by the integrator, or by the zero-order hold of a device's force. If the force is held over a
   /// step (leapfrog, or a device), it is the sum of two works: the work of f_spring on the tool (`spring`), and the
@@ -55,12 +54,14 @@ struct EnergyBalance {
 
 /// A step in which the rendered springs created energy.
 struct EnergyEvent {
-  std::uint64_t step = 0;                              ///< step in which the energy appeared
-  double time = 0.0;                                   ///< [s]
-  double created = 0.0;                                ///< [J], > 0
-  std::array<std::size_t, 2> colliding{}, rendered{};  ///< number of contacts in the previous step and in this step
-  std::size_t appeared = 0, vanished = 0;  ///< number of rendered contacts that exist only in this step; only in the
-                                           ///< step before
+  std::uint64_t step = 0;  ///< step in which the energy appeared
+  double time = 0.0;       ///< [s]
+  double created = 0.0;    ///< energy created in this step [J], > 0
+  /// Number of colliding and of rendered contacts. Entry 0: in the previous step; entry 1: in this step.
+  std::array<std::size_t, 2> colliding{}, rendered{};
+  /// appeared: number of rendered contacts that exist in this step but not in the previous step. vanished: number of
+  /// rendered contacts that exist in the previous step but not in this step.
+  std::size_t appeared = 0, vanished = 0;
 };
 
 /// Updates the energy balance in every step. Allocates only in the constructor and in `begin`; about 100 ns a step.
@@ -94,8 +95,8 @@ class EnergyLedger final : public MetricObserver {
     double spring = 0.0, damping = 0.0;
     double unexplained = 0.0;  ///< change of kinetic energy that these works do not explain: the integrator's error
   };
-  /// Returns the works of f_spring and f_render along `displacement` [m]; f_in and the hand's force are held
-  /// constant.
+  /// Returns the works of all forces along `displacement` [m]. `spring` is f_spring and `rendered` is f_render [N];
+  /// f_in and the hand's force have their values of the previous step.
   Works works(const Vec3& spring, const Vec3& rendered, const Vec3& displacement) const noexcept;
   Works works_until(const StepRecord& now) const noexcept;
   void add_step(const StepRecord& now) noexcept;
@@ -116,9 +117,9 @@ class EnergyLedger final : public MetricObserver {
   std::array<EnergyEvent, kEvents> events_{};  ///< largest first; unused entries have created = 0
 };
 
-/// Reports whether the rendering was passive: extremes of the observed energy E (sim/loop/observed_energy.hpp). Of
-/// several trials, it reports the trial that created the most energy; the first such trial if several created the
-/// same energy. Constant memory; about 100 ns a step with a moment and a turning tool, 4 ns without force.
+/// Reports whether the rendering was passive: extremes of the observed energy E (sim/loop/observed_energy.hpp). After
+/// several trials, reports the trial that created the most energy. If several trials created equal energy, reports the
+/// first of them. Constant memory; about 100 ns a step with a moment and a turning tool, 4 ns without force.
 class PassivityObserver final : public MetricObserver {
  public:
   /// `dt`: time step [s]; `position_is_free`: the motion is not prescribed. `begin` sets both.

@@ -32,7 +32,7 @@ namespace {
 /// Largest number of kept samples. It limits the correlation to about 1e8 products, so that computing the lag does
 /// not take longer than the run.
 constexpr std::uint64_t kMaxKept = 1u << 17;
-constexpr double kKeptInterval = 5e-4;  ///< shortest time between kept samples, approximately [s]
+constexpr double kKeptInterval = 5e-4;  ///< approximate shortest time between kept samples [s]
 
 /// Returns Pearson's correlation coefficient over all components of two signals of equal length; nothing if one of the
 /// signals does not vary.
@@ -60,9 +60,9 @@ struct Peak {
   bool inside = false;  ///< true if the maximum is not at an end of the range
 };
 
-/// Returns the peaks of the correlations at the shifts -m … m whose height is within kSamePeak of the highest peak.
-/// Two maxima count as separate peaks only if the correlation dips by kDip between them, so noise does not split a
-/// peak.
+/// Returns the peaks of the correlations at the shifts -m … m whose height is within kSamePeak of the highest peak. Two
+/// maxima count as separate peaks only if the correlation between them falls below the largest correlation minus kDip,
+/// so noise does not split a peak.
 std::vector<Peak> largest_peaks(const std::vector<double>& found) {
   constexpr double kDip = 0.1, kSamePeak = 0.01;
   const double threshold = std::ranges::max(found) - kDip;
@@ -150,7 +150,7 @@ void ForceFidelityObserver::on_step(const StepRecord& record) noexcept {
   error_ += error.squaredNorm();
   normal_ += along * along;
   tangential_ += (error - along * normal).squaredNorm();
-  // Sums for the least-squares friction coefficient.
+  // Add the step to the sums from which the friction coefficient is fitted by least squares.
   const double load = std::max(0.0, normal.dot(reference));
   loads_ += load * load;
   drag_ += load * (reference - load * normal).norm();
@@ -158,7 +158,7 @@ void ForceFidelityObserver::on_step(const StepRecord& record) noexcept {
   rendered_ += rendered_norm * rendered_norm;
   if (norm > kMinForce && rendered_norm > kMinForce) {
     ++direction_rows_;
-    // atan2, because near 0 the arc cosine would lose half of the digits.
+    // Use atan2, because the arc cosine would lose half of the digits for angles near 0.
     direction_error_ += math::atan2(reference.cross(rendered).norm(), reference.dot(rendered));
   }
   if (record.step % every_ == 0 && kept_reference_.size() < kept_reference_.capacity()) {

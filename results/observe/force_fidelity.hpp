@@ -22,8 +22,8 @@ class ReferenceForce {
     Vec3 force = Vec3::Zero();
   };
   using Ideal = std::array<Profile, 3>;  ///< x, y, z of the force over time
-  /// The spring of a hand that pulls the tool to a moving target. A rigid tool in static equilibrium with it rests at
-  /// target + f_m / stiffness.
+  /// The spring of a hand that pulls the tool to a moving target. In static equilibrium with the reference force f_m, a
+  /// rigid tool rests at target + f_m / stiffness.
   struct HandSpring {
     std::array<Profile, 3> target;  ///< [m]
     double stiffness;               ///< [N/m]
@@ -39,10 +39,10 @@ class ReferenceForce {
   /// Returns the force at time t [s], interpolated linearly between samples; nothing before the first sample and
   /// after the last. Cost: O(log n).
   std::optional<Vec3> at(double t) const noexcept;
-  /// Returns the tip centre of the rigid tool on which the hand's spring and the reference force are in equilibrium at
-  /// time t [m]; empty without such a spring, and where there is no force.
+  /// Returns the tip centre [m] of a rigid tool that is in equilibrium under the hand's spring and the reference force
+  /// at time t. Empty without a hand spring, or if `at(t)` is empty.
   std::optional<Vec3> tip_at(double t) const noexcept;
-  /// Largest error of the force itself [N]; 0 if it is given or measured.
+  /// Upper bound of the numerical error of the reference force [N]; 0 for a given or measured force.
   double error() const noexcept { return error_; }
   const std::optional<HandSpring>& hand() const noexcept { return hand_; }
 
@@ -54,13 +54,14 @@ class ReferenceForce {
 
 /// Directions of two forces are compared if both exceed this value [N]; weaker forces have no meaningful direction.
 inline constexpr double kMinForce = 0.1;
-/// Largest lag that is searched, positive or negative [s].
+/// Largest magnitude of a lag in the search [s]: lags from -kMaxLag to kMaxLag are tried.
 inline constexpr double kMaxLag = 0.1;
 
 /// Time lag of a signal behind another signal.
 struct Lag {
   double time = 0.0;             ///< lag [s], > 0 if the signal is late
-  std::optional<double> period;  ///< distance to the next equally good lag [s], for periodic signals
+  std::optional<double> period;  ///< for periodic signals: distance to the nearest other lag with the same correlation
+                                 ///< [s]; otherwise empty
 };
 
 /// Returns the lag of `late` behind `early`: the shift with the largest correlation (Pearson, over all components of
@@ -76,8 +77,8 @@ std::optional<Lag> lag_between(const std::vector<Vec3>& early, const std::vector
 class ForceFidelityObserver final : public MetricObserver {
  public:
   ForceFidelityObserver() = default;
-  /// Sets the same values as `begin`. Precondition: `reference` outlives this object. `dt`: time step [s]; `steps`:
-  /// largest number of steps.
+  /// Same effect as `begin` of a trial with these values. Precondition: `reference` outlives this object. `dt`: time
+  /// step [s]; `steps`: largest number of steps.
   ForceFidelityObserver(const ReferenceForce& reference, double dt, std::uint64_t steps);
 
   /// Precondition: the trial has a reference.
@@ -93,7 +94,7 @@ class ForceFidelityObserver final : public MetricObserver {
  private:
   const ReferenceForce* force_ = nullptr;
   double dt_ = 0.0;
-  std::uint64_t every_ = 1;  ///< to compute the lag, the forces of one step out of every_ steps are kept
+  std::uint64_t every_ = 1;  ///< the forces of steps 0, every_, 2 every_, … are kept, to compute the lag
   std::optional<Vec3> at_row_;
   std::uint64_t rows_ = 0, direction_rows_ = 0;
   double displacement_ = 0.0;     ///< sum of the squared distances between the tip and ReferenceForce::tip_at() [m^2]

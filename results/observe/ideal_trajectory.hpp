@@ -26,7 +26,8 @@ namespace hapbench {
 /// m. Takes about 2 us. Precondition: the tool does not point upwards, axis.z <= 0.
 double interpenetration(const BlockWithHole& block, const Cylinder& tool, const ToolPose& pose);
 
-/// Position of the tip centre in the vertical plane through the hole's axis in which the tool leans.
+/// Position of the tip centre in the vertical plane that contains the hole's axis and the direction in which the tool
+/// leans.
 struct TipPosition {
   double lateral = 0.0;  ///< distance from the hole's axis, positive in the direction in which the tool leans [m]
   double height = 0.0;   ///< height above the hole's mouth, negative in the hole [m]

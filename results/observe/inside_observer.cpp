@@ -18,11 +18,12 @@ constexpr double kMinStep = 2e-3, kDepthWithin = 0.02;
 /// kMaxBlocks: largest number of blocks into which a run is divided; one pose of each block is kept for the search
 /// after the run. kSettledSamples: number of poses in settled contact that are searched.
 constexpr std::size_t kMaxBlocks = 16384, kSettledSamples = 12;
-/// Largest number of distance evaluations in the search for the deepest step. A solid in closed form is ten times
-/// as fast, so it gets more.
+/// Largest number of distance evaluations in the search for the deepest step. A distance from a solid in closed form
+/// takes a tenth of the time, so its limit is larger.
 constexpr std::size_t kMaxEvaluations = 8000, kMaxClosedFormEvaluations = 100000;
-/// A depth whose error exceeds the depth itself states nothing. The search for such a depth therefore continues, up to
-/// kMaxExtendedEvaluations, until the largest bound is this factor times the deepest known depth.
+/// If the search ends and the largest bound exceeds kUselessBound times the deepest known depth, the error exceeds the
+/// depth itself. The search then continues, up to kMaxExtendedEvaluations, until the largest bound is at most
+/// kUsefulBound times the deepest known depth.
 constexpr std::size_t kMaxExtendedEvaluations = 32000;
 constexpr double kUselessBound = 2.0, kUsefulBound = 1.1;
 /// kSharedBound: poses whose tip centres (in half widths) and axes differ by less than this share one bound.
@@ -34,9 +35,9 @@ constexpr double kSharedBound = 0.1, kSamePose = 0.01;
 /// smallest distance between two checked points on the core, and between two checked positions of the core on its
 /// path [half widths].
 constexpr double kDeepContact = 0.9, kCoreStep = 5e-3;
-/// Contact depth from which on the core is checked, relative to the smallest radius of the tool, such as the radius
-/// of a neck. It is a little smaller than kDeepContact, because surface points may be some fifths of this radius
-/// apart and miss the core.
+/// Contact depth from which on the core is checked, relative to the smallest radius of the tool, such as the radius of
+/// a neck. It is a little smaller than kDeepContact, because the surface points have gaps (of some fifths of this
+/// radius), and the deepest point of the core may lie in a gap.
 constexpr double kCheckDepth = 0.8;
 /// The core ends where the axis is closer than this to the body's surface [half widths], as in a bent body.
 constexpr double kThinnest = 0.05;
@@ -62,7 +63,7 @@ bool are_opposed(const Vec3& a, const Vec3& b) noexcept {
 
 void InsideDepths::add(const InsideDepths& trial) {
   const double deepest = std::max(max_bound() + max_within, trial.max_bound() + trial.max_within);
-  max = std::max(max, trial.max);  // an empty optional compares less than any number
+  max = std::max(max, trial.max);  // std::optional: an empty value compares less than any number
   max_within = deepest - max_bound();
   settled_within = std::max(settled_within, trial.settled_within);
   settled.insert(settled.end(), trial.settled.begin(), trial.settled.end());
@@ -122,8 +123,7 @@ CorePassage::CorePassage(const ToolShape& tool, std::shared_ptr<const Solid> sol
   for (std::size_t i = 0; i < kCoreSamples; ++i) axis.push(0, axial_position(i) * pose.axis, Vec3::UnitZ());
   tool.surface_constraints(pose, Vec3::Zero(), 0.0, axis);
   double thinnest = width_;
-  const double end = far_end_ + width_;  // for larger distances from the tip, the tool's far end is the nearest
-                                         // surface
+  const double end = far_end_ + width_;  // beyond this position, the far end of the tool is nearer than its side
   for (std::size_t i = 0; i < kCoreSamples; ++i) {
     const double s = axial_position(i);
     if (s > -back || s < end) continue;
@@ -143,8 +143,8 @@ CorePassage::CorePassage(const ToolShape& tool, std::shared_ptr<const Solid> sol
 
 /// Returns the signed distance of a point with coordinate s on the axis. A point that has moved by less than a fraction
 /// of its last distance is not evaluated again: it is on the same side, and the last distance minus the motion is a
-/// lower bound of its distance. Otherwise the last distance plus the motion bounds the search. Precondition: s
-/// decreases during a check.
+/// lower bound of its distance. Otherwise, the sum of the last distance and the motion is an upper bound for the
+/// search. Precondition: s decreases from call to call during a check.
 SurfaceDistance CorePassage::distance_at(const Vec3& point, double s) noexcept {
   const std::vector<AxisPoint>& last = last_axis_points_;
   const auto offset = [&](std::size_t i) { return std::abs(last[i].s - s); };
@@ -282,7 +282,7 @@ void CorePassage::compare(const Vec3& position, const Vec3& axis, double time) n
     next.entered_high = away_high ? std::min(previous->entered_high, next.high) : next.high;
   }
   if (!continues_) return;
-  // Check the segments that are no longer inside.
+  // A segment of the last check that is no longer inside has passed through if it left by an opposed face.
   for (const Segment& old : last_segments_) {
     if (old.continued) continue;
     const Vec3 middle = position_at(0.5 * (old.entered_low + old.entered_high));
@@ -347,7 +347,8 @@ void InsideObserver::on_step(const StepRecord& record) noexcept {
     if (depth_ && settled) depths_.settled.push_back(*depth_);
     return;
   }
-  // Outside, the depth of the contacts ranks the poses; once the core is inside, the depth of the tip centre does.
+  // The key of a pose is the depth of the deepest contact while the front point is outside. While it is inside, the key
+  // is the depth of the tip centre plus the half width.
   const bool deep = side_ == SolidSide::inside;
   deepest_.add(pose, deep ? tool_->half_width() + std::max(0.0, -tip_phi_.value) : record.force.depth_max);
   if (settled) settled_.add(pose, 0.0);
@@ -360,8 +361,8 @@ void InsideObserver::check_tip(const StepRecord& record) noexcept {
   tip_checked_ = tip;
   passage_.last_depth = tip_phi_.known ? -tip_phi_.value : 0.0;
   const double width = tool_->half_width(), size = std::abs(tip_phi_.value);
-  // The depth of a deep tip centre is reported, and beyond the border of the surface the distance is not reliable. In
-  // both cases evaluate more often: after a motion of 2 % of the distance.
+  // Evaluate more often, after a motion of 2 % of the distance, in two cases: the tip centre is deep and its depth is
+  // reported, or the tip centre is beyond the border of the surface, where the distance is not reliable.
   const double near = kDepthWithin * size;
   const bool below = tip_phi_.value < 0.0;
   tip_free2_ = tip_phi_.known && !(below && size > width) ? size * size : near * near;
@@ -371,8 +372,8 @@ void InsideObserver::check_tip(const StepRecord& record) noexcept {
   if (!passage_.deep && size > width) passage_.deep = {record.time, tip};
 }
 
-/// Checks the front point at positions along its path from its last position. Between two checked positions it cannot
-/// meet the surface.
+/// Checks the front point at positions along its path from its last position. Between two checked positions the front
+/// point cannot meet the surface.
 void InsideObserver::march(const Vec3& point, double length, double time) noexcept {
   const Vec3 from = std::exchange(core_, point);
   const Vec3 displacement = point - from;
@@ -434,7 +435,9 @@ InsideDepths InsideObserver::depths() {
 double InsideObserver::find_deepest(InsideDepths& depths) {
   struct Segment {
     std::size_t first, end;
-    double max_motion, bound;  ///< largest distance from the pose in the middle; bound of the depth [m]
+    /// max_motion: largest distance of a point of the tool from its position in the middle pose [m]. bound: upper bound
+    /// of the depth [m].
+    double max_motion, bound;
     bool operator<(const Segment& other) const { return bound < other.bound; }
   };
   const std::vector<PoseSamples::Sample>& parts = deepest_.all();
@@ -445,7 +448,7 @@ double InsideObserver::find_deepest(InsideDepths& depths) {
     depths.max = std::max(depths.max, search_.depth(pose, depths.max.value_or(0.0), tolerance));
   };
   const auto depth_threshold = [&] { return depths.max_bound() + InsideSearch::kTolerance * width; };
-  // Search the most promising pose first.
+  // Search the pose with the largest key first.
   search(std::ranges::max_element(parts, {}, &PoseSamples::Sample::key)->pose, 0.0);
   InsideBound bound(*tool_, *solid_);
   // Bounds the depth of the tool over all poses in the blocks `first` to `end` - 1.
@@ -468,7 +471,8 @@ double InsideObserver::find_deepest(InsideDepths& depths) {
   };
   std::size_t max_evaluations = solid_->bytes() > 0 ? kMaxEvaluations : kMaxClosedFormEvaluations;
   bool is_extended = false;
-  // Returns true if the search shall end, although the largest bound exceeds the deepest known depth.
+  // Returns true if the search ends because of its cost or precision, although the largest bound exceeds the deepest
+  // known depth.
   const auto is_enough = [&](double largest_bound) {
     if (is_extended && largest_bound <= kUsefulBound * depths.max_bound()) return true;
     if (bound.looks() + search_.looks() < max_evaluations) return false;
@@ -478,7 +482,7 @@ double InsideObserver::find_deepest(InsideDepths& depths) {
     is_extended = is_extended || extends;
     return !extends;
   };
-  // Refine the range with the largest bound until no range can be deeper.
+  // Refine the range of blocks with the largest bound, until no range can contain a deeper pose.
   std::priority_queue<Segment> open;
   open.push(bounded(0, parts.size()));
   double rest = 0.0;  // largest bound of ranges that can neither be halved nor searched

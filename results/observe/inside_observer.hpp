@@ -18,10 +18,10 @@ class MetricsObserver;
 struct InsideDepths {
   std::optional<double> max;    ///< largest depth of any point of the tool in any step [m]
   std::vector<double> settled;  ///< depths of the tool in some steps in settled contact [m]
-  /// Largest amount by which `max` and `settled` may be too small, in addition to the fraction
-  /// InsideSearch::kTolerance of them [m].
+  /// Bounds on the search error [m]: `max` may be too small by up to max_within + InsideSearch::kTolerance * max, and
+  /// each value of `settled` by up to settled_within + InsideSearch::kTolerance times the value.
   double max_within = 0.0, settled_within = 0.0;
-  std::uint64_t rows = 0;           ///< steps in which the side of the tip centre is known
+  std::uint64_t rows = 0;           ///< steps in which it is known whether the tip centre is inside or outside
   std::uint64_t centre_inside = 0;  ///< steps with the tip centre inside
 
   std::optional<double> settled_median() const;
@@ -44,10 +44,12 @@ struct Passage {
     Vec3 point;   ///< [m]
   };
   std::optional<Event> deep;  ///< first step with the tip centre deeper than half the tool's width
-  /// Depth of the tip centre [m]: largest of all steps (within 2 %), and in the last step.
+  /// deepest: largest depth of the tip centre over all steps, with a relative error of 2 % [m]. last_depth: depth of
+  /// the tip centre in the last step [m].
   double deepest = 0.0, last_depth = 0.0;
-  bool began_inside = false, ends_inside = false;  ///< true if the front point was inside in the first step; in the
-                                                   ///< last step
+  /// began_inside: true if the front point was inside in the first step. ends_inside: true if it was inside in the last
+  /// step.
+  bool began_inside = false, ends_inside = false;
   /// First step in which the front point left the solid on another side than it had entered: the surface normals at
   /// entry and exit differ by more than 90 degrees. `entered` is the position of the entry.
   std::optional<Event> left;
@@ -56,21 +58,21 @@ struct Passage {
   bool went_through() const noexcept { return deep || left || ends_inside; }
 };
 
-/// Returns the distance from the tip centre back to the front point of the core, half the tool's width within the
-/// body [m]; 0 for a ball.
+/// Returns the distance along the axis from the tip centre to the front point of the core (struct Passage) [m]; 0 for a
+/// ball.
 double core_offset(const ToolShape& tool);
 
 /// Side of the surface on which a point lies; unknown beyond the border of an open surface.
 enum class SolidSide { unknown, outside, inside };
 
-/// Detects a tool that passes through a wall, also a wall thinner than the tool. It follows the core: the part of
-/// the tool's axis within the body, from the tip centre to the far end. While no contact is deep, the core of a
-/// flat tip begins 0.9 half widths behind the tip centre, because the tip centre is in the surface at any depth.
-/// The core has passed if it crosses the solid from face to face at one time, with faces of opposed normals, or if
-/// a part of it leaves by a face opposed to the face by which it entered. A step needs a check (about 20 distances
-/// along the axis) only if no passage has been found yet, if a contact is deeper than check_depth_ or the tool moved
-/// by more than check_displacement_, and if the core has moved by at least its distance from the surface. Allocates
-/// only in the constructor.
+/// Detects a tool that passes through a wall, also a wall thinner than the tool. Follows the core: the part of the
+/// tool's axis within the body, from the tip centre to the far end. While no contact is deep, the core of a flat tip
+/// begins 0.9 half widths behind the tip centre, because the tip centre is in the surface at any depth. The core has
+/// passed if it crosses the solid from face to face at one time, with faces of opposed normals, or if a part of it
+/// leaves by a face opposed to the face by which it entered. A check evaluates about 20 distances along the axis. A
+/// step is checked only if three conditions hold: no passage has been found yet; a contact is deeper than check_depth_
+/// or the tool moved by more than check_displacement_; and the core has moved by at least its distance from the
+/// surface. Allocates only in the constructor.
 class CorePassage {
  public:
   struct Event {
@@ -129,23 +131,26 @@ class CorePassage {
   double width_;          ///< half width of the tool [m]
   double far_end_;        ///< coordinate on the axis of the end of the core that is farthest from the tip [m]
   double shallow_start_;  ///< coordinate at which the core begins while no contact is deep [m]
-  double check_depth_, check_displacement_;  ///< a step is checked if it has a contact of this depth [m], or if the
-                                             ///< tool moves farther than this [m]
+  /// A step may be skipped if its contacts are shallower than check_depth_ [m] and the tool moved by at most
+  /// check_displacement_ [m].
+  double check_depth_, check_displacement_;
 
   Vec3 position_ = Vec3::Zero(), axis_ = Vec3::Zero();  ///< tip centre and axis in the previous step
-  bool began_ = false, continues_ = false;         ///< true if there was a previous step; true if the previous step was
-                                                   ///< checked
-  double free_distance_ = 0.0;                     ///< distance that the core can move without meeting the surface [m]
-  std::vector<Segment> segments_, last_segments_;  ///< segments of this check and of the last check
-  /// Evaluated points of this check and of the last check, from the tip on, and the next point of the last check.
+  /// began_: true if there was a previous step. continues_: true if the previous step was not skipped.
+  bool began_ = false, continues_ = false;
+  double free_distance_ = 0.0;  ///< distance that the core can move without meeting the surface [m]
+  /// segments_: segments of this check. last_segments_: segments of the last check.
+  std::vector<Segment> segments_, last_segments_;
+  /// axis_points_ and last_axis_points_: evaluated points of this check and of the last check, starting at the tip.
+  /// next_axis_point_: index of the point in last_axis_points_ that is nearest to the current point.
   std::vector<AxisPoint> axis_points_, last_axis_points_;
   std::size_t next_axis_point_ = 0;
   std::optional<Event> event_;
 };
 
 /// Keeps a fixed number of poses of a run. The run is divided into blocks of equally many steps. Each block keeps the
-/// pose with the largest key, which is a number that the caller gives (such as a depth), and a bound on the distance
-/// of the block's other poses from the kept pose.
+/// pose with the largest key. The key is a number that the caller gives, such as a depth. Each block also keeps an
+/// upper bound of the motion of the tool between the kept pose and any other pose of the block.
 class PoseSamples {
  public:
   struct Sample {
@@ -178,8 +183,8 @@ class PoseSamples {
   void begin_block(const ToolPose& pose, double key) noexcept;
 
   std::vector<Sample> samples_;
-  std::uint64_t rows_left_ = 0, rows_of_block_ = 1;  ///< number of steps that the last block still lacks; number of
-                                                     ///< steps of a block
+  /// rows_left_: number of steps that the last block still lacks. rows_of_block_: number of steps of a full block.
+  std::uint64_t rows_left_ = 0, rows_of_block_ = 1;
 };
 
 /// Observes how deep the tool is in the environment in one trial. A step costs about ten nanoseconds: a point cannot
@@ -229,8 +234,9 @@ class InsideObserver final : public Observer {
   /// outside (tip_free2_), and while it is inside (tip_free2_inside_).
   double tip_free2_ = 0.0, tip_free2_inside_ = 0.0;
   SurfaceDistance tip_phi_;
-  std::optional<KnownDistance> core_distance_;  ///< last evaluated position of the front point
-  Vec3 core_ = Vec3::Zero();                    ///< front point of the core in the previous step [m]
+  /// Last evaluated distance of the front point from the surface, and the position at which it was evaluated.
+  std::optional<KnownDistance> core_distance_;
+  Vec3 core_ = Vec3::Zero();    ///< front point of the core in the previous step [m]
   double free_distance_ = 0.0;  ///< distance that the front point can move without meeting the surface [m]
   SolidSide side_ = SolidSide::unknown;
   Vec3 outside_ = Vec3::Zero();       ///< last position of the front point outside [m]

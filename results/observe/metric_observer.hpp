@@ -20,8 +20,8 @@ struct TrialParts {
   std::size_t subject = 0, trial = 0;         ///< numbers of subject and trial of a tracking hand, from 0
 };
 
-/// Returns part / whole, such as a mean or a fraction. If `whole` is 0 the result is not finite, so a metric has no
-/// value.
+/// Returns part / whole, such as a mean or a fraction. If `whole` is 0, the result is not finite, and a metric with
+/// this number has no value.
 inline double per(auto part, auto whole) {
   return static_cast<double>(part) / static_cast<double>(whole);
 }
@@ -54,13 +54,13 @@ class Section {
 /// without data, an observer reports the same list with empty values, which serves as documentation.
 class MetricObserver : public Observer {
  public:
-  /// Called before the first step of each trial. Differences between the last step of a trial and the first step of
-  /// the next must not count. An observer whose numbers are meaningful over several trials continues its sums; any
-  /// other observer resets them.
+  /// Called before the first step of each trial. Differences between the last step of a trial and the first step of the
+  /// next must not count. An observer whose metrics are meaningful over several trials continues its sums; any other
+  /// observer resets its sums.
   virtual void begin(const TrialParts& trial) = 0;
   /// Reports all metrics. Called after the run, or without any run for documentation.
   virtual void report(Section& section) const = 0;
-  /// Adds those members of the observer's section in summary.json that are not metrics.
+  /// Adds the members of the observer's section in summary.json that are not metrics. Adds nothing by default.
   virtual void add_members(nlohmann::ordered_json&) const {}
 };
 

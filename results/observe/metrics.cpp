@@ -32,7 +32,7 @@ ReductionJumps::ReductionJumps(std::size_t capacity) {
 
 void ReductionJumps::add(const ContactBuffer& kept, double step_squared, bool settled) noexcept {
   const std::span<const std::uint32_t> now(kept.index.data(), kept.size());
-  // In most steps the same points are kept in the same order.
+  // Return early in most steps: the kept points and their order have not changed.
   if (std::ranges::equal(now, last_)) return;
 
   // Compare the sets of points.

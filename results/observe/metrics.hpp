@@ -15,19 +15,19 @@
 
 namespace hapbench {
 
-/// Returns the largest |f_spring| [N] at which an explicit integrator simulates friction stably: (B_max - mu_s) /
-/// mu_f, for a tool of `mass` [kg] and the friction coefficients mu_s [N s/m] and mu_f [s/m]. Friction is a damper
-/// with coefficient mu_s + mu_f |f_spring|, which a stiff force law makes arbitrarily strong, and an explicit
-/// integrator is stable only up to some damper B_max (leapfrog: 2 M / dt). Above the limit each step reverses and
-/// enlarges the sliding velocity, whatever the force law. Returns zero if mu_s alone exceeds B_max; nothing if
-/// there is no limit, because mu_f is zero or every damper is stable.
+/// Returns the largest |f_spring| [N] at which an explicit integrator simulates friction stably: (B_max - mu_s) / mu_f,
+/// for a tool of `mass` [kg] and the friction coefficients mu_s [N s/m] and mu_f [s/m]. Friction is a damper with
+/// coefficient mu_s + mu_f |f_spring|, which a stiff force law makes arbitrarily strong, and an explicit integrator is
+/// stable only up to some damper B_max (leapfrog: 2 M / dt). Above the limit each step reverses and enlarges the
+/// sliding velocity, whatever the force law. Returns zero if mu_s exceeds B_max. Returns nothing if there is no limit:
+/// mu_f is zero, or the integrator is stable with every damper.
 std::optional<double> explicit_friction_limit(const IntegratorEntry& integrator, double mass, double dt, double mu_s,
                                               double mu_f);
 
-/// Measures force steps caused by the contact reduction: while the tool slides, the set of kept points changes and
-/// the force jumps. Allocates only in the constructor. A step with the same points in the same order as in the previous
-/// step costs about 1 ns for each point. Any other step costs O(n log n) for n points. It costs only about 2 ns for
-/// each point if the points are in ascending order of their indices in this step and in the previous step.
+/// Measures force steps caused by the contact reduction: while the tool slides, the set of kept points changes and the
+/// force jumps. Allocates only in the constructor. A step with the same points in the same order as in the previous
+/// step costs about 1 ns for each point. Any other step costs O(n log n) for n points. If the indices of the points are
+/// in ascending order in this step and in the previous step, a step costs only about 2 ns for each point.
 class ReductionJumps {
  public:
   /// `capacity`: largest number of contacts in a step.
@@ -115,7 +115,7 @@ class MetricsObserver final : public MetricObserver {
   std::uint64_t stride_, first_;
   std::uint64_t trials_ = 0;  ///< number of trials begun so far
 
-  // State of the current trial, which `begin` resets.
+  // State of the current trial. `begin` resets these members.
   TrialContact now_;
   Hash64 hash_;
   bool settled_ = false;

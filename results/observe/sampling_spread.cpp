@@ -19,7 +19,7 @@ void SamplingSpread::begin() noexcept {
 
 void SamplingSpread::write(MetricList& list) const {
   if (others_.empty()) return;
-  // Measure the metrics of the other choices.
+  // Compute the metrics for the other choices of the first counted step.
   std::vector<MetricList> lists;
   for (const MetricsObserver& other : others_) {
     Section section(lists.emplace_back(), "");

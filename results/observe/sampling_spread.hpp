@@ -6,22 +6,24 @@
 
 namespace hapbench {
 
-/// For a run in which only every n-th step counts: estimates how much the choice of the first counted step changes the
-/// metrics.
-/// The step with the largest force, or the step of a landing, can lie between two counted steps; a slightly different
-/// time step then moves it to another counted step, and the metric jumps. Measures the metrics for up to four choices.
+/// Estimates how much the metrics depend on the choice of the first counted step, in a run in which only every n-th
+/// step counts (TimeFields::stride). The step with the largest force, or the step of a landing, can lie between two
+/// counted steps. A slightly different time step then moves this event to another counted step, and the metric jumps.
+/// Measures the metrics for up to four choices of the first counted step.
 class SamplingSpread {
  public:
-  /// `dt`, `config`: the arguments of the run's MetricsObserver. Observes nothing if every step counts.
+  /// `dt`, `config`: the arguments of the run's MetricsObserver. If every step counts, there is nothing to observe, and
+  /// observers() is empty.
   SamplingSpread(double dt, MetricsConfig config);
 
   /// Begins the next trial.
   void begin() noexcept;
-  /// Returns the observers of the other choices.
+  /// Returns one observer for each choice of the first counted step except step 0, the choice of the run's
+  /// MetricsObserver.
   std::vector<MetricsObserver>& observers() noexcept { return others_; }
   /// Writes Metric::sampling_spread of the metrics of MetricsObserver in `list`: the range of the values over the m
   /// choices, times m / (m - 1). Reason for the factor: a value may increase in proportion to the first counted step
-  /// and then jump back; m evenly spaced choices show the fraction (m - 1) / m of the range of this value.
+  /// and then jump back. The values at m evenly spaced choices then have (m - 1) / m of the full range.
   void write(MetricList& list) const;
 
  private:

@@ -13,12 +13,13 @@ namespace hapbench {
 struct SixDofRow {
   /// Equilibrium of the 6-DOF device.
   struct Reference {
-    Vec3 force = Vec3::Zero();        ///< force on the handle [N]
-    Vec3 torque = Vec3::Zero();       ///< torque on the handle about the force point [N m]
-    Vec3 position = Vec3::Zero();     ///< force point of the handle [m]
-    Vec3 tip = Vec3::Zero();          ///< tip centre of the tool [m]
-    Vec3 axis = Vec3::Zero();         ///< axis of the tool
-    Vec3 handle_turn = Vec3::Zero();  ///< rotation vector from the intent to the handle [rad]
+    Vec3 force = Vec3::Zero();     ///< force on the handle [N]
+    Vec3 torque = Vec3::Zero();    ///< torque on the handle about the force point [N m]
+    Vec3 position = Vec3::Zero();  ///< force point of the handle [m]
+    Vec3 tip = Vec3::Zero();       ///< tip centre of the tool [m]
+    Vec3 axis = Vec3::Zero();      ///< axis of the tool
+    /// Rotation vector from the orientation that the hand intends to the handle's orientation [rad].
+    Vec3 handle_turn = Vec3::Zero();
   };
   /// Equilibrium of the 3-DOF device, which renders the force of a law.
   struct Law {

@@ -14,15 +14,15 @@ constexpr std::size_t kEmptySteps = 501;
 
 using Times = std::vector<std::uint64_t>;
 
-/// Returns a percentile by nearest rank; `per_mille` is in tenths of a percent, so that the rank is exact.
-/// Precondition: sorted and not empty.
+/// Returns a percentile by nearest rank. `per_mille` is the percentile in tenths of a percent, an integer, so that the
+/// rank is exact. Precondition: `sorted` is in ascending order and not empty.
 std::uint64_t percentile(const Times& sorted, std::size_t per_mille) {
   const std::size_t rank = (sorted.size() * per_mille + 999) / 1000;
   return sorted[std::max<std::size_t>(rank, 1) - 1];
 }
 
-/// Returns the histogram. Bin k counts the times with k binary digits: 0, 1, 2 … 3, 4 … 7 and so on, up to 63
-/// digits.
+/// Returns the histogram of the times. Bin k counts the times with k binary digits: 0, 1, 2 … 3, 4 … 7 ns and so on, up
+/// to 63 digits.
 std::vector<StepLatency::Bin> histogram(const Times& sorted) {
   std::array<std::uint64_t, std::numeric_limits<std::int64_t>::digits + 1> count = {};
   for (const std::uint64_t time : sorted) ++count[static_cast<std::size_t>(std::bit_width(time))];
@@ -35,7 +35,7 @@ std::vector<StepLatency::Bin> histogram(const Times& sorted) {
   return bins;
 }
 
-/// Returns the median of each of up to kSpans consecutive intervals.
+/// Divides the steps into up to kSpans consecutive intervals, and returns the median time of each interval [ns].
 Times medians_over_time(std::span<const std::uint64_t> times) {
   const std::size_t spans = std::min(times.size(), StepLatency::kSpans);
   Times medians;

@@ -20,15 +20,14 @@ class StepTimes {
 
   using Clock = std::chrono::steady_clock;
 
-  /// Starts a step. Call it before the first step and after a pause. `since`: when the step began, if earlier than
-  /// now.
+  /// Starts a step. Call it before the first step and after a pause. `since`: time at which the step began.
   void start(Clock::time_point since = Clock::now()) noexcept { last_ = since; }
   /// Ends a step and starts the next step. Precondition: fewer than `capacity` steps so far.
   void lap() noexcept;
 
-  /// Time of each step in order [ns], without the time of the clock reading.
+  /// Returns the wall time of each step [ns], in the order of the steps, minus the time of a clock reading.
   std::span<const std::uint64_t> nanoseconds() const { return {times_.data(), size_}; }
-  /// Time of a clock reading [ns]: the median over empty steps.
+  /// Returns the time of a clock reading [ns]: the median time of empty steps.
   std::uint64_t overhead() const { return overhead_; }
 
  private:
@@ -52,7 +51,7 @@ class StepSampler final : public Observer {
       : every_(steps / kMaxSamples + 1), times_(static_cast<std::size_t>(steps / every_) + 1) {}
   void on_step(const StepRecord& record) noexcept override;
 
-  /// Sampled times in order [ns], without the time of the clock reading.
+  /// Returns the sampled times [ns], in the order of the steps, minus the time of a clock reading.
   std::span<const std::uint64_t> nanoseconds() const { return times_.nanoseconds(); }
 
  private:
@@ -77,15 +76,15 @@ struct StepLatency {
   static constexpr std::size_t kSpans = 240;  ///< largest number of entries in over_time
 
   std::uint64_t steps = 0;
-  /// Percentiles by nearest rank: the shortest time t [ns] so that at least this percentage of the steps takes at most
-  /// t.
+  /// Percentiles of the step times by nearest rank: the shortest time t [ns] for which at least this percentage of the
+  /// steps takes at most t.
   std::uint64_t p50 = 0, p95 = 0, p99 = 0, p99_9 = 0;
   std::uint64_t max = 0;                                         ///< longest time [ns]
   std::array<std::uint64_t, kStepDeadlines.size()> misses = {};  ///< number of steps longer than each deadline
   /// Bins between powers of two, from the first to the last bin that is not empty.
   std::vector<Bin> histogram;
-  /// Load over time: medians of up to kSpans consecutive intervals of the run, with (nearly) equal numbers of steps
-  /// [ns].
+  /// Step times over the run: the run is divided into up to kSpans intervals with (nearly) equal numbers of steps, and
+  /// each entry is the median step time of an interval [ns].
   std::vector<std::uint64_t> over_time;
   std::uint64_t overhead = 0;  ///< time of a clock reading, already subtracted from each step [ns]
 };

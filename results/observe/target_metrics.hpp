@@ -10,7 +10,7 @@ namespace hapbench {
 /// Measurements of one target (thesis D.4). Model force and speed are means over the steps in which the tip was
 /// within TargetRules::logged of the target, whether or not the subject pressed.
 struct TargetRow {
-  std::size_t subject = 0;  ///< number of the subject; subject, trial and target count from 0
+  std::size_t subject = 0;  ///< number of the subject; the numbers of subject, trial and target start at 0
   std::size_t trial = 0;
   std::size_t target = 0;
   TargetResult result = {};
@@ -22,8 +22,8 @@ struct TargetRow {
 /// Measures the targets of all trials of a run.
 class TargetMetricsObserver final : public MetricObserver {
  public:
-  /// `positions`: number of target positions of the task, which defines the metrics' names for an observer without a
-  /// trial.
+  /// `positions`: number of target positions of the task; used only for the names of the metrics of an observer without
+  /// a trial.
   explicit TargetMetricsObserver(std::size_t positions = 2) : positions_(positions) {}
 
   /// Precondition: the trial's hand has a task.
@@ -46,7 +46,7 @@ class TargetMetricsObserver final : public MetricObserver {
   std::size_t positions_;
   std::vector<std::size_t> order_;  ///< position number of each target; empty before the first trial
   double time_limit_ = 0.0;         ///< [s]
-  TargetRow current_;               ///< sums of the current target, from which its means are computed
+  TargetRow current_;  ///< sums over the steps on the current target, which become means when the target ends
   std::vector<TargetRow> rows_;
   std::size_t rows_before_ = 0;  ///< number of targets of earlier trials
 };

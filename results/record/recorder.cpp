@@ -22,8 +22,8 @@
 namespace hapbench {
 namespace {
 
-/// Columns of trajectory.csv and the function that returns their values in a step: a number, or a vector with a
-/// component per column.
+/// Returns columns of trajectory.csv and the function that computes their values in a step: a number, or a vector with
+/// one component for each column.
 template <std::size_t n, class Cells>
 constexpr std::pair<std::array<Column, n>, Cells> filled(const Column (&columns)[n], Cells cells) {
   return {std::to_array(columns), cells};
@@ -143,7 +143,7 @@ std::vector<Column> trajectory_columns(const TrajectoryExtras& extras) {
   return columns;
 }
 
-/// Returns the documentation of trajectory.csv: all columns, and the fields that add some of them.
+/// Returns the documentation of trajectory.csv: all columns, and the scenario fields that add optional columns.
 ResultTable whole_trajectory() {
   ResultTable whole{"trajectory.csv", "one line per recorded time step, before the integrator moves the tool", {}};
   TrajectoryExtras all;
@@ -368,7 +368,7 @@ RowSource ratio_rows(std::vector<int> iterations, ShapingOperations shaping, std
     ContactBuffer& contacts = *copy;
     assert(record.rendered->size() <= contacts.capacity());
     contacts.assign(*record.rendered);
-    // For each requested number of updates, make the missing updates and write the ratios.
+    // For each requested number m of updates, make updates until there are m, then write the ratios.
     Mat3 S = shaping.start(contacts);
     int done = 0;
     for (const int m : iterations) {

@@ -41,7 +41,7 @@ struct TrajectoryGroup {
 /// Returns all groups, in the order of their columns.
 std::span<const TrajectoryGroup> trajectory_groups();
 
-/// Makes the lines of a table from the steps of a run.
+/// Columns of a table, and the function that writes the lines of a recorded step to the table.
 struct RowSource {
   std::vector<Column> columns;
   /// Writes the lines of one step; writes nothing if the step has no lines. Allocates nothing.
@@ -84,8 +84,8 @@ RowSource contact_trace_rows();
 /// Returns the source of stiffness_tensor.csv: one line per recorded step.
 RowSource stiffness_rows();
 
-/// Stiffness shaping as two operations on padded contacts. They are parameters because this folder does not depend
-/// on any force law.
+/// Stiffness shaping as two operations on padded contacts. The caller passes them in, because the folder results/ does
+/// not depend on any force law.
 struct ShapingOperations {
   /// Sets all weights to 1; returns the stiffness tensor S.
   Mat3 (*start)(ContactBuffer& contacts) noexcept = nullptr;
@@ -94,10 +94,10 @@ struct ShapingOperations {
 };
 
 /// Returns the source of ratios.csv: how the stiffness ratios of the rendered contacts converge with the number of
-/// shaping updates (thesis 3.4, Fig. 5), whatever force law the run uses. The table has, for each recorded step with
-/// contact, one line for each number m >= 0 of updates. The first update starts from equal weights of 1. `iterations`:
-/// the numbers m in any order; duplicates are ignored. `capacity`: largest number of contacts in a step. Cost of a
-/// step: O(n) for each update, up to the largest m.
+/// shaping updates (thesis 3.4, Fig. 5). The table does not depend on the force law of the run. The table has, for each
+/// recorded step with contact, one line for each number m >= 0 of updates. The first update starts from equal weights
+/// of 1. `iterations`: the numbers m in any order; duplicates are ignored. `capacity`: largest number of contacts in a
+/// step. Cost of a step: O(n) for each update, up to the largest m.
 RowSource ratio_rows(std::vector<int> iterations, ShapingOperations shaping, std::size_t capacity);
 
 /// Returns the source of energy.csv: the energy balance, one line per recorded step. Precondition: the recorder

@@ -8,9 +8,9 @@
 
 namespace hapbench {
 
-/// Outcomes of a run, ordered from best to worst. A run of several trials has the outcome of its worst trial. The
-/// engine reports why stepping ended early; after all steps, scenarios/run/outcome.hpp decides the outcome from the
-/// recorded rows.
+/// Outcomes of a run, ordered from best to worst. A run of several trials has the outcome of its worst trial. If
+/// stepping ends early, the simulation reports the reason. If all steps were executed, scenarios/run/outcome.hpp
+/// decides the outcome from the observed steps.
 enum class Outcome {
   completes,        ///< all steps were executed, or the hand has finished its task
   leaves_hole,      ///< stopped by a StopRule: the tip centre left the hole
@@ -23,7 +23,7 @@ enum class Outcome {
   diverges          ///< a value was not finite or exceeded its bound
 };
 
-/// Returns the outcome that follows from the reason why stepping ended, without reading the recorded rows.
+/// Returns the outcome that follows from the reason why stepping ended. Does not evaluate the observed steps.
 Outcome outcome_of(Ending ending) noexcept;
 
 /// Name and description of an outcome.

@@ -9,17 +9,18 @@ namespace hapbench {
 /// set, which affects only times: summary.json is byte-identical for the scalar and the SIMD build of one source
 /// tree, and timing.json contains the instruction set. Unknown fields are "unknown".
 struct Provenance {
-  std::string version;           ///< version of hapbench
-  std::string commit;            ///< commit of the source tree at build time; ends in "-dirty" if tracked files differ
-  std::string compiler;          ///< name and version
-  std::string build_type;        ///< CMake build type
-  std::string flags;             ///< compiler flags that can change numbers
-  std::string cpu;               ///< model name
-  std::string march = {};        ///< value of -march; empty for the compiler's default
-  std::string widest = {};       ///< vector extension allowed: "avx512f", "avx2", "avx", "sse2" or "none known"
-  bool simd = false;             ///< false for the scalar reference
+  std::string version;     ///< version of hapbench
+  std::string commit;      ///< commit of the source tree at build time; ends in "-dirty" if tracked files differ
+  std::string compiler;    ///< name and version
+  std::string build_type;  ///< CMake build type
+  std::string flags;       ///< compiler flags that can change numbers
+  std::string cpu;         ///< model name
+  std::string march = {};  ///< value of -march; empty for the compiler's default
+  /// Widest vector extension that the build may use: "avx512f", "avx2", "avx", "sse2" or "none known".
+  std::string widest = {};
+  bool simd = false;             ///< true for the SIMD build, false for the scalar reference build
   std::string plugin = {};       ///< file of the plugin whose algorithm was used; empty: none
-  std::string plugin_hash = {};  ///< hash of this file's content
+  std::string plugin_hash = {};  ///< hash of the content of the plugin's file; empty without a plugin
 
   /// Returns true if the commit identifies the source code.
   bool identifies_source() const { return commit != "unknown" && !commit.ends_with("-dirty"); }

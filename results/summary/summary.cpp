@@ -32,7 +32,7 @@ ordered_json divergence_json(const RunEnd& result) {
   return json;
 }
 
-/// Returns the tolerances of all metrics that have one, by the metric's full name.
+/// Returns an object that maps the full name of each metric with a tolerance to this tolerance.
 ordered_json tolerances_json(const MetricList& list) {
   ordered_json json = ordered_json::object();
   for (const Metric& metric : list)
@@ -40,7 +40,8 @@ ordered_json tolerances_json(const MetricList& list) {
   return json;
 }
 
-/// Returns the array of a vector whose x, y and z are three consecutive metrics; null without values.
+/// Returns the array [x, y, z] of a vector. `xyz` points to the metric of x; the metrics of y and z follow it. Returns
+/// null if the metric of x has no value.
 ordered_json vector_json(const Metric* xyz) {
   if (std::holds_alternative<std::monostate>(xyz->value)) return nullptr;
   return {cell_json(xyz[0].value), cell_json(xyz[1].value), cell_json(xyz[2].value)};

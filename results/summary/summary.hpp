@@ -46,9 +46,10 @@ struct Warning {
 
 /// A finding of the diagnosis of a run: a number beyond the threshold of a rule (scenarios/run/diagnosis.hpp).
 struct Diagnosed {
-  std::string rule, number, unit;  ///< name of the rule, name and unit of its number; unit "1": pure number
+  /// rule: name of the rule. number, unit: name and unit of the number that the rule compares; "1": pure number.
+  std::string rule, number, unit;
   double value = 0.0, threshold = 0.0;
-  std::string says, attempt;  ///< what is wrong, and what to change
+  std::string says, attempt;  ///< says: what is wrong with the run. attempt: what to change
 };
 
 /// Wall times of a run.
@@ -74,19 +75,20 @@ struct RunEnd {
 
 /// The result of a run, or of all trials of a tracking hand.
 struct Result {
-  std::string name;                ///< name of the scenario
-  std::string algorithm;           ///< registered name of the algorithm
-  RunEnd end;                      ///< after several trials: the worst outcome, and the number of steps of all trials
+  std::string name;       ///< name of the scenario
+  std::string algorithm;  ///< registered name of the algorithm
+  /// End of the run. After several trials: the worst outcome, and the number of steps of all trials together.
+  RunEnd end;
   bool expected = false;           ///< true if the run met all expectations of the scenario
   std::vector<std::string> unmet;  ///< expectations that the run did not meet
   double duration = 0.0;           ///< simulated time: number of steps times dt [s]
-  /// All metrics, in the order of the columns of a sweep's table. A scenario's `expect` can bound them. First the
-  /// metrics of every run under their own names; then the coordinates of the final position, such as
-  /// "final_position_m.x"; then the metrics of the sections, such as "energy.created_sum_J" or
+  /// All metrics, in the order of the columns of a sweep's table. A scenario's `expect` can bound each metric. The
+  /// order is: the metrics of every run, without a prefix in the name; then the coordinates of the final position, such
+  /// as "final_position_m.x"; then the metrics of the sections, such as "energy.created_sum_J" or
   /// "targets.0.success_rate.mean".
   MetricList metrics;
-  /// The sections (passivity and the sections requested by the scenario), each an object of the members that are
-  /// not metrics, such as the events of the energy. Null without sections.
+  /// The sections: passivity, and the sections that the scenario requests. Each section is an object of the members
+  /// that are not metrics, such as the events of the section energy. Null without sections.
   nlohmann::ordered_json sections;
   std::uint64_t state_hash = 0;                     ///< MetricsObserver::state_hash
   nlohmann::ordered_json tool;                      ///< tool_json of a tool that is not a cylinder; null for a cylinder

@@ -22,15 +22,15 @@ constexpr double kMaxRangeEnd = 1e300;
   throw InputError(problem + "; allowed: " + allowed);
 }
 
-/// Returns number i of the equally spaced values with the numbers 0 … last from a to b. Both ends are exact. The
-/// result is a weighted mean of the ends, because adding steps accumulates rounding errors: the weighted mean gives
+/// Returns value i of equally spaced values from a (i = 0) to b (i = last). i may be a fraction. Both ends are exact.
+/// The result is a weighted mean of the ends, because adding steps accumulates rounding errors: the weighted mean gives
 /// 0.3, not 0.30000000000000004, for the third of ten steps from 0 to 1.
 double linear_value(double a, double b, double i, double last) {
   if (i == 0.0 || i == last) return i == 0.0 ? a : b;
   return std::clamp((a * (last - i) + b * i) / last, std::min(a, b), std::max(a, b));
 }
 
-/// Returns the forms of a range.
+/// Returns the allowed forms of a range, for error messages.
 std::string range_forms(bool sampled) {
   if (sampled) return "a:b, or a:b:log for equal ratios; --sample gives the number of points";
   return fmt::format("a:b:n, or a:b:n:log for equal ratios, with an integer n of 2 ... {} values", kMaxRuns);

@@ -18,8 +18,8 @@ struct Range {
   double from = 0.0, to = 0.0;
   bool logarithmic = false;
 
-  /// Returns the value at the fraction part / whole in [0, 1] of the interval, or of its logarithm. Returns
-  /// both ends exactly, and never a value outside the interval.
+  /// Returns the value at the fraction `part` / `whole` of the interval, in [0, 1]. A logarithmic range is divided on a
+  /// logarithmic scale. Returns both ends exactly, and never a value outside the interval.
   double value_at(double part, double whole = 1.0) const;
 };
 
@@ -33,8 +33,7 @@ struct Axis {
   bool whole = false;                    ///< true: numbers of the range are rounded to integers
   bool named = false;                    ///< true: values are labels for the caller and do not override a field
 
-  /// Further changes that a case with one value of the axis makes. `stride` multiplies TimeFields::stride of the runs
-  /// with this value.
+  /// Further changes to the cases with one value of the axis: overrides, and a factor `stride` on TimeFields::stride.
   struct Along {
     std::vector<std::string> overrides;
     std::int64_t stride = 1;
@@ -49,8 +48,8 @@ struct Axis {
   /// Returns the index of the listed value at a coordinate in [0, 1). Each value has an equal share of this
   /// interval. Precondition: the axis has listed values.
   std::size_t index_at(double coordinate) const;
-  /// Returns the value at a coordinate in [0, 1): of a range, the value at this fraction; of a list, the value
-  /// at index_at().
+  /// Returns the value at a coordinate in [0, 1): for a range, the value at this fraction; for a list, the value at
+  /// index_at().
   std::string value_at(double coordinate) const;
 };
 
@@ -60,16 +59,16 @@ struct Axis {
 /// - "path=v,w,…": listed numbers, names, JSON objects or lists;
 /// - "path=all": all names that the field accepts.
 /// With `sampled`, "path=a:b" and "path=a:b:log" replace the first two forms. A range of an integer field gives
-/// integers, except for entries of lists. Throws InputError. Does not check whether the scenario has the field
-/// or accepts the values.
+/// integers, except if the field belongs to an entry of a list. Throws InputError if the argument has another form.
+/// Does not check whether the scenario has the field or accepts the values.
 Axis parse_axis(const std::string& text, bool sampled = false, const std::string& option = "--vary");
 
 /// Path of the special axis whose values are names of scenes.
 inline constexpr const char* kSceneAxis = "scenario";
 
-/// Returns a value as axes store it: a number as its shortest decimal, an object or a list as compact JSON,
-/// other text unchanged. Throws InputError for an empty text, and for text that begins like JSON but is not
-/// valid JSON.
+/// Returns a value as axes store it: a number as its shortest decimal, an object or a list as compact JSON, other text
+/// unchanged. Throws InputError for an empty text, a text with a line break, and a text that begins like JSON but is
+/// not valid JSON.
 std::string axis_value(std::string_view text);
 
 }  // namespace hapbench

@@ -17,8 +17,9 @@ void append_new(std::vector<std::string>& texts, const std::vector<std::string>&
     if (std::find(texts.begin(), texts.end(), text) == texts.end()) texts.push_back(text);
 }
 
-/// Throws InputError if two axes have the same path, or if one axis would override all values of another axis: the path
-/// of a field within its field, unless the values are objects that the later axis changes.
+/// Throws InputError if two axes have the same path, or if the path of one axis lies within the path of another axis,
+/// so that one axis would override the other. The latter is allowed if the outer axis comes first and all its values
+/// are objects.
 static void check_paths(const std::vector<Axis>& axes) {
   const auto is_object = [](const std::string& value) { return value.starts_with("{"); };
   for (auto outer = axes.begin(); outer != axes.end(); ++outer) {

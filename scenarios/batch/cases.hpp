@@ -42,7 +42,7 @@ class Cases {
   std::size_t value_index(std::size_t i, std::size_t axis) const {
     return sampling_ ? axes_[axis].index_at(unit_[axis][i]) : i / strides_[axis] % axes_[axis].size();
   }
-  /// Returns the value of each axis in case i. Computed again at each call.
+  /// Returns the value of each axis in case i. The values are computed at each call.
   std::vector<std::string> values(std::size_t i) const;
   /// Returns the values of case i as "path=value", followed by the overrides of Axis::along.
   std::vector<std::string> changes(std::size_t i) const;
@@ -61,7 +61,8 @@ class Cases {
  private:
   void sort_runs();
   LoadedScenario load_case(std::size_t i) const;
-  /// Returns the error with the line of case i in the file of --points, where a value of this line is at fault.
+  /// Returns `error` with a new location for each fault in a field of an axis: the line of case i in the file of
+  /// --points.
   InputError with_line_of_point(const InputError& error, std::size_t i) const;
   std::string value(std::size_t i, std::size_t axis) const {
     return sampling_ ? axes_[axis].value_at(unit_[axis][i]) : axes_[axis].value(value_index(i, axis));
@@ -72,7 +73,7 @@ class Cases {
   std::vector<Axis> axes_;
   std::optional<Sampling> sampling_;
   std::vector<std::vector<double>> unit_;  ///< sample: coordinates in [0, 1) by axis, then by case
-  /// Grid: difference of the numbers of two cases with neighbouring values of an axis.
+  /// For each axis of a grid: difference between the numbers of two cases with neighbouring values of this axis.
   std::vector<std::size_t> strides_;
   std::vector<std::size_t> sorted_;  ///< cases in execution order; empty: in the order of their numbers
   std::size_t size_ = 1;

@@ -57,7 +57,7 @@ Cases cases_of(const ComparisonQuestion& question, const fs::path& file, std::ve
   const ScenarioText text = read_scenario_text(file);
   std::vector<Axis> axes = {{"rendering.algorithm", question.algorithms}};
   const Cases alone({text}, question.overrides, axes);
-  // The named files do not depend on the algorithm.
+  // Check the named files only once, because they do not depend on the algorithm.
   const CheckedScenario checked_first = checked(alone.load(0));
   const LoadedScenario& first = checked_first.loaded();
   check_seeds_and_jitter(question, first);

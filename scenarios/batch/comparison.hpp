@@ -46,16 +46,17 @@ struct Comparison {
   /// Returns the folder of a run's files, relative to the folder of the comparison:
   /// [SCENARIO/]ALGORITHM[/seed_K]. Parts in brackets exist only if there are several scenes or seeds.
   std::filesystem::path folder(std::size_t run) const;
-  /// Folders of the scenes in the folder of a comparison.
+  /// Returns the folders of the scenes' tables in the folder `out` of a comparison.
   std::vector<std::filesystem::path> scene_folders(const std::filesystem::path& out) const;
-  /// Folders of the runs of this comparison, and of every earlier comparison of these scenes with any algorithm.
-  /// Subfolders come before the folder that contains them.
+  /// Returns the folders in `out` that this comparison, or an earlier comparison of these scenes, may use for its runs:
+  /// a folder for each algorithm of the program, and its existing subfolders of seeds. Subfolders come before the
+  /// folder that contains them.
   std::vector<std::filesystem::path> run_folders(const std::filesystem::path& out) const;
 };
 
-/// Loads every scene with every algorithm and reads the files that they name. Throws the InputError of the
-/// first scene with an error. Also throws it if two scenes have the same name, and if `jitter` is given
-/// although the scene prescribes the position.
+/// Loads every scene with every algorithm and reads the files that they name. Throws the InputError of the first scene
+/// with an error. Also throws InputError if two scenes have the same name, if there are more than kMaxRuns runs, or if
+/// `jitter` is given although a scene prescribes the position.
 Comparison planned(const ComparisonQuestion& question);
 
 /// Removes the files of an earlier comparison of these scenes from a folder: its tables, and the files of runs

@@ -79,7 +79,7 @@ std::size_t available_threads() {
 void for_each_job(std::size_t count, const JobOptions& options, const std::function<void(std::size_t)>& job) {
   JobQueue queue(count, options, job);
   const std::size_t threads = std::max(1u, options.threads);
-  // A job may itself use TBB. TBB then uses no more threads than jobs run at the same time.
+  // A job may itself use TBB. Limit the threads of TBB to the number of jobs that run at the same time.
   const tbb::global_control within(tbb::global_control::max_allowed_parallelism,
                                    std::min(threads, available_threads()));
   std::vector<std::jthread> others;

@@ -16,7 +16,7 @@ std::size_t available_threads();
 struct JobOptions {
   unsigned threads = 1;  ///< number of jobs that run at the same time; at least 1
   std::string label;     ///< text before the progress bar; empty for no bar
-  /// Called with the progress in place of drawing a bar; null: the bar is drawn.
+  /// Listener that receives the progress, so that no bar is drawn; null: the bar is drawn.
   const ProgressListener* listener = nullptr;
 };
 

@@ -56,7 +56,7 @@ using EstimatedError = std::function<std::optional<double>(std::size_t run, cons
 /// The runs of a comparison and their ranking. rank() computes all members from `depends_on_seed` on.
 struct Ranking {
   std::vector<std::string> scenarios, algorithms, metrics;
-  std::vector<Better> better;  ///< by metric: whether smaller or larger values are better
+  std::vector<Better> better;  ///< for each metric: whether smaller or larger values are better
   std::size_t seeds = 1;
   std::span<const Result> runs;  ///< ordered by scenario, then algorithm, then seed; must outlive this object
   std::vector<bool> failed;      ///< for each run: true if it failed, so that its metrics do not count
@@ -86,7 +86,7 @@ struct Ranking {
   }
   /// Returns true if the seed changes any run of a scenario.
   bool seeds_matter(std::size_t scenario) const;
-  /// Returns true if a metric compares an algorithm with a reference force by the algorithm's own constraints.
+  /// Returns true if a metric compares the force of an algorithm with a reference force from the same constraints.
   bool shares_reference(std::size_t scenario, std::size_t algorithm, std::size_t metric) const;
   /// Returns the number of seeds for which an algorithm failed in a scenario.
   std::size_t failures(std::size_t scenario, std::size_t algorithm) const;
@@ -107,10 +107,10 @@ bool is_failure(std::string_view outcome);
 /// Returns true if every run has a reference force.
 bool have_reference(std::span<const Result> runs);
 
-/// Ranks the algorithms of a finished comparison by `metrics`, which are names of summary.json. Without
-/// metrics, uses kFidelityMetrics if every run has a reference force, else kDefaultMetrics. A run has failed if
-/// its outcome is a failure, or is not among the outcomes that its scenario expects. With `estimated_error`, the ranks
-/// also respect these errors.
+/// Ranks the algorithms of a finished comparison by `metrics`, which are names of summary.json. Without metrics, uses
+/// kFidelityMetrics if every run has a reference force, else kDefaultMetrics. A run has failed if its outcome is a
+/// failure, or is not among the outcomes that its scenario expects. A tool that a script leads through the surface is
+/// an exception: its run has not failed. With `estimated_error`, the ranks also respect these errors.
 Ranking rank_comparison(const Comparison& comparison, std::span<const Result> reports,
                         const std::vector<std::string>& metrics, const EstimatedError& estimated_error = {});
 

@@ -17,8 +17,8 @@ RowCondition parse_row_condition(const std::string& text, const std::vector<std:
   static const std::map<std::string, std::function<bool(double, double)>> kSigns = {
       {"<", std::less<>()},           {">", std::greater<>()},  {"<=", std::less_equal<>()},
       {">=", std::greater_equal<>()}, {"=", std::equal_to<>()}, {"!=", std::not_equal_to<>()}};
-  // The sign is the longest sequence of the characters < > = ! from the first of them on. So "a==3" has the sign
-  // "==", which is rejected.
+  // The sign begins at the first of the characters < > = ! and includes all of these characters that follow directly.
+  // So "a==3" has the sign "==", which is rejected.
   const std::size_t begin = std::min(text.find_first_of("<>=!"), text.size());
   const std::size_t end = std::min(text.find_first_not_of("<>=!", begin), text.size());
   const std::string name = text.substr(0, begin), sign = text.substr(begin, end - begin), value = text.substr(end);

@@ -13,10 +13,10 @@
 /// Runs lists of cases in a single pool of threads.
 namespace hapbench {
 
-/// Runs all cases of all lists and returns their results, numbered list by list. `folder` returns the folder
-/// for the files of a run, which the caller has locked; without it, no files are written. Runs with the same
-/// environment share its point shell. Neither results nor files depend on the number of jobs. The returned results
-/// contain no list of targets, which may be very long; the files contain it. `length`: see run_scenario(). Throws
+/// Runs all cases of all lists and returns their results, numbered list by list. `folder` returns the folder for the
+/// files of a run; the caller has locked this folder. Without `folder`, no files are written. Runs with the same
+/// environment share its point shell. Neither results nor files depend on the number of jobs. The returned results lack
+/// Result::targets, a list that may be very long; the files contain this list. `length`: see run_scenario(). Throws
 /// IoError and Stopped.
 std::vector<Result> run_all(std::span<const Cases> cases, const JobOptions& jobs,
                             const std::function<std::filesystem::path(std::size_t run)>& folder = {},

@@ -10,14 +10,14 @@
 namespace hapbench {
 namespace {
 
-/// Smallest processor time of a measurement [s]. The clock has a resolution of about a microsecond.
+/// Intended minimum processor time of a measurement [s]. The clock has a resolution of about a microsecond.
 constexpr double kMinMeasured = 0.02;
 constexpr double kMaxTimes = 1000.0;
 
 /// A scenario that is measured in rounds.
 struct Measured {
   std::unique_ptr<BareRun> run;
-  std::uint64_t times = 1;           ///< runs of one measurement
+  std::uint64_t times = 1;           ///< number of runs in one measurement
   std::vector<double> seconds = {};  ///< time of one run [s], for each round
 };
 

@@ -14,8 +14,8 @@ namespace hapbench {
 /// Processor time of a run, without the preparation of its point shell.
 struct RunCost {
   std::uint64_t steps = 0;   ///< steps of the run
-  double step_s = 0.0;       ///< time of one step [s], averaged over a run: the smallest of all repetitions
-  double spread_s = 0.0;     ///< median of the repetitions minus the smallest repetition [s] of one step
+  double step_s = 0.0;       ///< processor time of one step [s]: mean over a run, in the fastest repetition
+  double spread_s = 0.0;     ///< median over the repetitions minus step_s [s]
   double time_step_s = 0.0;  ///< simulated time of one step [s]
 
   /// Processor time per simulated second [1].
@@ -27,15 +27,15 @@ struct RunCost {
 /// Returns true if `a` is faster than `b` by more than the sum of both spreads.
 bool is_faster(const RunCost& a, const RunCost& b);
 
-/// Number of repetitions by default.
+/// Default number of measurements of each scenario.
 inline constexpr unsigned kTimingRepetitions = 5;
 
 /// Measures the cost of `count` scenarios, one run at a time. `scene` returns scenario i.
 ///
 /// Every round runs each scenario once, so that a slow change of the processor's speed affects all scenarios alike. A
-/// measurement repeats a run until it takes at least 20 ms. Each scenario keeps its simulation until the end; scenarios
-/// with equal environments share a point shell. `jobs` only supplies label and listener of the progress bar.
-/// Throws InputError and Stopped.
+/// measurement repeats a run as often as 20 ms require, but at most 1000 times. Each scenario keeps its simulation
+/// until the end; scenarios with equal environments share a point shell. `jobs` only supplies label and listener of the
+/// progress bar. Throws InputError and Stopped.
 std::vector<RunCost> measure_cost(std::size_t count, const std::function<CheckedScenario(std::size_t)>& scene,
                                   const JobOptions& jobs, unsigned repetitions = kTimingRepetitions);
 

@@ -52,7 +52,7 @@ struct RunRow {
   std::string row, problem;
 };
 
-/// Does a run and returns its row.
+/// Executes a run and returns its row.
 RunRow row_of_run(const SweepPlan& plan, const SweepOptions& options, std::size_t run) {
   RunRow result;
   try {
@@ -82,7 +82,7 @@ SweepReport run_sweep(const SweepPlan& plan, const SweepOptions& options) {
                   options.resume ? keep : nullptr);
   SweepReport report;
   report.resumed = table.count();
-  // Do the remaining runs.
+  // Execute the remaining runs.
   const std::vector<std::size_t> remaining = remaining_runs(plan, part, table);
   std::mutex mutex;  // protects `table` and `report`
   for_each_job(remaining.size(), options.jobs, [&](std::size_t k) {

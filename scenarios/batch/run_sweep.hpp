@@ -16,7 +16,7 @@ namespace hapbench {
 struct SweepOptions {
   std::filesystem::path directory = {};  ///< folder of all files; must exist
   JobOptions jobs = {};
-  std::optional<Shard> shard = {};  ///< the part of the runs that is made; empty: all runs
+  std::optional<Shard> shard = {};  ///< the shard whose runs are executed; empty: all runs
   bool resume = false;     ///< true: keep the rows of an earlier sweep of this plan, except rows of failed runs
   bool keep_runs = false;  ///< true: write the files of each run into runs/NUMBER
   std::function<void()> added = {};  ///< called after the row of each finished run was written to the table

@@ -58,8 +58,8 @@ namespace {
 /// Splits the lines of a file of --points into cells. Skips blank lines and comments.
 class PointLines {
  public:
-  /// Reads the header: the first line, or the comment before the first line if the first line has values instead of
-  /// paths.
+  /// Reads the header. It is the first line that is not a comment, or, if this line has values instead of paths, the
+  /// last comment with paths above it.
   PointLines(std::string_view text, const std::filesystem::path& file) : lines_(text), file_(file) {
     std::string_view comment;
     std::size_t comment_line = 0;
@@ -154,8 +154,8 @@ class PointLines {
   std::vector<std::string> paths_;
 };
 
-/// Returns the value of a cell of --points. Throws InputError if it is missing, not finite, or a number
-/// with a decimal comma.
+/// Returns the value of a cell of --points. Throws InputError if the value is missing, not finite, or a number with a
+/// decimal comma.
 std::string point_value(const std::string& cell, const std::string& path) {
   const std::string lower = lower_case(cell);
   if (has_decimal_comma(cell))

@@ -17,7 +17,7 @@ namespace hapbench {
 /// 1979).
 inline constexpr std::string_view kLatinHypercube = "lhs";
 inline constexpr std::string_view kRandomPoints = "random";  ///< independent, uniformly distributed points
-/// Points that are read from a file (--points).
+/// Name for points that are read from a file (--points).
 inline constexpr std::string_view kPointsOfFile = "points";
 
 /// A sample of the unit cube. Equal samples have bit-identical points on every machine.
@@ -33,14 +33,14 @@ struct Sampling {
 /// Parses "lhs:N" or "random:N" with 1 <= N <= kMaxRuns. Throws InputError.
 Sampling parse_sampling(const std::string& text, std::uint64_t seed);
 
-/// Returns the coordinates in [0, 1) of all points along an axis. Each axis has its own stream of random
-/// numbers, so that an additional axis does not change the others.
+/// Returns the coordinates in [0, 1) of all points along an axis. Each axis has its own stream of random numbers, so
+/// that an additional axis does not change the coordinates along the other axes.
 std::vector<double> unit_sample(const Sampling& sampling, std::size_t axis);
 
 /// Reads the table of --points. Its header contains paths of fields, and each further row the values of one point.
-/// Appends an axis for each field, which lists each value once. Commas, semicolons, tabs or white space separate cells;
-/// lines that begin with '#' or '%' are comments; such a line is the header if the first other line has no paths.
-/// Throws InputError with the number of the line.
+/// Appends to `axes` an axis for each field; the axis lists each value once. Commas, semicolons, tabs or white space
+/// separate cells. Lines that begin with '#' or '%' are comments. A comment with paths is the header if the first line
+/// that is not a comment has no paths. Throws InputError with the number of the line.
 Sampling read_points(const std::filesystem::path& file, std::vector<Axis>& axes);
 
 }  // namespace hapbench

@@ -7,8 +7,8 @@
 /// Shards: parts of a sweep of nearly equal size, which several machines can run.
 namespace hapbench {
 
-/// The cases whose position in the execution order leaves the remainder `index` when divided by `count`. The
-/// default is all cases.
+/// A shard contains the cases whose position in the execution order leaves the remainder `index` when divided by
+/// `count`. By default, it contains all cases.
 struct Shard {
   std::size_t index = 0, count = 1;
 };

@@ -74,7 +74,8 @@ Json check_files(SweepPlan& plan, const std::vector<std::size_t>& runs, Names& m
   return hashes;
 }
 
-/// Returns the values of an axis for SweepPlan::content. For a long range or a sampled range, returns only both ends.
+/// Returns the values of an axis for SweepPlan::content. For a long range or a sampled range, returns only both ends
+/// and the scale. For values from a file, returns only the path.
 Json axis_content(const Axis& axis, bool from_file) {
   constexpr std::size_t kMaxListed = 10'000;
   Json content = {{"path", axis.path}};
@@ -182,7 +183,7 @@ SweepPlan plan_sweep(Cases cases, const JobOptions& jobs, RunLength length) {
   }
   // Read each combination of files once.
   const Json hashes = check_files(plan, runs_with_files, metrics);
-  // List the metrics in the order of all metrics.
+  // List these metrics in the order in which the program lists all metrics.
   for (const Metric& metric : metrics_without_values(TrackingHandFields::kMaxTargetPositions)) {
     if (!metrics.contains(metric.name)) continue;
     plan.metrics.push_back(metric.name);

@@ -17,7 +17,7 @@ namespace hapbench {
 /// Outcome of a run that ended with an exception. Its cells after `expected` are empty.
 inline constexpr std::string_view kErrorOutcome = "error";
 
-/// The cells of a row.
+/// The cells of a row of sweep.csv.
 using SweepRow = std::vector<std::string>;
 
 /// Counts how runs ended.
@@ -57,9 +57,9 @@ struct SweepTable {
   const std::string& outcome(const SweepRow& row) const { return row[1 + fields()]; }
   /// Returns the names of the metric columns.
   std::vector<std::string> metrics() const;
-  /// Returns the number in a column of a row. Empty if the column does not exist or the cell is not a number.
+  /// Returns the number in a column of a row. Returns nothing if the column does not exist or the cell is not a number.
   std::optional<double> number(const SweepRow& row, std::string_view column) const;
-  /// Returns the error of a metric in a row; empty if it is not known.
+  /// Returns the error (tolerance) of a metric in a row; empty if it is not known.
   std::optional<double> tolerance(const SweepRow& row, std::string_view metric) const {
     return number(row, std::string(kToleranceOf) + std::string(metric));
   }

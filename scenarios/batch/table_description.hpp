@@ -9,7 +9,7 @@
 /// The JSON file next to a table, which describes the sweep. Tables of the same sweep have the same "definition" in it.
 namespace hapbench {
 
-/// Returns the path of the JSON file next to a table: sweep.json of sweep.csv.
+/// Returns the path of the JSON file next to a table, such as sweep.json for sweep.csv.
 std::filesystem::path description_file(std::filesystem::path table);
 
 /// Reads the description in a JSON file. Throws InputError if the file cannot be read or has no definition.

@@ -58,7 +58,8 @@ TableFile::TableFile(TableTitle title, const Keep& keep)
   if (is_new) append(title_.header + "\n");
 }
 
-/// Returns true if the unfinished table, or otherwise the finished table, has this definition.
+/// Returns true if the unfinished table has the same definition as title_. Without an unfinished table, checks the
+/// finished table.
 bool TableFile::has_same_definition() const {
   std::error_code ignored;
   const std::string found = definition_in(fs::exists(part_, ignored) ? about_part_ : description_file(title_.file));

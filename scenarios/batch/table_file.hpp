@@ -13,7 +13,7 @@
 
 #include "scenarios/input/json_file.hpp"
 
-/// A table with a row for each case that is written row by row and can be resumed.
+/// A table with a row for each case. The table is written row by row, and an interrupted table can be continued.
 namespace hapbench {
 
 /// File, columns and description of a table. Tables of the same sweep have the same "definition" in the description.
@@ -66,9 +66,9 @@ class TableFile {
   std::vector<bool> has_;
 };
 
-/// Writes the rows of several files into a single table, sorted by case number, and its JSON file. If a case
-/// has two rows, the later row is kept. Returns the number of cases with a row; if it is not `rows`, nothing is
-/// written. Throws InputError for files of other tables, and IoError.
+/// Writes the rows of several files into a single table, sorted by case number, and its JSON file. If a case has two
+/// rows, the later row is kept. Returns the number of cases with a row. If this number differs from `rows`, writes
+/// nothing. Throws InputError for files of other tables, and IoError.
 std::size_t write_sorted_table(const TableTitle& title, const std::vector<std::filesystem::path>& parts,
                                std::size_t rows);
 

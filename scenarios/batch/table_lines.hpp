@@ -12,7 +12,7 @@ namespace hapbench {
 /// Reads the complete lines of a table: the header, then the rows. Each row begins with the number of its case.
 class TableLines {
  public:
-  /// `cases`: row numbers must be smaller than this. A file that does not exist has no lines.
+  /// `cases`: number of cases; every row number must be smaller. A file that does not exist has no lines.
   TableLines(const std::filesystem::path& file, std::size_t cases);
 
   /// Reads the next line. Returns false at the end of the file, and if the last line has no newline.

@@ -36,12 +36,12 @@ static std::vector<std::string> study_names() {
   std::error_code error;
   for (const auto& entry : fs::directory_iterator(installed_folder("scenarios/library") / "studies", error))
     names.push_back(entry.path().stem().string());
-  std::ranges::sort(names);  // a folder has no order
+  std::ranges::sort(names);  // the entries of a folder have no defined order
   return names;
 }
 
 fs::path find_scenario(const std::string& argument, const fs::path& directory) {
-  // An existing file.
+  // Return an existing file, unless it is a mesh.
   std::error_code error;
   fs::path file = directory / argument;
   if (fs::exists(file, error)) {
@@ -50,7 +50,7 @@ fs::path find_scenario(const std::string& argument, const fs::path& directory) {
                                    argument, shell_file(argument)));
     return file;
   }
-  // A bundled scenario.
+  // Search the bundled scenarios.
   std::vector<std::string> names;
   for (const BundledScenario& bundled : bundled_scenarios()) {
     if (bundled.name == argument) return bundled.file;
@@ -74,13 +74,13 @@ fs::path find_scenario(const std::string& argument, const fs::path& directory) {
 std::vector<fs::path> find_scenarios(const std::vector<std::string>& arguments) {
   std::vector<fs::path> files;
   for (const std::string& argument : arguments) {
-    // The argument is not the name of a group, or a file has this name.
+    // Resolve an argument that is not the name of a group, or that is also the name of a file.
     std::error_code error;
     if (std::ranges::find(kScenarioGroups, argument) == std::end(kScenarioGroups) || fs::exists(argument, error)) {
       files.push_back(find_scenario(argument));
       continue;
     }
-    // All scenarios of the group.
+    // Add all scenarios of the group.
     for (const BundledScenario& scenario : bundled_scenarios()) {
       if (scenario.group == argument) files.push_back(scenario.file);
     }

@@ -27,12 +27,12 @@ std::vector<BundledScenario> bundled_scenarios();
 std::filesystem::path find_scenario(const std::string& argument, const std::filesystem::path& directory = {});
 
 /// Returns the scenario files that the arguments name. The name of a group stands for all scenarios of the group,
-/// ordered by name, unless a file has that name. Every other argument is resolved by find_scenario. Throws
+/// ordered by name, unless a file has that name. find_scenario() resolves every other argument and throws its
 /// InputError.
 std::vector<std::filesystem::path> find_scenarios(const std::vector<std::string>& arguments);
 
-/// Returns the names of scenario files, without folder and extension. Results are filed under these names. Throws
-/// InputError if two names are equal.
+/// Returns the names of scenario files, without folder and extension. The program stores results under these names.
+/// Throws InputError if two names are equal.
 std::vector<std::string> names_of_scenarios(const std::vector<std::filesystem::path>& files);
 
 }  // namespace hapbench

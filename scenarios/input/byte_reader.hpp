@@ -16,7 +16,7 @@ class ByteReader {
 
   /// Returns the number of bytes that have not been read yet.
   std::size_t left() const { return bytes_.size(); }
-  /// Precondition: at least `bytes` bytes are left.
+  /// Skips the next `bytes` bytes. Precondition: at least `bytes` bytes are left.
   void skip(std::size_t bytes) { bytes_.remove_prefix(bytes); }
 
   /// Reads the next number. Precondition: at least sizeof(T) bytes are left.

@@ -40,7 +40,7 @@ struct ListSize {
   std::size_t max;
 };
 
-/// Says whether a field must be in a file, and which value applies if it is missing.
+/// States whether a field must be in a file, and which value applies if it is missing.
 enum class Presence {
   required,
   has_default,  ///< optional; default: the member's value in a default-constructed object
@@ -63,7 +63,7 @@ struct TypeName {
   const char* summary;
 };
 
-/// Kind of content of a file that a scenario names, and parameters for reading it.
+/// Kind of content of a file that a scenario names, and the parameters for reading this file.
 struct FileContent {
   enum class Kind { point_shell, mesh, stroke, trace, library };
   Kind kind;
@@ -75,16 +75,16 @@ inline constexpr const char* kFileField = "file";
 /// Maximum length of the path of a file [characters].
 inline constexpr std::size_t kMaxPathLength = 4096;
 
-/// Visitor of one JSON value. A description calls the function for the value's kind (number, text, list …) and
-/// passes the C++ object that holds the value. For a JSON object, the visitor visits the fields; each field's
-/// value has its own visitor.
+/// Visitor of one JSON value. A function `describe` calls the member function for the value's kind (number, text, list
+/// …) and passes the C++ object that holds the value. For a JSON object, the visitor visits the fields, and the value
+/// of each field has its own visitor.
 class Fields {
  public:
   using Body = FunctionRef<Fields&>;
 
   virtual ~Fields() = default;
 
-  // Kinds of values. A description calls exactly one of these functions, once.
+  // One function for each kind of value. A function `describe` calls exactly one of these functions, once.
   virtual void number(double& value, NumberRange range) = 0;
   /// An integer. A JSON number with an integer value, such as 1e3, is accepted.
   virtual void integer(std::int64_t& value, IntegerRange range) = 0;
@@ -120,17 +120,18 @@ class Fields {
   /// An object. The visitor calls `body` with itself, possibly more than once. `body` describes the object's
   /// fields.
   virtual void fields(Body body) = 0;
-  /// A value whose description is used by many fields. The schema contains it once, as a definition with this name.
+  /// A value that many fields share. The schema documents this value once, in a definition with the given name.
   virtual void shared(const char*, Body value) { value(*this); }
 
-  // Fields of an object; called by the body of `fields`. A name must outlive the visit; use string literals.
+  // Functions for the fields of an object, which the body of `fields` calls. A name must outlive the visit; use string
+  // literals.
   virtual void field(std::string_view name, const char* doc, Presence presence, Body value) = 0;
   /// A field whose value is ignored, such as "$schema".
   virtual void ignored(std::string_view /*name*/, const char* /*doc*/) {}
   /// Requires exactly one of two fields. Call it after both fields, at most once for an object.
   virtual void exactly_one_of(const char* /*a*/, const char* /*b*/) {}
 
-  // For checks that a schema cannot express; called by the body of `fields`.
+  // Functions for checks that a schema cannot express. The body of `fields` calls them.
   /// Returns true if values are being read and no error has occurred in this object. Then all fields that were
   /// described before have their values.
   virtual bool reads() const { return false; }
@@ -230,7 +231,7 @@ class Fields {
             Presence presence = Presence::has_default) {
     field(name, doc, presence, [&](Fields& f) { f.text(value, max_length); });
   }
-  /// The required field kFileField. The caller makes `content` from fields that it described before.
+  /// The required field kFileField. `content` may depend on fields that were described before this field.
   void file(std::string& path, const FileContent& content, const char* doc) {
     field(kFileField, doc, Presence::required, [&](Fields& f) { f.file(path, content); });
   }

@@ -24,9 +24,9 @@ struct ErrorLocation {
   std::size_t line = 0;      ///< line in `file`, from 1; 0: not known
   std::string entry = {};    ///< entry of `file`, such as "sample 3"
   std::string pointer = {};  ///< JSON pointer of the field
-  /// Names of the options that the problem is about, such as "--between"; the option at fault comes first. text()
-  /// does not contain them, because the text of the problem does. A study uses them to find the line of its file that
-  /// gave the option.
+  /// Names of the options that the problem is about, such as "--between"; the option at fault comes first. text() omits
+  /// these names, because the text of the problem contains them. A study uses the names to find the line of its file
+  /// that gives the option.
   std::vector<std::string> about_options = {};
 
   /// Returns the location in the form in which a message begins with it, such as "scene.json: /time/step_s" or
@@ -71,14 +71,14 @@ class InputError : public std::runtime_error {
   std::vector<InputError> more_;  ///< all faults except the first
 };
 
-// Each function throws an InputError of kind `relation`.
-/// The fault is in the field at a JSON pointer.
+// Each of these functions throws an InputError of kind `relation`.
+/// Throws an InputError about the field at a JSON pointer.
 [[noreturn]] void fail_at(const std::string& pointer, const std::string& problem);
-/// The fault is in a file.
+/// Throws an InputError about a file.
 [[noreturn]] void fail_in_file(const std::filesystem::path& file, const std::string& problem);
-/// The fault is in a line of a file. Lines count from 1.
+/// Throws an InputError about a line of a file. Lines count from 1.
 [[noreturn]] void fail_in_line(const std::filesystem::path& file, std::size_t line, const std::string& problem);
-/// The fault is at the given location.
+/// Throws an InputError about the given location.
 [[noreturn]] void fail_in(ErrorLocation location, const std::string& problem);
 /// Throws an InputError about the value of an option, whose name begins the message: "--between: got …".
 [[noreturn]] void fail_in_option(const std::string& option, const std::string& problem);

@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// An object in this shared library or program. dladdr finds the library's file by its address.
+/// An object in this shared library or program. dladdr finds the file of the library by the address of this object.
 constexpr char kHere = 0;
 
 /// Returns the share folder that the build defines, or an empty path.
@@ -37,8 +37,8 @@ std::vector<fs::path> candidate_paths(const std::string& name) {
   Dl_info object;
   const fs::path library = dladdr(&kHere, &object) != 0 ? fs::canonical(object.dli_fname, error) : program;
   std::vector<fs::path> candidates;
-  // A shared library searches near itself first. Near the program, which may be the Python interpreter, there may be
-  // files of another version.
+  // A shared library searches near its own file first. The folder of the program, which may be the Python interpreter,
+  // may contain files of another version.
   if (library != program)
     for (fs::path above = library.parent_path(); above != above.root_path(); above = above.parent_path())
       candidates.push_back(above / wanted);

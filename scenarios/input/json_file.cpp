@@ -17,7 +17,7 @@
 namespace hapbench {
 namespace {
 
-constexpr int kMaxNesting = 64;           ///< levels of objects and lists; bounds the recursion
+constexpr int kMaxNesting = 64;           ///< maximum number of nested objects and lists; bounds the recursion
 constexpr std::size_t kMaxKeys = 10'000;  ///< maximum number of keys of one object
 
 [[noreturn]] void refuse_syntax(const std::string& problem) {

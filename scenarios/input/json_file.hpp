@@ -21,11 +21,12 @@ inline constexpr std::uintmax_t kMaxJsonFileBytes = 64 << 20;
 /// numbers beyond the range of double.
 Json parse_json(const std::string& text);
 
-/// Reads and parses a file. Throws InputError, without the file's name, if the file cannot be read, is larger
-/// than kMaxJsonFileBytes or is not valid for parse_json.
+/// Reads and parses a file. Throws InputError, without the file's name, if the file cannot be read, is larger than
+/// kMaxJsonFileBytes, or has JSON that parse_json() rejects.
 Json read_json(const std::filesystem::path& file);
 
-/// Returns the value in the form for error messages: JSON on one line, truncated if it is long.
+/// Returns the value in the form for error messages: JSON on one line, truncated if it is long. A list or object with
+/// more than 20 entries is replaced by its number of entries.
 std::string shown(const Json& json);
 
 /// Returns the JSON pointer of a member of the object at the pointer `at`, escaped by RFC 6901.

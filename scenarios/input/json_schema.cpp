@@ -76,7 +76,7 @@ class SchemaWriter final : public Fields {
                     FunctionRef<Fields&, std::size_t> fields) override {
     guide_.allowed =
         fmt::format("an object whose \"{}\" is one of {}", kTypeField, quoted_list(names_of(types, &TypeName::name)));
-    // Document each type with a writer of its own.
+    // Document each type with a separate writer.
     Json schemas = Json::array();
     for (std::size_t i = 0; i < types.size(); ++i) {
       SchemaWriter choice(definitions_);

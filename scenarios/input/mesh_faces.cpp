@@ -13,7 +13,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Unevenness above which a warning reports that a polygon is not planar.
+/// A warning reports polygons whose unevenness is above this value. Unevenness: largest distance of a corner from the
+/// plane, divided by the diameter of the polygon.
 constexpr double kReportedUnevenness = 0.05;
 
 /// Throws InputError that names the file and, if lines are known, the line of an entry.
@@ -23,13 +24,13 @@ constexpr double kReportedUnevenness = 0.05;
   fail_in_file(file, problem);
 }
 
-/// Returns the text by which a warning names a face: its line, or its number in a binary file.
+/// Returns the text by which a warning names a face: the line of the face, or the number of the face in a binary file.
 std::string place_of_face(const MeshFaces& faces, std::size_t f) {
   return f < faces.face_lines.size() ? fmt::format("in line {}", faces.face_lines[f])
                                      : fmt::format("{} {}", faces.face_name, f);
 }
 
-/// Polygons with a property that a warning reports.
+/// Counts the polygons with a property that a warning reports. Keeps the first polygon and the largest value.
 struct Reported {
   std::size_t count = 0, first = 0;
   double largest = 0.0;
@@ -56,7 +57,7 @@ int winding_between(std::span<const std::uint32_t> a, std::span<const std::uint3
   return 0;
 }
 
-/// Finds polygons with the same corners as an earlier polygon. Both are divided into the same triangles, so that
+/// Finds polygons with the same corners as an earlier polygon. Divides both polygons into the same triangles, so that
 /// mesh_from_triangles() recognises the copy.
 class RepeatedPolygons {
  public:
@@ -86,7 +87,7 @@ class RepeatedPolygons {
     }
     return false;
   }
-  /// Notes the triangles of polygon `f`.
+  /// Stores the index range [begin, end) of the triangles of polygon `f`.
   void add(std::size_t f, std::size_t begin, std::size_t end) {
     if (hashes_.empty()) return;
     const std::uint64_t hash = hash_of(f);
@@ -108,7 +109,7 @@ class RepeatedPolygons {
   }
 
   const MeshFaces& faces_;
-  std::vector<std::uint64_t> hashes_;  ///< hashes that several polygons have, sorted
+  std::vector<std::uint64_t> hashes_;  ///< hashes that two or more polygons have, sorted
   std::map<std::uint64_t, std::vector<Divided>> earlier_;
 };
 
@@ -133,7 +134,7 @@ void check_indices(const MeshFaces& faces, const fs::path& file) {
   const auto number = first + static_cast<std::int32_t>(*wrong);
   const std::string allowed = vertices == 0 ? "vertices of the file, which has none"
                                             : fmt::format("{} ... {}, the vertices of the file", first, last);
-  // Only OBJ does not declare its number of vertices.
+  // Only an OBJ file declares no number of vertices, so that a file that was cut short is not detected earlier.
   const bool may_be_cut = first == 1 && number > last;
   faces.fail_at_face(
       face, fmt::format("got vertex {}; allowed: {}{}", number, allowed, may_be_cut ? " (is the file cut short?)" : ""),

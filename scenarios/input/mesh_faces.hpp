@@ -13,7 +13,7 @@ namespace hapbench {
 
 /// Vertices and faces of a mesh file, as its reader found them. Faces are polygons with three corners or more.
 struct MeshFaces {
-  std::vector<Vec3> vertices;               ///< in the file's unit; in metres after scaling
+  std::vector<Vec3> vertices;               ///< positions in the file's unit, or in metres after scaling
   std::vector<std::uint32_t> corners = {};  ///< vertex indices of all faces, from 0
   std::vector<std::uint32_t> ends = {};     ///< for each face: index in `corners` after its last corner
   /// Lines in the file, from 1, of the vertices and of the faces. Empty for a binary file.
@@ -49,8 +49,8 @@ struct MeshFaces {
 /// Throws InputError if a face refers to a vertex that the file does not have.
 void check_indices(const MeshFaces& faces, const std::filesystem::path& file);
 
-/// Divides the faces into triangles (PolygonDivider). Adds a warning to `faces` about polygons that are not planar and
-/// about repeated corners. Throws InputError for a face that cannot be divided. Precondition: check_indices().
+/// Divides the faces into triangles (PolygonDivider). Adds warnings to `faces` about polygons that are not planar and
+/// polygons with repeated corners. Throws InputError for a face that cannot be divided. Precondition: check_indices().
 std::vector<TriangleCorners> triangles_of(MeshFaces& faces, const std::filesystem::path& file);
 
 }  // namespace hapbench

@@ -57,7 +57,7 @@ CheckedMesh connect(const TriangleSoup& soup, const fs::path& file) {
 constexpr double kMaxFaces = 2.0 * kMaxSurfacePoints;
 
 /// Throws InputError for an open mesh whose file ends within the line of the last face, if this face has fewer corners
-/// than all others.
+/// than every other face.
 void refuse_cut_face(const MeshFaces& faces, const MeshFindings& found, const fs::path& file) {
   if (faces.unfinished_line == 0 || faces.ends.size() < 2 || found.open_edges.empty()) return;
   const std::size_t last = faces.ends.size() - 1, corners = faces.face(last).size();
@@ -70,7 +70,7 @@ void refuse_cut_face(const MeshFaces& faces, const MeshFindings& found, const fs
                   corners));
 }
 
-/// Throws InputError for a surface that cannot be sampled.
+/// Throws InputError if no point shell can be made from the surface.
 void check_surface(const CheckedMesh& surface, const MeshSampling& sampling, const fs::path& file) {
   if (sampling.flip && surface.findings.open_edges.empty())
     fail_in_file(file, "is closed, so that its outside is known; allowed: flip_normals of an open surface only");
@@ -94,14 +94,15 @@ void warn_of_unused_vertices(MeshFaces& faces, std::size_t vertices, bool is_ope
   const auto first = static_cast<std::size_t>(std::ranges::find(is_used, false) - is_used.begin());
   const std::string line =
       first < faces.vertex_lines.size() ? fmt::format(" in line {}", faces.vertex_lines[first]) : "";
-  // OBJ does not declare its number of faces.
+  // An OBJ file declares no number of faces, so that a file that was cut short is not detected earlier.
   const bool may_be_cut = is_open && faces.first_vertex == 1;
   faces.warnings.push_back(fmt::format("vertices that no face uses, which were ignored: {}, the first is vertex {}{}{}",
                                        unused, first + faces.first_vertex, line,
                                        may_be_cut ? "; the mesh is open: is the file cut short?" : ""));
 }
 
-/// Parses the contents of a mesh file and makes all checks. Adds what the reader ignored or guessed to `warnings`.
+/// Parses and checks the contents of a mesh file. Stores in `warnings` what the reader ignored or guessed. Throws
+/// InputError.
 CheckedMesh read_surface(std::string_view bytes, const fs::path& file, const MeshSampling& sampling,
                          std::vector<std::string>& warnings) {
   // Parse the faces.
@@ -214,7 +215,7 @@ std::vector<std::string> MeshFile::warnings(const fs::path& file) const {
   };
   for (const std::string& text : file_warnings_) warn(text);
   warn_of_copies(found, warn);
-  // Boundary edges, with their bounding box in millimetres.
+  // Warn about boundary edges, with their bounding box in millimetres.
   if (!found.open_edges.empty()) {
     Box box{found.open_edges[0], found.open_edges[0]};
     for (const Vec3& p : found.open_edges) box = {box.min.cwiseMin(p), box.max.cwiseMax(p)};
@@ -224,14 +225,14 @@ std::vector<std::string> MeshFile::warnings(const fs::path& file) const {
         "beyond them there is nothing to touch",
         found.open_edges.size(), a.x(), b.x(), a.y(), b.y(), a.z(), b.z()));
   }
-  // Edges with more than two faces.
+  // Warn about edges with more than two faces.
   if (!found.non_manifold_edges.empty()) {
     const Vec3 p = 1e3 * found.non_manifold_edges[0];
     warn(fmt::format(
         "the surface is cut along edges with more than two faces: {}, the first at ({:.3g}, {:.3g}, {:.3g}) mm",
         found.non_manifold_edges.size(), p.x(), p.y(), p.z()));
   }
-  // Repairs of faces.
+  // Warn about repaired faces.
   for (const auto& [count, text] :
        {std::pair{found.degenerate_triangles, "faces left out, two of their corners being the same"},
         {found.flipped_triangles, "faces turned, which were wound against their neighbours"},

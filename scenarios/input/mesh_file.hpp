@@ -23,11 +23,12 @@ bool is_mesh_name(const std::filesystem::path& file);
 /// supported.
 std::string mesh_extension(const std::filesystem::path& file);
 
-/// Largest diameter of a speck, relative to the diameter of the largest component.
+/// A component of a mesh is a speck if its diameter is at most this fraction of the diameter of the largest component.
 inline constexpr double kSpeckSize = 0.05;
 
-/// Returns the number of components that are no specks. They are the first in the list of components. A mesh that was
-/// cut along edges with more than two faces has no specks, because small components may belong to the surface.
+/// Returns the number of components that are not specks (kSpeckSize). These components come first in the list of
+/// components. In a mesh that was cut along edges with more than two faces, no component counts as a speck, because
+/// small components may belong to the surface.
 std::size_t components_above_speck_size(const MeshFindings& found);
 
 /// The checked surface of a mesh file (.obj, .ply, .stl or .off; PLY and STL as text or binary). Copies share the
@@ -39,8 +40,8 @@ class MeshFile {
   MeshFile(std::string_view bytes, const std::filesystem::path& file, const MeshSampling& sampling);
 
   /// Returns warnings about the file and the mesh: parts of the file were ignored, the mesh is open, it has specks
-  /// (components much smaller than the largest), or it was repaired (faces were reversed, removed, or cut apart at an
-  /// edge). Each warning names the file without its folder, because warnings are part of the results and
+  /// (components much smaller than the largest component), or it was repaired (faces were reversed, removed, or cut
+  /// apart at an edge). Each warning names the file without its folder, because warnings are part of the results and
   /// results must not depend on the folder.
   std::vector<std::string> warnings(const std::filesystem::path& file) const;
   /// Returns the midpoints of the boundary edges, which have only one face [m]. Empty for a closed surface.
@@ -51,8 +52,8 @@ class MeshFile {
 
   /// Returns the repairs, irregularities and components of the mesh.
   const MeshFindings& findings() const;
-  /// Returns the mesh without specks and other components: the component with the largest diameter alone, with the same
-  /// sampling and without warnings. Returns the mesh itself if it has one component.
+  /// Returns a mesh that consists of the component with the largest diameter, with the same sampling and without
+  /// warnings of the file reader. Returns the mesh itself if it has only one component.
   MeshFile largest_component() const;
 
   /// Returns the triangles [m], with consistent winding. Faces of closed parts are wound such that their normals

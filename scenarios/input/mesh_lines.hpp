@@ -29,7 +29,7 @@ class MeshLines {
   const Words& words() const { return words_; }
   /// Returns the number of the current line, from 1. A continued line has the number of its first line.
   std::size_t line() const { return first_line_; }
-  /// Returns the first token of the last line that a backslash joined to the current line; empty without such a line.
+  /// Returns the first token of the last line that a backslash joined to the current line; empty if no line was joined.
   std::string_view joined_token() const { return joined_token_; }
   /// Returns true if the current line is the last line and has no line end, as if the file was cut within it.
   bool may_be_cut() const { return !lines_.has_line_end(); }

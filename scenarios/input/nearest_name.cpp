@@ -34,7 +34,7 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
         row[j] = std::min(row[j], row_before_previous[j - 2] + 1);
     }
   }
-  // Allow a missing ending of `b`.
+  // Allow `a` to lack the ending of `b` after an underscore, at the cost of one edit.
   std::size_t smallest = row.back();
   for (std::size_t j = 1; j < b.size(); ++j)
     if (b[j] == '_') smallest = std::min(smallest, row[j] + 1);
@@ -53,8 +53,8 @@ std::string nearest_name(std::string_view given, std::span<const std::string> va
   if (const std::string_view now = valid_new_name(given, valid); !now.empty()) return std::string(now);
   const std::string lower = lower_case(given);
   std::string best;
-  // Accept a distance of up to a third of the number of letters, or 2 if this is more. For names of up to 4 letters
-  // accept at most 1, because they would otherwise match almost any name.
+  // Accept a distance of up to a third of the number of letters, and always a distance of 2. For names of up to 4
+  // letters accept only 1, because short names would otherwise match almost any name.
   std::size_t best_distance = std::max<std::size_t>(given.size() > 4 ? 2 : 1, given.size() / 3) + 1;
   for (const std::string& name : valid) {
     // Skip names whose difference in length alone exceeds the distance. A name from an untrusted file may be

@@ -12,19 +12,20 @@
 namespace hapbench {
 namespace {
 
-/// Returns a cell without white space and quotes around it.
+/// Returns a cell without white space and double quotes at its ends.
 std::string_view unquoted(std::string_view cell) {
   cell = trimmed(cell);
   if (cell.size() >= 2 && cell.front() == '"' && cell.back() == '"') cell = trimmed(cell.substr(1, cell.size() - 2));
   return cell;
 }
 
-/// Removes empty cells behind the number of columns, which come from separators at the end of a row.
+/// Removes empty cells at the end of a row while it has more than `columns` cells. Separators at the end of a row cause
+/// such cells.
 void drop_trailing_cells(Words& cells, std::size_t columns) {
   while (cells.size() > columns && cells.back().empty()) cells.pop_back();
 }
 
-/// Returns a comment without the characters that begin it.
+/// Returns a comment without the characters '#', '%' and white space at its start.
 std::string_view comment_text(std::string_view line) {
   line = trimmed(line);
   return line.substr(std::min(line.find_first_not_of("#% \t"), line.size()));
@@ -47,7 +48,7 @@ HeaderNames names_in(std::string_view line, std::span<const std::string_view> ex
   return best;
 }
 
-/// Returns a separator as a message names it.
+/// Returns the name of a separator for messages.
 std::string separator_name(char separator) {
   if (separator == '\t') return "tabs";
   return separator == ' ' ? "white space" : fmt::format("\"{}\"", separator);
@@ -155,7 +156,8 @@ void CsvReader::find_header(std::span<const std::string_view> expected) {
     const bool comment = has_comments_ && is_comment(*line);
     HeaderNames found = names_in(comment ? comment_text(*line) : *line, expected);
     if (comment && found.expected == 0) continue;
-    // A row of numbers follows the header in the comment. Every other line is the header.
+    // If a comment above has expected names and this line has none, this line is a row, and the comment is the header.
+    // Otherwise this line is the header.
     const bool is_row = !comment && header.expected > 0 && found.expected == 0;
     if (is_row) {
       lines_ = before;
@@ -181,7 +183,7 @@ void CsvReader::skip_lines_above_header(std::span<const std::string_view> expect
     if (trimmed(*line).empty() || is_comment(*line)) continue;
     HeaderNames found = names_in(*line, expected);
     if (finite_number(found.names[0]) || has_decimal_comma(found.names[0])) return;
-    // A title may hold one of the names by chance.
+    // Require two expected names, because a title may contain one of them by chance.
     if (found.expected >= std::min<std::size_t>(2, expected.size())) {
       first_line_above_ = header_line_;
       lines_above_ = above;
@@ -249,13 +251,13 @@ std::size_t NumberTable::line_of(std::size_t row) const {
 
 namespace {
 
-/// Columns of a file that a table takes.
+/// The columns of a file that are read into a table.
 struct TakenColumns {
-  std::vector<std::size_t> cells;  ///< index in the file of each column of the table
+  std::vector<std::size_t> cells;  ///< for each column of the table: its index in the file
   std::vector<std::optional<std::size_t>> chosen;
 };
 
-/// Returns the text of an error message about the columns that a file may have.
+/// Returns the part of an error message that names the columns that a file may have.
 std::string allowed_columns(std::span<const TableQuantity> quantities) {
   std::vector<std::string> texts;
   for (const TableQuantity& quantity : quantities) {
@@ -285,8 +287,9 @@ std::vector<std::string_view> missing_names(const std::vector<std::string_view>&
   return missing;
 }
 
-/// Chooses the alternative of a quantity that the file has. Appends the missing names to `missing` if the file has no
-/// alternative.
+/// Returns the index of the alternative whose columns the file has; empty if the file has no complete alternative. Then
+/// appends the missing names to `missing`, unless an optional quantity is missing altogether. Throws InputError if the
+/// file has the columns of two alternatives.
 std::optional<std::size_t> chosen_alternative(const TableQuantity& quantity, const CsvReader& csv,
                                               const std::filesystem::path& file, std::vector<std::string>& missing) {
   std::optional<std::size_t> chosen;
@@ -301,7 +304,7 @@ std::optional<std::size_t> chosen_alternative(const TableQuantity& quantity, con
                                fmt::join(quantity.alternatives[*chosen], ","), fmt::join(alternative, ",")));
     }
     if (names.empty()) chosen = i;
-    // Of an alternative that the file has in part, only the rest is missing.
+    // If the file has a part of an alternative, report only the missing columns of this alternative.
     const bool is_partial = names.size() < alternative.size();
     if (is_partial && !has_some) absent.clear();
     if (is_partial || !has_some) absent.push_back(fmt::format("{}", fmt::join(names, ",")));
@@ -311,7 +314,7 @@ std::optional<std::size_t> chosen_alternative(const TableQuantity& quantity, con
   return chosen;
 }
 
-/// Returns a note about the columns of a file that a table does not take; nothing if it takes all.
+/// Returns a note about the columns of a file that are not read; nothing if all columns are read.
 std::optional<std::string> unused_columns(const CsvReader& csv, const TakenColumns& taken) {
   constexpr std::size_t kShown = 10;
   std::vector<std::string> names;
@@ -326,7 +329,7 @@ std::optional<std::string> unused_columns(const CsvReader& csv, const TakenColum
                      fmt::join(names, ", "), count == 1 ? "is" : "are");
 }
 
-/// Finds the columns of the quantities in the header.
+/// Finds the columns of the quantities in the header. Throws InputError if a column is missing.
 TakenColumns take_columns(const CsvReader& csv, const std::filesystem::path& file,
                           std::span<const TableQuantity> quantities) {
   const Words& columns = csv.columns();
@@ -351,7 +354,7 @@ TakenColumns take_columns(const CsvReader& csv, const std::filesystem::path& fil
       fmt::format("got header {}; missing: {}; allowed: {}", quoted_token(header), fmt::join(missing, "; "), allowed));
 }
 
-/// Returns what is wrong with a cell that is not a number.
+/// Returns the error message for a cell that is not a number.
 std::string cell_problem(const CsvReader& csv, std::size_t cell) {
   const std::string_view text = csv.cells()[cell];
   const std::string lower = lower_case(text);
@@ -385,8 +388,8 @@ class RowParser {
   RowParser(CsvReader rows, const TakenColumns& taken, bool decimal_comma)
       : csv_(std::move(rows)), taken_(taken), decimal_comma_(decimal_comma) {}
 
-  /// Appends the rows to the table. Returns the line of the first decimal comma, and stops there, if no decimal comma
-  /// is expected.
+  /// Appends the rows to the table. If the parser does not expect decimal commas, stops at the first decimal comma and
+  /// returns its line. Otherwise returns nothing.
   std::optional<std::size_t> read(NumberTable& table, const std::filesystem::path& file, std::size_t max_rows) {
     std::size_t row = 0, line = 0;  // index of the row, and line of the previous row
     while (csv_.advance()) {
@@ -450,7 +453,7 @@ NumberTable parse_number_table(std::string_view text, const std::filesystem::pat
   table.chosen = taken.chosen;
   if (auto note = csv.note_of_lines_above()) table.notes.push_back(std::move(*note));
   if (auto note = unused_columns(csv, taken)) table.notes.push_back(std::move(*note));
-  // Parse the rows; again if they have decimal commas, because a point is then no decimal point.
+  // Parse the rows. If a number has a decimal comma, parse all rows again, because a point is then not a decimal point.
   if (const auto line = RowParser(csv, taken, false).read(table, file, max_rows)) {
     table.values.clear();
     table.line_jumps.clear();

@@ -21,7 +21,8 @@ inline constexpr char kSeparators[] = {',', ';', '\t', ' '};
 /// quotes does not separate.
 void split_cells(std::string_view row, char separator, Words& cells);
 
-/// Returns the separator that the words of a header most likely have: ';', else a tab, else ',', else white space.
+/// Returns the most likely separator of a header: the first of ';', tab and ',' that occurs in the header. Without
+/// these, returns white space, or ',' for a single word.
 char separator_in(std::string_view header);
 
 /// Returns true if a line is a comment, which begins with '#' or '%', or names the separator for a spreadsheet
@@ -38,14 +39,16 @@ bool has_decimal_comma(std::string_view cell);
 /// Returns "; write an exponent as in 1e-3" for a number such as "1.5D-03", as Fortran writes it; otherwise empty.
 std::string cause_of_exponent(std::string_view cell);
 
-/// The first fault of a table, and the number of rows with faults. A table with a fault in every row gives one message.
+/// Collects the first fault of a table and the number of rows with faults. A table with a fault in every row thus
+/// causes a single message.
 class RowFaults {
  public:
   /// Adds the fault of a row. Only the text of the first fault is kept, and a row with several faults counts once.
   /// `line` is 0 in a binary file. `entry` names the entry of the row, such as "sample 3"; it may be empty.
   void add(std::size_t line, const std::string& problem, const std::string& entry = "");
   bool any() const { return count_ > 0; }
-  /// Throws InputError with the line of the first fault and the number of further faults, if there is a fault.
+  /// If a fault was added, throws InputError with the line of the first fault and the number of further rows with
+  /// faults.
   void throw_if_any(const std::filesystem::path& file) const;
 
  private:
@@ -53,39 +56,42 @@ class RowFaults {
   std::string problem_, entry_;
 };
 
-/// Names of a header, and the separator with which it has the largest number of expected names.
+/// Column names of a header, split by the separator that gives the largest number of expected names.
 struct HeaderNames {
   Words names;
   char separator = ',';
-  std::size_t expected = 0;  ///< number of expected names
+  std::size_t expected = 0;  ///< number of `names` that are expected
 };
 
 /// Reads a table row by row.
 ///
 /// Separators are commas, semicolons, tabs or white space, the same in all rows. Cells may have double quotes. Blank
-/// lines and comments (is_comment()) are skipped. The header is the first other line, or a comment before it that has
-/// an expected name. If neither has an expected name, it is the first of the next lines that has two, before a line
-/// that begins with a number. A separator at the end of the header or of a row is ignored.
+/// lines and comments (is_comment()) are skipped. The header is the first line that is neither blank nor a comment. If
+/// this line has no expected name, the last comment above it that has an expected name is the header. If no such
+/// comment exists either, the reader searches the next 20 lines, up to a line that begins with a number, for a header
+/// with two expected names. A separator at the end of the header or of a row is ignored.
 class CsvReader {
  public:
-  /// Reads the header. `expected`: names of columns, by which the reader finds the header and its separator; without
-  /// names the header is the first line and the separator is a comma. The text and the path must outlive the reader.
+  /// Reads the header. `expected`: names of columns, by which the reader finds the header and its separator. If
+  /// `expected` is empty, the header is the first line, the separator is a comma, and no line is a comment. The text
+  /// and the path must outlive the reader.
   CsvReader(LineReader lines, const std::filesystem::path& file, std::span<const std::string_view> expected = {});
 
   /// Returns the names in the header; a single empty name if the text has no header.
   const Words& columns() const { return columns_; }
   std::size_t header_line() const { return header_line_; }  ///< line number of the header, from 1; 0 without header
   char separator() const { return separator_; }
-  /// Returns a note about lines above the header that are no comments, such as a title; nothing if there are none.
+  /// Returns a note about lines above the header that are not comments, such as a title; nothing if there are no such
+  /// lines.
   std::optional<std::string> note_of_lines_above() const;
 
   /// Advances to the next row and returns true, or returns false at the end of the text.
   /// Throws InputError if the number of cells differs from the number of columns.
   bool next();
-  /// Like next(), but does not throw: has_all_cells() is false for such a row.
+  /// Advances like next(), but does not throw. For a row with a wrong number of cells, has_all_cells() returns false.
   bool advance();
   bool has_all_cells() const { return cells_.size() == columns_.size(); }
-  /// Returns what is wrong with a row that does not have all cells.
+  /// Returns the error message for the current row. Precondition: !has_all_cells().
   std::string cell_count_problem() const;
 
   /// Returns the cells of the current row.
@@ -95,7 +101,8 @@ class CsvReader {
 
  private:
   void find_header(std::span<const std::string_view> expected);
-  /// Replaces `header`, a line without expected names, by a header in one of the next lines, if there is one.
+  /// Replaces `header` by a header with expected names in one of the next lines, if there is one. Precondition:
+  /// `header` has no expected names.
   void skip_lines_above_header(std::span<const std::string_view> expected, HeaderNames& header);
   void split(std::string_view row);
   /// Finds the separator of the rows, which may differ from the separator of the header.
@@ -105,17 +112,17 @@ class CsvReader {
   const std::filesystem::path& file_;
   std::string_view row_;
   char separator_ = ',';
-  bool has_comments_ = false;  ///< comments are skipped
+  bool has_comments_ = false;  ///< true: comments are skipped
   bool is_first_row_ = true;
   std::size_t header_line_ = 0, first_line_above_ = 0, lines_above_ = 0;
   Words columns_, cells_;
 };
 
-/// A quantity of a table. Its components are columns with fixed names.
+/// A quantity of a table, such as a position. Its components are columns with fixed names.
 struct TableQuantity {
-  /// Names of the columns. A table has the columns of exactly one of the alternatives.
+  /// Alternative lists of column names. A table has the columns of exactly one of these lists.
   std::vector<std::vector<std::string_view>> alternatives;
-  bool is_optional = false;  ///< a table may have none of the columns
+  bool is_optional = false;  ///< true: a table may lack the quantity
 };
 
 /// The numbers of a table, as a matrix.
@@ -123,11 +130,11 @@ struct NumberTable {
   std::size_t columns = 0;
   /// Row by row (row-major). The columns have the order of the quantities, whatever their order in the file.
   std::vector<double> values;
-  /// Index of the alternative of each quantity that the table has; empty if it has no columns of the quantity.
+  /// For each quantity: index of the alternative whose columns the table has; empty if the table lacks the quantity.
   std::vector<std::optional<std::size_t>> chosen;
   /// One sentence for each thing that the reader ignored or assumed, beginning with the line: "line 1: …".
   std::vector<std::string> notes;
-  /// Rows whose line does not follow the line of the previous row, with their lines.
+  /// Index and line of each row whose line does not directly follow the line of the previous row.
   std::vector<std::pair<std::size_t, std::size_t>> line_jumps;
 
   std::size_t rows() const { return columns == 0 ? 0 : values.size() / columns; }

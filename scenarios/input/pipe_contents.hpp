@@ -12,10 +12,10 @@ namespace hapbench {
 /// bytes only once, but a command may need them several times: to check, to run and to hash. Thread-safe.
 class PipeContents {
  public:
-  /// Returns the contents of a pipe that was read before, if it has not been written to since. Returns nothing for
+  /// Returns the stored contents of a pipe, if the pipe has not been written to since it was read. Returns nothing for
   /// every other file.
   std::optional<std::string> find(const std::filesystem::path& file) const;
-  /// Keeps the contents if the file is a pipe. Called after it was read to its end.
+  /// Stores the contents if the file is a pipe. Called after the file was read to its end.
   void keep(const std::filesystem::path& file, const std::string& contents);
 
  private:
@@ -26,8 +26,8 @@ class PipeContents {
 /// Returns the contents of the pipes of this process.
 PipeContents& pipe_contents();
 
-/// Returns true for a file without a folder of its own: /dev/stdin, <(command) and other files of /dev and /proc.
-/// Relative paths in such a file have no meaning.
+/// Returns true for a file under /dev or /proc, such as /dev/stdin or <(command). Relative paths in such a file have no
+/// meaning, because the file has no folder of its own.
 bool has_no_folder(const std::filesystem::path& file);
 
 }  // namespace hapbench

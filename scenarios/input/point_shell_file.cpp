@@ -28,7 +28,7 @@ const std::vector<TableQuantity> kColumns = {{.alternatives = {{"x_m", "y_m", "z
 /// Points of a file, with the line of each point.
 struct ReadPoints {
   std::vector<SurfacePoint> points;
-  std::function<std::size_t(std::size_t)> line_of = {};  ///< null if the lines are not known
+  std::function<std::size_t(std::size_t)> line_of = {};  ///< returns the line of a point; null if lines are unknown
 };
 
 ReadPoints parse_csv_points(std::string_view text, const fs::path& file, std::vector<std::string>* notes) {

@@ -14,10 +14,10 @@ namespace hapbench {
 std::string shell_extension(const std::filesystem::path& file);
 
 /// Parses the contents of a point-shell file: CSV with the columns x_m,y_m,z_m,nx,ny,nz (parse_number_table), or PLY
-/// with vertex normals. Coordinates must be finite and at most 1 km. Normals must have length 1 within 1e-3. They are
-/// normalised, unless their length is 1 within 1e-12. `notes`: gets what the reader ignored or assumed
-/// (NumberTable::notes, parse_ply_points). Throws InputError that names the file, the line or point, and how many
-/// further points have faults.
+/// with vertex normals. Coordinates must be finite, with a magnitude of at most 1 km. Normals must have length 1 within
+/// 1e-3. They are normalised, unless their length is 1 within 1e-12. `notes`: receives what the reader ignored or
+/// assumed (NumberTable::notes, parse_ply_points). Throws InputError that names the file, the line or point, and how
+/// many further points have faults.
 std::vector<SurfacePoint> parse_point_shell(std::string_view text, const std::filesystem::path& file,
                                             std::vector<std::string>* notes = nullptr);
 

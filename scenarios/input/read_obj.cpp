@@ -16,8 +16,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Statements that describe no surface, such as names, materials, normals and display; and parts of free-form shapes,
-/// which kOtherShapes reports.
+/// Statements that are ignored without a warning. Some describe no surface, such as names, materials and normals. The
+/// others are parts of free-form shapes; the warning about kOtherShapes covers them.
 constexpr std::array<std::string_view, 31> kWithoutShape = {
     "vt",   "vn",     "g",        "o",        "s",    "mg",         "mtllib",    "usemtl", "usemap", "maplib", "bevel",
     "lod",  "trace",  "c_interp", "d_interp", "end",  "shadow_obj", "trace_obj", "ctech",  "stech",  "vp",     "deg",
@@ -107,7 +107,7 @@ MeshFaces read_obj(std::string_view text, const fs::path& file) {
       read_face(lines, faces);
       faces.unfinished_line = lines.may_be_cut() ? lines.line() : 0;
     } else {
-      // The name of a folder, such as "mtllib C:\\models\\", would swallow the next line.
+      // The backslash at the end of a folder name, such as "mtllib C:\\models\\", joins the next line to this line.
       if (lines.joined_token() == "v" || lines.joined_token() == "f") {
         lines.fail(
             fmt::format("got {} with a backslash at its end, which joins the next line, {}, to it; allowed: a name "

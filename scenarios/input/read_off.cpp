@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Names of the text formats of OFF, with the data that a vertex has besides its position.
+/// Keywords of the text formats of OFF. The letters before "OFF" name the data of a vertex besides its position.
 constexpr std::array<std::string_view, 8> kKinds = {"STCNOFF", "STCOFF", "STNOFF", "STOFF",
                                                     "CNOFF",   "COFF",   "NOFF",   "OFF"};
 
@@ -29,8 +29,8 @@ std::string_view keyword_of(std::string_view word) {
   return found == kKinds.end() ? "" : *found;
 }
 
-/// Returns true for the keyword of a file whose vertices have four coordinates (4OFF) or any number of them (nOFF). The
-/// format tells "nOFF" from "NOFF", vertices with normals, by the small letter.
+/// Returns true for the keyword of a file whose vertices have four coordinates (4OFF) or any number of coordinates
+/// (nOFF). The small letter distinguishes "nOFF" from "NOFF", which has vertices with normals.
 bool has_other_dimension(std::string_view word) {
   const std::size_t at = word.find("OFF");
   return at != std::string_view::npos && word.substr(0, at).find_first_of("4n") != std::string_view::npos &&
@@ -40,7 +40,7 @@ bool has_other_dimension(std::string_view word) {
 /// Counts of the entries, as the header declares them.
 struct Counts {
   std::size_t vertices, faces;
-  bool has_edges;  ///< false: the number of edges may follow in a line of its own
+  bool has_edges;  ///< false: the number of edges may follow in a separate line
 };
 
 /// Reads the counts, which follow the keyword in the same line or in the next lines. The keyword has `length` letters.
@@ -103,7 +103,7 @@ MeshFaces read_off(std::string_view text, const fs::path& file) {
   if (!lines.next()) refuse();
   const Words& header = lines.words();
   const std::string_view keyword = keyword_of(header[0]);
-  // The format allows a file without a keyword, which begins with its counts.
+  // The format allows a file without a keyword. Such a file begins with its counts.
   const bool has_counts = header.size() == 3 && std::ranges::all_of(header, [](std::string_view word) {
                             return whole_number(word).has_value();
                           });

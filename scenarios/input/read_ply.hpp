@@ -17,8 +17,8 @@ namespace hapbench {
 /// names the file and, for a text, the line.
 MeshFaces read_ply(std::string_view text, const std::filesystem::path& file);
 
-/// Parses the vertices of a PLY file as points with normals, from the properties x, y, z [m], nx, ny and nz of
-/// any numeric type. Ignores all other elements and properties. `notes`: gets warnings about data after the last
+/// Parses the vertices of a PLY file as points with normals, from the properties x, y, z [m], nx, ny and nz of any
+/// numeric type. Ignores all other elements and properties. `notes`: receives warnings about data after the last
 /// declared vertex. Throws InputError that names the file and, for a text, the line.
 std::vector<SurfacePoint> parse_ply_points(std::string_view text, const std::filesystem::path& file,
                                            std::vector<std::string>* notes = nullptr);

@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 // Sizes in a binary file [bytes]: the name, the name with the number of triangles, and one triangle.
 constexpr std::size_t kName = 80, kHeader = 84, kTriangle = 50;
 
-/// Keywords of a text.
+/// Keywords of an STL file in text form.
 constexpr std::array<std::string_view, 7> kKeywords = {"solid",   "facet",    "outer",   "vertex",
                                                        "endloop", "endfacet", "endsolid"};
 
@@ -56,7 +56,7 @@ class StlKeywords {
 
  private:
   static bool is_keyword(std::string_view word) {
-    // Most tokens are numbers, which no letter begins.
+    // First reject tokens that do not begin with a letter, because most tokens are numbers.
     const bool has_letter = ('a' <= word[0] && word[0] <= 'z') || ('A' <= word[0] && word[0] <= 'Z');
     return has_letter && std::ranges::find(kKeywords, lower_case(word)) != kKeywords.end();
   }
@@ -146,8 +146,8 @@ bool is_text(std::string_view text) {
   return false;
 }
 
-/// Throws InputError for a file that is neither a text nor a complete binary file. `triangles`: the number that a
-/// binary header declares, of which the file holds `complete`.
+/// Throws InputError for a file that is neither a text nor a complete binary file. `triangles`: number of triangles
+/// that a binary header declares. `complete`: number of triangles that the file contains.
 [[noreturn]] void refuse(std::string_view text, std::size_t triangles, std::size_t complete, const fs::path& file) {
   constexpr const char* kAllowed = "; allowed: \"solid\" and text, or 84 bytes and 50 for each triangle";
   // A text of another kind, such as a page that a server sent instead of the file, has no binary header.
@@ -176,7 +176,7 @@ MeshFaces read_stl(std::string_view text, const fs::path& file) {
     triangles = reader.take<std::uint32_t>();
     complete = reader.left() / kTriangle;
   }
-  // The size of a binary file is exact, even if its header looks like a text.
+  // A file with exactly the declared size is binary, even if its header begins like a text.
   const bool is_exact = text.size() == kHeader + kTriangle * triangles;
   if (is_text(text) && !is_exact) return read_stl_text(text, file);
   if (text.size() < kHeader || complete < triangles) refuse(text, triangles, complete, file);

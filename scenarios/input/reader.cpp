@@ -133,7 +133,7 @@ class Reader final : public Fields {
     if (names_ != nullptr) return names_->push_back(name);
     const auto entry = json_.find(name);
     if (entry != json_.end()) return collect([&] { read_value(*entry, member(at_, std::string(name)), value); });
-    // If an unknown field has a similar name, the unknown field has been reported with this name as the suggestion.
+    // Do not report a missing field if its name was already suggested as a correction for an unknown field.
     if (presence != Presence::required || std::ranges::count(suggested_, name) > 0) return;
     collect([&] { fail(fmt::format("missing field \"{}\"; allowed: {}", name, guide_to(value).allowed)); });
   }

@@ -57,7 +57,7 @@ inline constexpr RenamedName kRenamedNames[] = {
     {"not reproducible", "not testable"},
 };
 
-/// Returns the new name of a name that was renamed, else an empty text.
+/// Returns the new name of `before`; an empty text if this name was not renamed.
 constexpr std::string_view new_name_of(std::string_view before) {
   for (const RenamedName& renamed : kRenamedNames)
     if (renamed.before == before) return renamed.now;

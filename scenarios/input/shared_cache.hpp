@@ -47,8 +47,8 @@ class SharedCache {
     std::mutex mutex;
     Made made;
   };
-  static constexpr std::size_t kMaxEntries = 128;                   ///< largest number of values, unless the machine
-                                                                    ///< has many threads
+  /// Largest number of values, unless two values for each hardware thread are more.
+  static constexpr std::size_t kMaxEntries = 128;
   static constexpr std::size_t kMaxBytes = std::size_t{512} << 20;  ///< largest size of all values together [bytes]
 
   std::shared_ptr<const void> get_untyped(const std::string& key, const std::function<Made()>& make);

@@ -20,7 +20,7 @@ static void refuse_other_encodings(const std::string& text) {
   const auto begins = [&text](std::string_view bytes) { return text.starts_with(bytes); };
   const auto is_ascii = [&text](std::size_t i) { return i < text.size() && text[i] > 0; };
   const auto is_zero = [&text](std::size_t i) { return i < text.size() && text[i] == 0; };
-  // Without the mark, two characters and their zero bytes show the encoding.
+  // Without a byte order mark, ASCII characters that alternate with zero bytes reveal the encoding.
   const auto is_ascii_pair = [&](std::size_t i) { return is_ascii(i) && is_ascii(i + 2); };
   const auto is_zero_pair = [&](std::size_t i) { return is_zero(i) && is_zero(i + 2); };
   const bool has_no_mark = (is_ascii_pair(0) && is_zero_pair(1)) || (is_zero_pair(0) && is_ascii_pair(1));
@@ -35,7 +35,7 @@ static void refuse_other_encodings(const std::string& text) {
 std::string read_text_file(const std::filesystem::path& file, std::uintmax_t largest) {
   // The operating system would ignore the part of the name after the zero byte and open another file.
   if (file.native().find('\0') != std::string::npos) throw InputError("cannot be read: the name has a zero byte");
-  // A pipe gives its bytes only once.
+  // Return the stored contents of a pipe, because a pipe gives its bytes only once.
   if (const auto kept = pipe_contents().find(file)) return *kept;
   std::error_code error;
   if (std::filesystem::is_directory(file, error)) throw InputError("is a directory, not a file");

@@ -65,7 +65,8 @@ LineReader::LineReader(std::string_view text) : rest_(text) {
 std::optional<std::string_view> LineReader::next() {
   if (rest_.empty()) return std::nullopt;
   ++line_;
-  // Find the next LF once for all lines before it, because a text with CR line ends may have no LF.
+  // Search the next LF only once for all lines before it. In a text with CR line ends and without LF, each search would
+  // otherwise scan the whole rest.
   const char* begin = rest_.data();
   if (newline_ < begin) newline_ = begin + std::min(rest_.find('\n'), rest_.size());
   const std::string_view until_newline = rest_.substr(0, static_cast<std::size_t>(newline_ - begin));

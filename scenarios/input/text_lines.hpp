@@ -24,7 +24,7 @@ inline bool is_blank(char c) {
 
 /// Splits a line into tokens at white space.
 Words words_of(std::string_view line);
-/// Replaces `words` by the tokens of a line, and keeps the memory of `words`.
+/// Replaces `words` by the tokens of a line. Reuses the memory of `words`.
 void split_at_blanks(std::string_view line, Words& words);
 
 /// Splits a text at each separator. Parts may be empty. There is one part more than there are separators.
@@ -80,8 +80,8 @@ std::vector<std::string> names_of(const Table& table, Name name) {
 /// Returns the lines of a text one by one. The text must outlive the reader.
 ///
 /// Skips a byte order mark (UTF-8) at the start of the text. A line ends with LF, CRLF or CR, so that line numbers are
-/// the numbers of an editor. If the first line ends with CR alone, CRLF ends two lines: CR is then the line end of the
-/// file, and LF may be the first byte of binary data after a header.
+/// the numbers of an editor. If the first line ends with CR alone, CR is the line end of the file. An LF after a CR
+/// then belongs to the next line, because it may be the first byte of binary data after a header.
 class LineReader {
  public:
   explicit LineReader(std::string_view text);
@@ -97,8 +97,8 @@ class LineReader {
  private:
   std::string_view rest_;
   std::size_t line_ = 0;
-  const char* newline_;  ///< next LF; the end of the text if there is no further LF
-  bool ends_with_cr_;    ///< the first line ends with CR alone
+  const char* newline_;  ///< position of the next LF; the end of the text if no LF is left
+  bool ends_with_cr_;    ///< true: the first line ends with CR alone
   bool has_line_end_ = false;
 };
 

@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 constexpr std::string_view kMark = "# hapbench loop log: ";
 constexpr int kLogVersion = 1;
 
-/// A number of a row: its column, and the count of values of an array.
+/// Calls `visit` for each field of a log's row, with the names of its columns, separated by commas, and with the field.
 template <class Visit>
 void visit_row(HapbenchInput& in, HapbenchOutput& out, const Visit& visit) {
   visit("call", out.call);
@@ -80,7 +80,7 @@ Json pose_json(const HapbenchPose3& pose) {
   return {{"position_m", pose.position}, {"orientation_wxyz", pose.orientation}};
 }
 
-/// Returns a number of the mount, null for infinity.
+/// Returns a limit of the mount as JSON; null for infinity.
 Json limit_json(double value) {
   return std::isfinite(value) ? Json(value) : Json();
 }
@@ -221,7 +221,7 @@ std::vector<HapbenchOutput> replayed(HapbenchRenderer& renderer, const LoopLog& 
 ReplayComparison compare_outputs(const std::vector<HapbenchOutput>& a, const std::vector<HapbenchOutput>& b) {
   ReplayComparison comparison = {a.size(), 0, 0.0, a.size()};
   for (std::size_t i = 0; i < a.size(); ++i) {
-    // Compare bits of forces and set-points, values of the rest.
+    // Compare numbers of type double by their bits, and integers by their values.
     HapbenchInput none = {};
     HapbenchOutput one = a[i], other = b[i];
     std::vector<std::uint64_t> bits[2];

@@ -40,8 +40,8 @@ std::vector<HapbenchOutput> replayed(HapbenchRenderer& renderer, const LoopLog& 
 struct ReplayComparison {
   std::size_t calls = 0;
   std::size_t equal = 0;        ///< calls whose outputs are equal to the last bit
-  double largest = 0.0;         ///< largest norm of the difference of the forces [N]
-  std::size_t first_other = 0;  ///< number of the first call with other outputs; `calls` if all outputs are equal
+  double largest = 0.0;         ///< largest norm, over the calls, of the difference of the forces [N]
+  std::size_t first_other = 0;  ///< index of the first call with different outputs; `calls` if all are equal
 };
 ReplayComparison compare_outputs(const std::vector<HapbenchOutput>& a, const std::vector<HapbenchOutput>& b);
 

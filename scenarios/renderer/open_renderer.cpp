@@ -15,9 +15,9 @@
 namespace hapbench {
 namespace {
 
-constexpr double kMaxRamp = 60.0;  ///< [s]
+constexpr double kMaxRamp = 60.0;  ///< largest ramp_s that a mount may have [s]
 
-/// Fields of a device that are software in a real system, and the mode that uses them.
+/// A field of a device that stands for software in a real system, and the mode of the renderer that uses the field.
 struct UsedField {
   const char* name;
   std::uint32_t mode;
@@ -86,7 +86,8 @@ LiveRendererConfig live_config(const Scenario& scenario, const RendererSetup& se
   return config;
 }
 
-/// Returns the fields of the scenario's device that the renderer uses, or the fields that it ignores.
+/// Returns the fields of the scenario's device that the renderer uses if `used` is true, otherwise the fields that it
+/// ignores.
 std::string device_fields(const Json& device, std::uint32_t mode, bool used) {
   std::string text;
   for (const auto& [name, value] : device.items()) {

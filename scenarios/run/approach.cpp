@@ -16,7 +16,7 @@ Approach::Approach(std::shared_ptr<const PointShell> shell, std::uint64_t steps)
 void Approach::add(const StepRecord& record, bool before_contact) noexcept {
   const Vec3& position = record.tool.pose.position;
   const double step_length = (position - position_).norm();
-  // A step that began no further from the bounding box than its own length may have reached the surface.
+  // A step may have reached the surface if it is at least as long as the distance from the bounding box at its start.
   if (distance_ <= step_length && std::isfinite(step_length)) longest_step_ = std::max(longest_step_, step_length);
   position_ = position;
   time_ = record.time;
@@ -45,7 +45,7 @@ Approach::Closest Approach::closest_to_surface(const ToolShape& tool) const {
     if (gap < closest.distance) closest = {gap, candidate.time};
     for (std::size_t i = 0; i < candidates_.size(); ++i)
       lower_bounds[i] = std::max(lower_bounds[i], gap - tool.displacement_bound(candidate.pose, candidates_[i].pose));
-    // This candidate is finished.
+    // Exclude this candidate from further searches.
     *next = std::numeric_limits<double>::infinity();
   }
   // If the tool was closest in the last step, extrapolate its approach to the surface.

@@ -25,16 +25,16 @@ class Approach {
   /// earlier step.
   void add(const StepRecord& record, bool before_contact) noexcept;
 
-  double longest_step() const {
-    return longest_step_;
-  }  ///< longest displacement of the tip in a step; see
-     ///< OutcomeObserver [m]
+  /// Returns the longest displacement of the tip in a step [m]; see OutcomeObserver::longest_step().
+  double longest_step() const { return longest_step_; }
   /// Distance of the tip centre from the environment's bounding box in the last step [m]; 0 inside the box.
   double distance() const { return distance_; }
   const Box& environment() const { return environment_; }
 
   struct Closest {
-    double distance, time;  ///< distance of the tool from the nearest surface point [m]; time of this step [s]
+    /// distance: distance of the tool from the nearest surface point [m]. time: time of the step with this distance
+    /// [s].
+    double distance, time;
     /// Time to reach the surface at the speed of the last steps [s]. Empty unless the tool was closest in the
     /// last step.
     std::optional<double> time_to_contact = {};

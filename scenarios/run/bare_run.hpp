@@ -8,7 +8,7 @@
 #include "sim/geometry/point_shell.hpp"
 #include "sim/loop/simulation.hpp"
 
-/// Runs without observers and files: the cost of the simulation alone.
+/// Measures the run time of a simulation that has no observers and writes no files.
 namespace hapbench {
 
 /// Returns the processor time of this thread [s]. Unlike wall time, it does not include waiting for other processes.
@@ -21,12 +21,13 @@ class BareRun {
   /// Builds the parts. Throws InputError if a file of the scenario cannot be used.
   BareRun(CheckedScenario checked, const std::shared_ptr<const PointShell>& shell);
 
-  /// Takes all steps from t = 0 on, `times` times, and returns the processor time [s] of one repetition. Throws Stopped
+  /// Runs the simulation `times` times from t = 0, and returns the mean processor time of a run [s]. Throws Stopped
   /// after a signal.
   double seconds(std::uint64_t times);
-  /// Takes all steps once and returns the distribution of their wall times, without the time of the clock readings.
+  /// Runs the simulation once from t = 0, and returns the distribution of the wall times of the steps. The time of a
+  /// clock reading is subtracted from each step.
   StepLatency latency();
-  /// Returns the number of steps of the last repetition. It is smaller than TimeFields::steps if the run diverged or
+  /// Returns the number of steps of the last run. The number is smaller than TimeFields::steps if the run diverged or
   /// its task ended.
   std::uint64_t steps() const { return simulation_.next_row(); }
 

@@ -8,8 +8,8 @@
 
 namespace hapbench {
 
-/// What checked() does with the library of contacts that a scenario names. An inspected library is not loaded; the
-/// scenario can then not be run.
+/// Selects whether checked() loads or only inspects the library of contacts that a scenario names. An inspected library
+/// is not loaded, and the scenario cannot be run.
 enum class Libraries { loaded, inspected };
 
 /// A scenario whose named files are known to be usable. Only checked() creates an instance. A function that

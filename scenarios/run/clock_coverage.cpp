@@ -14,7 +14,8 @@
 namespace hapbench {
 namespace {
 
-/// A unit in which a clock may count instead of seconds.
+/// A unit of time in which the clock of a recording may count instead of seconds. per_second: number of units in a
+/// second.
 struct ClockUnit {
   double per_second;
   const char* advice;
@@ -27,9 +28,10 @@ constexpr ClockUnit kClockUnits[] = {
     {1e-6, "its clock seems to be too slow by 10^6: multiply the times by 10^6"},
     {1e-9, "its clock seems to be too slow by 10^9: multiply the times by 10^9"},
 };
-constexpr double kUnlikelyRatio = 100.0;  ///< a larger ratio of two intervals indicates another unit
+/// If the sample interval and the time step differ by more than this factor, the unit is probably wrong.
+constexpr double kUnlikelyRatio = 100.0;
 
-/// Times of a run [s].
+/// Time step and end of a run [s], and its number of steps.
 struct RunTimes {
   explicit RunTimes(const TimeFields& time)
       : step(time.step), steps(static_cast<double>(time.steps)), end(time.step * static_cast<double>(time.steps - 1)) {}
@@ -59,7 +61,8 @@ bool is_unlikely_interval(double interval, const RunTimes& run) {
   return interval > kUnlikelyRatio * run.step || interval * kUnlikelyRatio < run.step;
 }
 
-/// Returns the unit that gives the stroke the duration of the run, or a likely rate; null if no unit does.
+/// Returns the unit of the stroke's clock with which the stroke lasts about as long as the run, or has a usual sample
+/// rate. Returns null if there is no such unit.
 const ClockUnit* unit_of_stroke(Samples samples, const RunTimes& run) {
   const double interval = interval_of(samples), span = samples.back().time - samples.front().time;
   const auto fits = [&](const ClockUnit& unit, double factor) {
@@ -71,7 +74,7 @@ const ClockUnit* unit_of_stroke(Samples samples, const RunTimes& run) {
       if (fits(unit, factor)) return &unit;
   // The duration of the run may have been set to the duration of the stroke, so it does not show the unit. Return the
   // first unit in which the recording has a usual sample rate.
-  constexpr double kFastest = 2e-4, kSlowest = 0.05;  // intervals of samples [s]
+  constexpr double kFastest = 2e-4, kSlowest = 0.05;  // range of usual sample intervals [s]
   constexpr std::size_t kMinSamples = 20;             // fewer samples may be waypoints
   for (const ClockUnit& unit : kClockUnits) {
     const double scaled = interval / unit.per_second;
@@ -80,7 +83,8 @@ const ClockUnit* unit_of_stroke(Samples samples, const RunTimes& run) {
   return nullptr;
 }
 
-/// Returns true if the run sees so little of the stroke that another unit of the clock is likely.
+/// Returns true if so few samples of the stroke lie within the run that the clock of the stroke probably has another
+/// unit.
 bool sees_few_samples(Samples samples, const RunTimes& run) {
   constexpr std::ptrdiff_t kFew = 3;
   constexpr std::size_t kMinSamples = 10;
@@ -90,14 +94,15 @@ bool sees_few_samples(Samples samples, const RunTimes& run) {
 
 // ---- Traces
 
-/// Coverage of a run by a trace.
+/// Counts of the steps of a run for which a trace has contacts.
 struct TraceCoverage {
-  std::uint64_t queries = 0;  ///< number of steps that look for contacts
-  std::uint64_t covered = 0;  ///< number of these steps that find a time of the trace
+  std::uint64_t queries = 0;  ///< number of steps in which the run searches contacts
+  std::uint64_t covered = 0;  ///< number of these steps with a time of the trace within half a step
   std::uint64_t times = 0;    ///< number of times of the trace within the run
 };
 
-/// Counts the steps that find a time of the trace within half a step. The trace's times are divided by `per_second`.
+/// Counts the contact queries with a time of the trace within half a step. The times of the trace are first divided by
+/// `per_second`.
 TraceCoverage coverage_of(const ContactTrace& trace, const RunTimes& run, std::int64_t every, double per_second) {
   TraceCoverage coverage;
   coverage.queries = static_cast<std::uint64_t>((run.steps - 1.0) / static_cast<double>(every)) + 1;
@@ -125,7 +130,8 @@ double median_interval(const ContactTrace& trace) {
   return *middle;
 }
 
-/// Returns the unit with which the trace covers much more of the run; null if no unit does.
+/// Returns the unit of the trace's clock with which at least five times as many queries are covered, and at least a
+/// tenth of all queries. Returns null if there is no such unit.
 const ClockUnit* unit_of_trace(const ContactTrace& trace, const RunTimes& run, std::int64_t every,
                                const TraceCoverage& coverage) {
   for (const ClockUnit& unit : kClockUnits) {
@@ -136,8 +142,8 @@ const ClockUnit* unit_of_trace(const ContactTrace& trace, const RunTimes& run, s
   return nullptr;
 }
 
-/// Returns the unit in which the trace has the interval of the steps that look for contacts, `query` [s]; null if the
-/// unit is the second, or if no unit fits. Used for a clock that does not begin at 0.
+/// Returns the unit of time in which the interval of the trace fits the interval of the contact queries, `query` [s].
+/// Returns null if the second fits, or if no unit fits. Used for a clock that does not begin at 0.
 const ClockUnit* unit_of_interval(double interval, double query) {
   constexpr double kFactor = 10.0;  // a trace may be slower or faster than the run
   const auto fits = [&](double per_second) {
@@ -148,7 +154,7 @@ const ClockUnit* unit_of_interval(double interval, double query) {
   return interval <= 0.0 || fits(1.0) || unit == std::end(kClockUnits) ? nullptr : unit;
 }
 
-/// Returns what is wrong with the trace's clock; empty if the clock is right.
+/// Returns a text that describes the fault of the trace's clock; empty if the clock fits the run.
 std::string trace_problem(const ContactTrace& trace, const RunTimes& run, std::int64_t every,
                           const TraceCoverage& coverage) {
   const double first = trace.times.front().time, last = trace.times.back().time;
@@ -186,7 +192,7 @@ std::optional<Warning> stroke_clock_warning(const Stroke& stroke, const TimeFiel
   const auto warning = [](std::string text) {
     return Warning{"stroke_clock", std::string(kMotionFile), std::move(text)};
   };
-  // No overlap.
+  // Warn if stroke and run do not overlap in time.
   if (start > run.end || stop < 0.0) {
     const ClockUnit* unit = samples.size() > 1 ? unit_of_stroke(samples, run) : nullptr;
     return warning(
@@ -198,8 +204,8 @@ std::optional<Warning> stroke_clock_warning(const Stroke& stroke, const TimeFiel
   if (samples.size() < 2) return std::nullopt;
   const std::string both =
       facts(fmt::format("stroke has {} samples", samples.size()), start, stop, samples.size(), run);
-  // Another unit.
-  constexpr double kMissing = 0.05;  // share of the run without samples that a warning reports
+  // Warn if another unit of time fits better, or if the sample interval is unlikely.
+  constexpr double kMissing = 0.05;  // fraction of the run without samples from which a warning is returned
   const double interval = interval_of(samples);
   const bool is_unlikely = is_unlikely_interval(interval, run);
   const bool is_short = stop + 2.0 * interval < (1.0 - kMissing) * run.end;
@@ -210,7 +216,7 @@ std::optional<Warning> stroke_clock_warning(const Stroke& stroke, const TimeFiel
     return warning(fmt::format("{}: {}", both, unit->advice));
   if (is_unlikely)
     return warning(fmt::format("{}: are the stroke's times in seconds, and is time.step_s right?", both));
-  // The start or the end is missing.
+  // Warn if the stroke does not cover the start or the end of the run.
   if (!is_short && !is_late) return std::nullopt;
   constexpr double kRounding = 1e-6;  // tolerance as a fraction of a step
   const double last_step = std::floor(stop / run.step + kRounding);

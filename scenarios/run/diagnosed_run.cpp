@@ -19,19 +19,19 @@
 namespace hapbench {
 namespace {
 
-/// Smallest number of steps in a quarter from which motion and frequency are computed.
+/// Smallest number of steps in the last quarter from which drift and vibration frequency are computed.
 constexpr std::uint64_t kMinQuarterSteps = 10;
-/// Smallest stiffness of the search for the linear limit, in units of K. A loop that is unstable there is unstable at
-/// any stiffness.
+/// Smallest stiffness of the search for the linear limit, in units of K. A loop that is unstable at this stiffness
+/// counts as unstable at any stiffness.
 constexpr double kSmallestStiffness = 1e-9;
 
-/// Returns the largest stable K [N/m] of a tool on permanent springs, with the stiffest direction of the run (largest
-/// stiffness ratio lambda). Empty without a loop.
+/// Returns the largest stable K [N/m] of a tool on permanent springs. The springs have the largest stiffness ratio
+/// lambda of the run. Empty without a linear loop.
 Number springs_limit(const DiagnosedRun& run) {
   const Number lambda = run.metric("ratio_max");
   const double K = run.scenario().rendering.stiffness;
   if (!lambda || !(*lambda > 0.0) || contact_step_matrix(run.scenario(), *lambda).size() == 0) return std::nullopt;
-  constexpr double kMax = 2.0;  // search range, in units of K; above it, K is far below the limit
+  constexpr double kMax = 2.0;  // upper end of the search range, in units of K; a limit above it is not relevant
   Scenario at = run.scenario();
   return first_stability_limit(kSmallestStiffness * K, kMax * K, [&](double stiffness) {
     at.rendering.stiffness = stiffness;
@@ -39,7 +39,8 @@ Number springs_limit(const DiagnosedRun& run) {
   });
 }
 
-/// Returns the largest stable K of the loop in the last contact of the run [N/m]. Empty without contact or loop.
+/// Returns the largest K [N/m] at which the linear loop is stable, with the contact linearised near the last step in
+/// contact. Empty without contact or without a linear loop.
 Number surface_limit(const DiagnosedRun& run) {
   if (!run.observations.last_contact || has_multi_rate_contacts(run.scenario())) return std::nullopt;
   const CheckedScenario scenario = checked(run.loaded);
@@ -60,15 +61,15 @@ Number ratio_to_stability_limit(const DiagnosedRun& run) {
   return rounded_to_digits(K / std::max(kSmallestStiffness * K, *limit), 6);
 }
 
-/// Returns true if a run vibrates, diverges or loses contact, as it does with an unstable loop. Divergence that a law
-/// or a contact module reports as its own fault is not a matter of the loop.
+/// Returns true if the run shows a sign of an unstable loop: it vibrates, diverges or loses contact. Returns false if a
+/// force law or a contact module reported a fault, because the loop is then not the cause.
 bool looks_unstable(const DiagnosedRun& run) {
   if (!run.result.end.divergence.fault.empty()) return false;
   return run.ended(Outcome::diverges, Outcome::lost_contact) || run.vibrates() || buzz(run).value_or(0.0) > kMaxBuzz ||
          shake(run).value_or(0.0) > kMaxShake;
 }
 
-/// Returns ratio_to_stability_limit() if the run looks unstable, else an empty value.
+/// Returns ratio_to_stability_limit() if looks_unstable(run) is true, else an empty value.
 Number ratio_in_vibration(const DiagnosedRun& run) {
   if (!looks_unstable(run)) return std::nullopt;
   if (!run.ratio_to_limit) run.ratio_to_limit = ratio_to_stability_limit(run);
@@ -116,7 +117,7 @@ Number measured_force_angle(const DiagnosedRun& run) {
 }
 
 Number longest_step(const DiagnosedRun& run) {
-  // The steps of a tool that is flung away are a consequence, not a cause.
+  // In a diverged run, long steps are a consequence of the divergence and not the cause.
   if (run.ended(Outcome::diverges)) return std::nullopt;
   return quotient(run.observations.longest_step, run.half_width());
 }
@@ -140,7 +141,7 @@ Number shake(const DiagnosedRun& run) {
 }
 
 Number chatter(const DiagnosedRun& run) {
-  // Without a press, the force changes its side whenever the tool moves from wall to wall.
+  // If nothing presses the tool, the force reverses whenever the tool moves from one wall to another.
   const bool is_pressed = !run.is_free() || run.has_hand() || run.has_springs();
   return is_pressed ? run.if_completed(run.metric("force_reversals_per_s")) : std::nullopt;
 }
@@ -161,8 +162,8 @@ Number unstable_loop(const DiagnosedRun& run) {
 }
 
 Number coarseness(const DiagnosedRun& run) {
-  constexpr double kSufficientContacts = 4.0,
-                   kMinSpacings = 10.0;  // contacts in a step; multiples of the point spacing
+  // kSufficientContacts: contacts in a step. kMinSpacings: path length in contact, in units of the point spacing.
+  constexpr double kSufficientContacts = 4.0, kMinSpacings = 10.0;
   const auto distance = point_distance(run.loaded);
   const Number contacts = quotient(run.metric("colliding_mean"), run.metric("contact_share"));
   // The contacts of a module or a recording do not depend on the spacing of our points.
@@ -177,7 +178,8 @@ Number encoder_force(const DiagnosedRun& run) {
   const bool is_rough = buzz(run).value_or(0.0) > kMaxBuzz || pop(run).value_or(0.0) > kMaxBuzz ||
                         chatter(run).value_or(0.0) > kMaxChatter || run.vibrates();
   if (device == nullptr || !is_rough || run.scenario().rendering.hunt_crossley) return std::nullopt;
-  // Steps in which a velocity filter of any order reaches its peak or passes almost nothing.
+  // Number of time steps after an encoder step in which the output of the velocity filter is evaluated. A filter that
+  // has not reached its peak within this number passes almost nothing.
   constexpr int kSamples = 100;
   VelocityFilter filter(device->velocity_filter, run.scenario().time.step);
   filter.reset(Vec3::Zero());

@@ -20,8 +20,8 @@ std::string either(const std::vector<std::string>& options) {
   return fmt::format("{}{} or {}", fmt::join(first, ", "), options.size() > 2 ? "," : "", options.back());
 }
 
-/// Returns the names in `laws` without the run's own law, joined by "or". Leaves out laws that the scene cannot use or
-/// whose contacts would not be the scene's: a law that finds its contacts itself, on springs or with a contact module.
+/// Returns the names in `laws` without the law of the run, joined by "or". If the contacts come from springs, a
+/// recording or a module, also leaves out the laws that find contacts themselves.
 std::string other_laws(const DiagnosedRun& run, std::initializer_list<const char*> laws) {
   std::vector<std::string> names;
   for (const char* law : laws) {
@@ -71,13 +71,13 @@ std::vector<std::string> against_measured_causes(const DiagnosedRun& run) {
 }
 
 /// Returns the advice against a rough force: remedies for the measured causes or, if no cause was measured, a smaller K
-/// for a tool that is free to move. `laws`: what a comparison of the laws shows.
+/// for a tool that is free to move. `laws`: end of the sentence "… shows which algorithm has".
 std::string against_roughness(const DiagnosedRun& run, const char* laws) {
   std::vector<std::string> remedies = against_measured_causes(run);
   const std::string comparison =
       fmt::format("\"hapbench compare --algorithms all\" shows which algorithm has {}", laws);
   if (!remedies.empty()) return either(remedies) + "; " + comparison;
-  // A script that moves the tool makes the same contacts at any K: all forces scale alike.
+  // If a script moves the tool, the contacts do not depend on K, and a smaller K scales all forces by the same factor.
   if (!run.is_free()) return "another algorithm or a smoother motion; " + comparison;
   return "a smaller K or another algorithm; " + comparison;
 }
@@ -229,7 +229,8 @@ std::string against_saturation(const DiagnosedRun& run) {
   const bool device_binds = device != nullptr && device->force_max && (!rendered || *device->force_max <= *rendered);
   const std::string limit = device_binds ? "a stronger device" : "a larger rendering.limits.max_force_N";
   if (!run.is_free()) return either({"a smaller K", "a motion.position that is less deep", limit});
-  // In equilibrium the force balances the hand's force at any K. A smaller K only weakens a vibration.
+  // In equilibrium, the rendered force balances the hand's force at any K. A smaller K therefore helps only against
+  // vibration.
   return is_too_stiff(run) || run.vibrates() ? either({"a smaller K", "a smaller hand force", limit})
                                              : either({"a smaller hand force", limit});
 }

@@ -4,8 +4,8 @@
 
 #include "scenarios/run/diagnosed_run.hpp"
 
-/// Advice of the diagnosis rules: what to change in a run. Advice depends on what was measured in the run, names fields
-/// that the scenario has, and never names the run's own law.
+/// Returns the advice of the diagnosis rules: what to change in the scenario of a run. The advice depends on the
+/// quantities measured in the run. It names only fields that the scenario has, and never recommends the law of the run.
 namespace hapbench {
 
 std::string against_fault(const DiagnosedRun& run);

@@ -37,7 +37,7 @@ struct RunObservations {
     std::array<std::uint64_t, 3> high_sign_changes{};  ///< number of sign changes of the force above 30 Hz, per axis
   } last_quarter;
   Vec3 tip = Vec3::Zero();  ///< tip position in the last step [m]
-  OutcomeFacts facts;       ///< facts of the first trial that has facts
+  OutcomeFacts facts;       ///< facts of the first trial whose OutcomeFacts are not all empty
 };
 
 /// Accumulates the quantities for the diagnosis rules. Cost: about 20 ns a step; constant memory.

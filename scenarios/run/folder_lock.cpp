@@ -40,7 +40,8 @@ struct flock whole_file() {
   return lock;
 }
 
-/// Raises the number of files that this process may open to the allowed maximum. Returns false if it is reached.
+/// Raises the number of files that this process may open to the allowed maximum. Returns false if the number already is
+/// the maximum or cannot be changed.
 bool raise_file_limit() {
   rlimit limit{};
   if (::getrlimit(RLIMIT_NOFILE, &limit) != 0 || limit.rlim_cur == limit.rlim_max) return false;
@@ -84,7 +85,8 @@ FolderLock::FolderLock(NewDirectories& directories, fs::path folder, std::string
 
 FolderLock::~FolderLock() {
   if (descriptor_ < 0) return;
-  // Remove the file while it is locked, so that no file with the lock of another process is removed.
+  // Remove the file while it is locked, because otherwise another process could lock the file just before it is
+  // removed.
   if (refers_to(file_, descriptor_)) ::unlink(file_.c_str());
   ::close(descriptor_);
 }

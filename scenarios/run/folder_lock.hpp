@@ -10,12 +10,12 @@ namespace hapbench {
 /// Sets of result files that commands write to a folder. A lock has the name of its set.
 inline constexpr const char *kRunFiles = "run", *kCompareFiles = "compare", *kReproduceFiles = "reproduce";
 
-/// Right to write a set of files to a folder. No other thread or process, which uses this class, can have a lock for
-/// the same folder and set at the same time. Locks for different sets do not exclude each other.
+/// Exclusive right to write a set of files to a folder. While an instance exists, no other thread or process can create
+/// an instance for the same folder and set. Locks for different sets do not exclude each other.
 ///
 /// The lock is an OFD lock (fcntl) on the hidden file .SET.lock in the folder. The kernel releases it when the process
-/// ends, also after SIGKILL; the file then stays, and the next lock takes it over. Otherwise the destructor removes
-/// the file. A process that has opened a file which was removed meanwhile opens it again.
+/// ends, also after SIGKILL; the file then stays, and the next lock takes it over. Otherwise the destructor removes the
+/// file. If another process removes the file between the opening and the locking, the file is created and opened again.
 ///
 /// Cost: one file descriptor; about 20 us.
 class FolderLock {
@@ -35,7 +35,7 @@ class FolderLock {
   /// Returns true if another lock for this folder and set exists. Takes no lock and creates no file.
   static bool is_held(const std::filesystem::path& folder, const std::string& set);
 
-  /// Throws the IoError of a set that is locked.
+  /// Throws the IoError that reports a locked set.
   [[noreturn]] static void refuse(const std::filesystem::path& folder, const std::string& writer);
 
  private:

@@ -15,9 +15,9 @@
 namespace hapbench {
 namespace {
 
-constexpr double kPositionStep = 1e-8;   // step of the differences in position [m]; a ten-thousandth of the smallest
-                                         // tools and depths
-constexpr double kVelocityStep = 1e-4;   // step of the differences in velocity [m/s]; dampers are linear
+// Position step of the central differences [m]: at most a ten-thousandth of the size of tools and depths.
+constexpr double kPositionStep = 1e-8;
+constexpr double kVelocityStep = 1e-4;   // velocity step of the differences [m/s]; any value, as dampers are linear
 constexpr double kRelativeError = 1e-7;  // relative error of the differences; smaller entries count as zero
 
 /// Returns the scenario without the parts that the linear theory leaves out.
@@ -29,12 +29,13 @@ Scenario without_nonlinear_parts(Scenario scenario) {
   return scenario;
 }
 
-/// Sets entries that are below the error of the differences to zero.
+/// Sets the entries of M to zero that are at most kRelativeError times `largest`: they may be errors of the
+/// differences.
 Mat3 without_noise(const Mat3& M, double largest) {
   return (M.array().abs() > kRelativeError * largest).select(M, 0.0);
 }
 
-/// The parts of a scenario at rest, evaluated at poses of the tool.
+/// Evaluates the forces, and their derivatives, on a tool that rests at a position.
 class RestingTool {
  public:
   RestingTool(const Scenario& scenario, const NamedFiles& files, const std::shared_ptr<const PointShell>& shell,
@@ -70,10 +71,11 @@ class RestingTool {
   /// pose in contact and the result is false.
   bool find_equilibrium() {
     constexpr int kIterations = 40;
-    constexpr double kLargestStep = 0.1;              // largest step, in half widths of the tool
-    constexpr double kConverged = 1e-10;              // step below which the search ends [m]: the error of the
-                                                      // derivatives times the first steps
-    if (parts_.hand->task() != nullptr) return true;  // a subject corrects its force; the pose of the run counts
+    constexpr double kLargestStep = 0.1;  // largest step, in half widths of the tool
+    // Step length below which the search ends [m]: about kRelativeError times the length of the first steps.
+    constexpr double kConverged = 1e-10;
+    // A simulated subject adapts its force, so the pose of the run counts as the equilibrium.
+    if (parts_.hand->task() != nullptr) return true;
     for (int i = 0; i < kIterations; ++i) {
       const Vec3 before = position_;
       const LinearContact here = linearised();
@@ -100,7 +102,7 @@ class RestingTool {
       const Vec3 step = kPositionStep * Vec3::Unit(i);
       const auto [above, same_above] = force_at(at + step, set);
       const auto [below, same_below] = force_at(at - step, set);
-      // Use a one-sided difference if a contact appears or vanishes on the other side.
+      // Use a one-sided difference if the set of contacts changes on one side only.
       if (same_above == same_below)
         contact.rendered.stiffness.col(i) = -(above - below) / (2.0 * kPositionStep);
       else
@@ -121,7 +123,8 @@ class RestingTool {
   }
 
  private:
-  /// Moves the tool from its initial position to `to` in small steps, so that a proxy and a dragging hand follow.
+  /// Moves the tool from `from` to `to` in small steps, so that the state of a proxy or a dragging hand follows the
+  /// tool.
   void approach(const Vec3& from, const Vec3& to) {
     constexpr int kSteps = 128;
     for (int i = 0; i <= kSteps; ++i) place(from + (to - from) * (static_cast<double>(i) / kSteps));
@@ -156,8 +159,8 @@ class RestingTool {
     return {force_.rendered, contact_set_ == set};
   }
 
-  /// Computes the hand's force. On an admittance device, it displaces the handle from the tool: the servo and the
-  /// structure carry it.
+  /// Computes the hand's force at rest. On an admittance device, this force displaces the handle from the tool against
+  /// the stiffness of servo and structure.
   void hold(const Vec3& position) {
     HandleState handle{position, Vec3::Zero()};
     const ToolPose pose{position, axis_, roll_};
@@ -174,10 +177,10 @@ class RestingTool {
   }
 
   /// Returns the step that a linear force with this slope [N/m] moves to equilibrium. A tool moves only in directions
-  /// in which forces act: a law without a force along the surface does not move the tool along it, although its force
-  /// along the normal depends on the position there.
+  /// in which forces act: a law without a force along the surface does not move the tool along the surface, even if its
+  /// normal force depends on the position along the surface.
   Vec3 newton_step(const Mat3& slope) const {
-    constexpr double kSingular = 1e-6;  // smallest singular value, in units of the largest
+    constexpr double kSingular = 1e-6;  // smaller singular values, in units of the largest, count as zero
     const Eigen::JacobiSVD<Eigen::Matrix3d> svd(slope, Eigen::ComputeFullU | Eigen::ComputeFullV);
     const Vec3& values = svd.singularValues();
     Eigen::Index rank = 0;
@@ -187,7 +190,8 @@ class RestingTool {
       const Eigen::FullPivLU<Eigen::MatrixXd> within(acted.transpose() * slope * acted);
       if (within.rcond() > kSingular) return acted * within.solve(acted.transpose() * total_force());
     }
-    // Forces act in all directions, or turn as the tool moves: use the smallest step.
+    // If forces act in all directions, or change their direction as the tool moves, use the shortest least-squares
+    // solution.
     Vec3 step = Vec3::Zero();
     for (Eigen::Index k = 0; k < rank; ++k)
       step += svd.matrixU().col(k).dot(total_force()) / values[k] * svd.matrixV().col(k);
@@ -223,17 +227,19 @@ class RestingTool {
   MeasuredForce measured_;
 };
 
-/// linear_contact() of a scenario whose files are known to be usable.
+/// Returns linear_contact() of a scenario whose files have been checked.
 std::optional<ContactAtRest> contact_at_rest(const Scenario& scenario, const NamedFiles& files,
                                              const std::shared_ptr<const PointShell>& shell, const ContactState& near) {
   const Scenario linear = without_nonlinear_parts(scenario);
   RestingTool tool(linear, files, shell, near);
   if (!tool.touches()) return std::nullopt;
   const bool is_equilibrium = tool.find_equilibrium();
-  // The search ends without an equilibrium where the force jumps. The derivatives there are those of the jump.
+  // Without an equilibrium, linearise at the pose of the run. The search ended where the force jumps, and derivatives
+  // across a jump have no meaning.
   LinearContact contact = is_equilibrium ? tool.linearised() : RestingTool(linear, files, shell, near).linearised();
   if (!contact.rendered.stiffness.allFinite() || !contact.rendered.damping.allFinite()) return std::nullopt;
-  // A hand that is attached to the handle moves with it between the samples: it is part of the device.
+  // A hand that is attached to the handle also moves between the samples. It is therefore part of the device and not of
+  // the contact.
   if (std::holds_alternative<MassSpringDamperHandFields>(linear.hand) && handle_moves_tool(linear.device))
     contact.hand = {};
   return ContactAtRest{contact, is_equilibrium};
@@ -290,7 +296,8 @@ std::optional<double> limit_along(const LimitWalk& walk, const std::function<std
 
 std::optional<double> linear_stiffness_limit(const CheckedScenario& scenario,
                                              const std::shared_ptr<const PointShell>& shell, const ContactState& near) {
-  constexpr double kStep = 1.1, kMax = 2.0, kMin = 1e-9;  // of the walk, in units of the scenario's K
+  // kStep: factor between two values of K; kMax, kMin: range of K, in units of the scenario's K.
+  constexpr double kStep = 1.1, kMax = 2.0, kMin = 1e-9;
   constexpr double kResolution = 1e-10;
   const double K = scenario.scenario().rendering.stiffness;
   if (!(K > 0.0) || !has_linear_loop(scenario.scenario())) return std::nullopt;

@@ -14,7 +14,7 @@ namespace hapbench {
 
 /// A state of a run in contact, from which linear_contact() searches the equilibrium.
 struct ContactState {
-  ToolPose pose;      ///< of the tool; true position of the handle if the handle moves the tool
+  ToolPose pose;      ///< pose of the tool; if the handle moves the tool, with the true position of the handle
   double time = 0.0;  ///< [s]
 };
 
@@ -25,7 +25,7 @@ inline ContactState contact_state(const StepRecord& record) noexcept {
   return state;
 }
 
-/// The linearisation at the equilibrium; without an equilibrium, at the pose of the run.
+/// Linearisation of a contact at the equilibrium, or at the pose of the run if no equilibrium was found.
 struct ContactAtRest {
   LinearContact contact;
   bool is_equilibrium = false;  ///< false if the search did not converge: a surface too soft, or a force that jumps
@@ -48,12 +48,14 @@ std::optional<ContactAtRest> linear_contact(const CheckedScenario& scenario,
 /// damping if B of `from` is 0.
 LinearContact scaled(LinearContact contact, const RenderingConfig& from, const RenderingConfig& to);
 
-/// Judges the loop of hand, device and contact at several values of a field of a scenario, near one state of a run.
+/// Checks the stability of the loop of hand, device and contact at several values of a scenario field, near a state of
+/// a run.
 class ContactLoops {
  public:
-  /// `near`: see linear_contact(). `is_stiffness`: true if the field is the stiffness K. If a K has no equilibrium (a
-  /// surface too soft to hold the tool, or a force that jumps), the loop then uses the last contact that was found,
-  /// converted to this K by scaled(). `at_any_pose`: true if the first contact need not be an equilibrium.
+  /// `near`: see linear_contact(). `is_stiffness`: true if the field is the stiffness K. At a K without an equilibrium
+  /// (a surface too soft to hold the tool, or a force that jumps), the loop of a stiffness field uses the last contact
+  /// that was found, converted to this K by scaled(). `at_any_pose`: true if the first contact need not be an
+  /// equilibrium.
   ContactLoops(const ContactState& near, bool is_stiffness, bool at_any_pose)
       : near_(near), is_stiffness_(is_stiffness), at_any_pose_(at_any_pose) {}
 
@@ -69,18 +71,19 @@ class ContactLoops {
   RenderingConfig known_rendering_;
 };
 
-/// The values of a field on the way to its linear limit.
+/// Sequence of values of a field in the search for its linear limit.
 struct LimitWalk {
   double start = 0.0;
   /// Returns the next value above (`up`) or below a value; the value itself at the end of the range.
   std::function<double(double value, bool up)> next = {};
-  std::function<bool(double stable, double unstable)> is_resolved = {};  ///< true ends the bisection
+  /// Returns true if the interval is small enough to end the bisection.
+  std::function<bool(double stable, double unstable)> is_resolved = {};
 };
 
-/// Walks from the start towards the limit: up while the loop is stable, otherwise down to a stable value. Then bisects.
-/// Returns the largest stable value before the first unstable value; infinity if all values above a stable start are
-/// stable, minus infinity if no value is stable. Returns nothing if `is_stable` returns nothing at the start. A later
-/// value for which `is_stable` returns nothing counts as unstable.
+/// Searches the linear limit. Steps up from a stable start to an unstable value, or down from an unstable start to a
+/// stable value. Then bisects. Returns the largest stable value before the first unstable value; infinity if all values
+/// above a stable start are stable, minus infinity if no value is stable. Returns nothing if `is_stable` returns
+/// nothing at the start. A later value for which `is_stable` returns nothing counts as unstable.
 std::optional<double> limit_along(const LimitWalk& walk, const std::function<std::optional<bool>(double)>& is_stable);
 
 /// Returns the largest stiffness K [N/m] at which the loop of hand, device and contact is stable, searched from the

@@ -37,11 +37,11 @@ constexpr int kDlopenFlags = RTLD_NOW | RTLD_LOCAL;
 constexpr int kDlopenFlags = RTLD_NOW | RTLD_LOCAL | RTLD_DEEPBIND;
 #endif
 
-// State of this process; load_module.hpp explains why it is not per context.
+// The variables below belong to the process; load_module.hpp explains why they do not belong to a context.
 std::vector<LoadedModule> modules;  ///< loaded modules, in the order of loading
 std::atomic<int> allowing = 0;      ///< number of existing ModulePermission objects that allow all modules
 
-/// Tables of the libraries of contacts by file. The mutex protects the map.
+/// Maps the file of each loaded library of contacts to its table. The mutex protects the map.
 std::mutex contact_modules_mutex;
 std::map<fs::path, const HapbenchModule*> contact_modules;
 
@@ -50,8 +50,8 @@ std::string hash_of_file(const fs::path& file) {
   return with_file(file, [&] { return hash_text(hash_of(read_text_file(file, kMaxModuleBytes))); });
 }
 
-/// Returns the function with which a module returns its table. Throws InputError if the library has no such
-/// function.
+/// Returns the library's function hapbench_module(), which returns the module's table. Throws InputError if the library
+/// has no such function.
 decltype(&hapbench_module) entry_point(const fs::path& file, void* library) {
   if (void* symbol = dlsym(library, "hapbench_module")) return reinterpret_cast<decltype(&hapbench_module)>(symbol);
   for (const char* old : {"hapbench_plugin", "hapbench_contacts"}) {
@@ -181,7 +181,7 @@ void load_module(const fs::path& given, const LoadingGuard& guard) {
   const std::shared_ptr<void> guarded = guard ? guard() : nullptr;
   std::string hash = hash_of_file(file);
   const HapbenchModule& table = opened(file);
-  // A source of contacts is used by the scenarios that name it.
+  // Register a law. A source of contacts needs no registration, because scenarios name its file.
   const bool is_law = table.kind == HAPBENCH_LAW;
   modules.push_back({file, is_law ? registered_law(table, file, std::move(hash)) : ""});
 }

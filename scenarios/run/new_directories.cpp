@@ -29,7 +29,7 @@ std::error_code NewDirectories::create_missing(const fs::path& directory) {
     if (fs::create_directory(*path, error)) created_.push_back(*path);
     if (error) return error;
   }
-  fs::create_directories(directory, error);  // reports a file of this name
+  fs::create_directories(directory, error);  // sets an error if a file has this name
   return error;
 }
 

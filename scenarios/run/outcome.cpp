@@ -38,9 +38,10 @@ class OutcomeObserverImpl final : public OutcomeObserver {
         drag_(dynamic_cast<const DragHand*>(parts.hand.get())) {
     const auto is_unexpected = [&scenario](Outcome outcome) { return !outcome_is_expected(scenario.expect, outcome); };
     const bool may_end = length == RunLength::until_failure && can_fail_early(scenario);
-    // After a passage, the run may still diverge.
+    // A passage ends the run only if the scenario expects neither possible outcome: the run may still diverge.
     passage_ends_ = may_end && is_unexpected(Outcome::went_through) && is_unexpected(Outcome::diverges);
-    // A tool that has left may have gone through before.
+    // A loss of contact ends the run only if the scenario also does not expect a passage: the tool may have gone
+    // through before it left.
     leaving_ends_ = may_end && never_returns(scenario) && is_unexpected(Outcome::went_through) &&
                     is_unexpected(Outcome::lost_contact) && is_unexpected(Outcome::no_contact);
     const auto steps = static_cast<std::uint64_t>(scenario.time.steps);
@@ -50,7 +51,7 @@ class OutcomeObserverImpl final : public OutcomeObserver {
       inside_.emplace(parts.tool, std::move(solid), metrics, static_cast<std::uint64_t>(every), steps);
     }
     if (parts.shell && parts.shell->size() > 0) approach_.emplace(parts.shell, steps);
-    // Observe whether the hand's target moves on while the tool stands still.
+    // Observe whether the tool stands still while the target of a drag, a hand spring or a subject moves on.
     const double width = 2.0 * tool_->half_width();
     if (drag_ != nullptr) progress_.emplace(*drag_, width, scenario.time.step * static_cast<double>(steps));
     if (const ImpedanceHandFields* hand = spring_of(scenario.hand);
@@ -114,8 +115,8 @@ class OutcomeObserverImpl final : public OutcomeObserver {
   }
 
  private:
-  /// A condition under which a completed run gets another outcome. `text` returns a warning that explains what
-  /// happened and why; it may be empty.
+  /// A condition under which a run that made all its steps gets an outcome other than `completes`. `text` returns a
+  /// warning that explains what happened and why; it may be empty.
   struct Condition {
     Outcome outcome;
     bool (OutcomeObserverImpl::*holds)();
@@ -142,8 +143,9 @@ class OutcomeObserverImpl final : public OutcomeObserver {
 
   /// Returns OutcomeFacts::holding_friction.
   std::optional<double> holding_friction() const {
-    constexpr double kAtRest = 1e-6;       // speed below which a handle stands still [m/s]
-    constexpr double kSmallestPush = 0.1;  // fraction of the friction from which the hand clearly pushes
+    constexpr double kAtRest = 1e-6;  // speed below which a handle stands still [m/s]
+    // Smallest force of the hand that counts as a push, as a fraction of the friction.
+    constexpr double kSmallestPush = 0.1;
     const auto* device = std::get_if<ImpedanceDeviceConfig>(&scenario_.device);
     if (device == nullptr || !(device->coulomb > 0.0) || last_contact_) return std::nullopt;
     const double push = hand_force_.cwiseAbs().maxCoeff();
@@ -151,8 +153,8 @@ class OutcomeObserverImpl final : public OutcomeObserver {
     return is_held && handle_velocity_.norm() < kAtRest ? std::optional(device->coulomb) : std::nullopt;
   }
 
-  /// Returns the most likely cause of a run that lost or never reached the surface. It is phrased as a question
-  /// if it is uncertain. `time_to_contact`: time in which the tool would reach the surface [s] (Approach::Closest).
+  /// Returns the most likely reason why the tool lost or never reached the surface. An uncertain reason is phrased as a
+  /// question. `time_to_contact`: time in which the tool would reach the surface [s] (Approach::Closest).
   std::string likely_cause(const std::optional<double>& time_to_contact = {}) const {
     constexpr double kMaxTimeToContact = 100.0;  // longest plausible time to contact, in durations of the run
     const double longest = approach_->longest_step();
@@ -192,8 +194,8 @@ class OutcomeObserverImpl final : public OutcomeObserver {
     return position_is_free(scenario.motion) && scenario.time.stop_when.empty() &&
            !std::holds_alternative<TrackingHandFields>(scenario.hand);
   }
-  /// Returns true if nothing but a constant force acts on a tool without contact. Late contacts, force stages and
-  /// passivity controllers have a memory.
+  /// Returns true if only a constant force acts on a tool without contact. Returns false for multi-rate contacts, force
+  /// stages and passivity controllers, whose forces depend on earlier steps.
   static bool never_returns(const Scenario& scenario) {
     const RenderingConfig& rendering = scenario.rendering;
     const bool remembers = has_multi_rate_contacts(scenario) || rendering.force_stage || rendering.passivity_controller;
@@ -205,13 +207,13 @@ class OutcomeObserverImpl final : public OutcomeObserver {
     return std::holds_alternative<NoHandFields>(scenario.hand);
   }
 
-  /// Returns true if the tool has gone through the surface, by the conditions that no later step can undo.
+  /// Returns true if the tool has gone through the surface and no later step can change this (FinalFailure).
   bool has_passed() const noexcept {
     return inside_ && (inside_->passage().deep || inside_->passage().left || inside_->core_passage().event());
   }
-  /// Returns true if a tool that never_returns() has left the environment: a plane separates the tool from the box, and
-  /// neither its velocity nor the force on it points towards the plane. Position and speed must stay far from the
-  /// bounds at which the run would diverge.
+  /// Returns true if the tool has left the environment for good. Precondition: never_returns(). A plane separates the
+  /// tool from the environment's bounding box, and neither the velocity of the tool nor the force on the tool points
+  /// towards this plane. Position and speed must stay far from the bounds at which the run would diverge.
   bool has_left_for_good(const StepRecord& record) const noexcept {
     if (!approach_ || !is_far() || record.colliding > 0 || !record.force.rendered.isZero(0.0)) return false;
     const Box& box = approach_->environment();
@@ -225,7 +227,8 @@ class OutcomeObserverImpl final : public OutcomeObserver {
     return last_speed < kFarFromBounds * bounds.speed &&
            position_.norm() + last_speed * rest < kFarFromBounds * bounds.position;
   }
-  /// Returns true if the tip centre is further from the environment's box than the box's width plus the tool's extent.
+  /// Returns true if the tip centre is further from the environment's bounding box than the sum of the box's diagonal
+  /// and the tool's extent.
   bool is_far() const noexcept { return approach_->distance() > diagonal(approach_->environment()) + tool_->reach(); }
 
   bool went_through() {
@@ -299,9 +302,9 @@ class OutcomeObserverImpl final : public OutcomeObserver {
         likely_cause());
   }
 
-  /// Returns true if a dragged tool advanced by less than its width, although it should have advanced by more
-  /// than two widths. The metrics of such a run look good but do not describe a drag. (If the tool follows the hand,
-  /// the spring between them stretches by less than the tool's width.)
+  /// Returns true if a dragged tool advanced by less than its width, although it should have advanced by more than two
+  /// widths. The metrics of this run look good but do not describe a drag. (If the tool follows the hand, the spring
+  /// between them stretches by less than the tool's width.)
   bool not_dragged() {
     const double width = 2.0 * tool_->half_width();
     return progress_ && progress_->progress() < width &&
@@ -346,11 +349,13 @@ class OutcomeObserverImpl final : public OutcomeObserver {
   std::optional<Standstill> standstill_;
   const DragHand* drag_;                  ///< null unless the hand drags the tool
   std::optional<DragProgress> progress_;  ///< progress of the drag; empty without a drag
-  // In the last step.
+  // Values in the last observed step.
   double time_ = 0.0;
-  Vec3 position_ = Vec3::Zero(), force_ = Vec3::Zero();              ///< tip position [m]; rendered force [N]
-  Vec3 hand_force_ = Vec3::Zero(), handle_velocity_ = Vec3::Zero();  ///< [N], [m/s]
-  bool passage_ends_ = false, leaving_ends_ = false;  ///< true if this kind of FinalFailure is looked for
+  Vec3 position_ = Vec3::Zero(), force_ = Vec3::Zero();  ///< tip position [m]; rendered force [N]
+  /// Force of the hand [N]; velocity of the handle [m/s].
+  Vec3 hand_force_ = Vec3::Zero(), handle_velocity_ = Vec3::Zero();
+  /// True if a passage (passage_ends_) or a loss of contact (leaving_ends_) is a FinalFailure of this run.
+  bool passage_ends_ = false, leaving_ends_ = false;
   std::optional<FinalFailure> failure_;
   std::optional<double> last_contact_;  ///< time of the last step in contact [s]; empty before the first contact
 };

@@ -19,18 +19,18 @@ namespace hapbench {
 struct OutcomeFacts {
   bool began_inside = false;   ///< the tip centre was inside the environment's solid in the first step
   std::string scale_question;  ///< question about a size that is probably wrong (scale_question()); usually empty
-  /// Dry friction of the device that holds the handle at the end against a smaller force of the hand, away from the
-  /// surface [N per axis]; empty if friction does not hold the handle.
+  /// Dry friction of an impedance device that holds the handle at the end of the trial against a smaller force of the
+  /// hand [N per axis]. Empty if friction does not hold the handle, or if the tool touched the surface before.
   std::optional<double> holding_friction;
 };
 
-/// How long a run goes on.
+/// Selects whether a run ends before its last step if it has failed.
 enum class RunLength {
   /// All steps are made.
   full,
-  /// Batches: a run ends at the first moment at which it has failed for good (FinalFailure), if a hand or the force
-  /// moves the tool, the hand is not of type tracking, and the scenario neither has a stop condition nor expects the
-  /// outcome (or, for a passage, diverges). The outcome is always the outcome of the full run.
+  /// For batches of runs: a run ends at its first final failure (FinalFailure). This requires that the position of the
+  /// tool is free, the hand is not of type tracking, the scenario has no stop condition, and the scenario expects none
+  /// of the outcomes that are still possible. The outcome is the outcome of the full run in any case.
   until_failure
 };
 
@@ -39,9 +39,9 @@ enum class RunLength {
 ///   surface (Passage::deep and left, CorePassage::event). The outcome of the full run is then went_through, or
 ///   diverges if a value leaves its bound later.
 /// - lost_contact, or no_contact if the tool never touched: a freely moving tool is further from the environment's
-///   bounding box than the sum of the box's width and the tool's extent, moves away from it, feels no rendered force,
-///   and the hand (none, or of type force or push with a constant force, on an ideal device) does not pull it back.
-///   With any other hand the tool may come back, so that only the end of the run decides.
+///   bounding box than the sum of the box's diagonal and the tool's extent, does not move towards the box, has no
+///   rendered force, and the hand (none, or of type force or push with a constant force, on an ideal device) does not
+///   pull it back. With any other hand the tool may come back, and only the end of the run determines the outcome.
 struct FinalFailure {
   Outcome outcome;
   double time;         ///< [s]
@@ -51,8 +51,8 @@ struct FinalFailure {
 /// Observes all quantities of a trial that determine its outcome. Cost: about 40 ns a step, no allocation.
 class OutcomeObserver : public Observer {
  public:
-  /// Failure of the tool; always empty with RunLength::full. Once the tool has gone through, this observer ignores all
-  /// further steps.
+  /// Returns the final failure of the trial; empty if there is none so far, and always empty with RunLength::full.
+  /// After a final failure, the observer ignores all further steps.
   virtual const std::optional<FinalFailure>& final_failure() const noexcept = 0;
   /// Returns the outcome of a run whose simulation ended with `ending`. For a completed run with a point shell,
   /// this is the first outcome whose condition holds (kConditions in outcome.cpp; outcome_infos() describes the
@@ -74,8 +74,9 @@ class OutcomeObserver : public Observer {
   virtual const InsideDepths* depths() = 0;
 };
 
-/// Creates the observer of a trial. `scenario` and `parts` must outlive it. `metrics` must be notified before
-/// this observer in each step; null if warnings() is never called. `length`: whether to look for a final failure.
+/// Creates the observer of a trial. `scenario` and `parts` must outlive it. `metrics` must be notified before this
+/// observer in each step; null if warnings() is never called. `length`: determines whether the observer detects a final
+/// failure.
 std::unique_ptr<OutcomeObserver> outcome_observer(const Scenario& scenario, const NamedFiles& files,
                                                   const SimulationParts& parts,
                                                   const MetricsObserver* metrics = nullptr,

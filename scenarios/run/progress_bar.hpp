@@ -27,8 +27,8 @@ struct Progress {
 /// printed and the listener is called at every show().
 class ProgressBar {
  public:
-  /// `label`: start of the line; an empty label disables the bar (--quiet). `total`: number of work items.
-  /// `listener` is called in place of drawing; null: the bar is drawn. It must outlive this object.
+  /// `label`: start of the line; an empty label disables the bar (--quiet). `total`: number of work items. `listener`
+  /// is called in place of drawing, and must outlive this object; null: the bar is drawn.
   ProgressBar(std::string label, std::uint64_t total, const ProgressListener* listener);
   /// Removes the line from the terminal.
   ~ProgressBar();

@@ -24,12 +24,13 @@ RowSource ratios(const RecordedTrial& t) {
   return ratio_rows({iterations.begin(), iterations.end()}, {start, update_shaped_weights}, t.contact_capacity);
 }
 
-/// A table, the condition under which a scenario records it, and the source of its rows.
+/// A table, the condition under which a scenario records it, and the source of its lines.
 struct RecorderEntry {
   const ResultTable& table;
   std::function<bool(const RecordFields&)> is_wanted;
   RowSource (*rows)(const RecordedTrial& trial);
-  bool has_every_row = false;  ///< true if the source itself selects the rows, so that record.every does not apply
+  /// True if the source itself selects the steps that it writes, so that record.every does not apply.
+  bool has_every_row = false;
 };
 
 // The observers that find() looks up exist, because the same record fields create them. checked() has rejected

@@ -38,8 +38,8 @@ std::vector<fs::path> trial_directories(const fs::path& directory) {
   return found;
 }
 
-/// Removes the files of an earlier run. Some files are optional: if this run has other settings, it may not write and
-/// so not overwrite them.
+/// Marks the files of an earlier run for removal (FileSet::remove). A run with other settings may not write all of
+/// these files, so it would not overwrite them.
 void remove_earlier_run(const fs::path& directory, FileSet& files) {
   for (const char* name : {"summary.json", "columns.json", kTargetTable.file, "timing.json"})
     files.remove(directory / name);
@@ -86,7 +86,8 @@ bool ResultFolder::write(const RecordFields& record, const Json& effective, cons
   const std::string before{std::istreambuf_iterator<char>(earlier), {}};
   add("columns.json", json_text(columns_json(tables, result.metrics)));
   if (record.timing) add("timing.json", timing_text(result));
-  // The summary marks the directory as a complete run: it is removed first and written last.
+  // Write the summary last and remove the earlier summary first, because a summary marks the directory as a complete
+  // run.
   add("summary.json", json_text(summary_json(result)));
   files.commit();
   remove_empty_trials(directory_);

@@ -16,7 +16,7 @@
 
 namespace hapbench {
 
-/// Where a run writes its results.
+/// Directory to which a run writes its results.
 struct RunOutput {
   RunOutput(std::filesystem::path folder, bool has_lock = false)  // NOLINT: implicit on purpose
       : directory(std::move(folder)), is_locked(has_lock) {}
@@ -29,8 +29,9 @@ struct RunOutput {
 /// ResultFolder for the same directory while this object exists.
 class ResultFolder {
  public:
-  /// Creates the directory and locks it, unless it is locked. The destructor removes created directories that are
-  /// still empty. Throws IoError if the directory cannot be created or another run holds the lock.
+  /// Creates the directory, and locks it unless the caller has locked it (RunOutput::is_locked). The destructor removes
+  /// created directories that are still empty. Throws IoError if the directory cannot be created or another run holds
+  /// the lock.
   explicit ResultFolder(const RunOutput& output);
 
   /// Creates and returns the directory into which a trial records. `trials`: number of trials of the run; for a

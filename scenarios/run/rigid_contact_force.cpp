@@ -19,7 +19,8 @@ namespace {
 
 using HandSpring = ReferenceForce::HandSpring;
 
-/// Returns the hand's spring if it leads the tool; empty if the position is prescribed.
+/// Returns the hand's spring if this spring leads a free tool. Empty without a hand spring, or if the position is
+/// prescribed.
 std::optional<HandSpring> leading_hand(const Scenario& scenario) {
   const ImpedanceHandFields* spring = spring_of(scenario.hand);
   if (!position_is_free(scenario.motion) || spring == nullptr) return std::nullopt;
@@ -60,7 +61,7 @@ ReferenceForce computed(const Scenario& scenario, const NamedFiles& files, const
 }  // namespace
 
 std::shared_ptr<const ReferenceForce> rigid_contact_force(const Scenario& scenario, const NamedFiles& files) {
-  // The fields that determine the force; neither law nor damping is among them.
+  // Collect the fields that determine the force as the cache key. The force depends on neither law nor damping.
   const Json whole = effective_scenario(scenario, {});
   Json content = {{"mesh", files.at(kEnvironmentFile).hash()}};
   const std::optional<HandSpring> hand = leading_hand(scenario);

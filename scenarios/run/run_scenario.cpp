@@ -77,7 +77,7 @@ RunWork work_of(const Simulation& simulation, std::uint64_t allocations) {
   return work;
 }
 
-/// State of a run: the observers that continue from trial to trial, and the results so far.
+/// State of a run: the observers that are used in all trials, and the results so far.
 class Run {
  public:
   Run(const CheckedScenario& checked, const std::shared_ptr<const PointShell>& shell, std::size_t trials, bool diagnose,
@@ -113,7 +113,7 @@ class Run {
     tool_ = parts.tool;
 
     // Collect the observers, in the order in which they are notified. The sampler is notified first and last, so that
-    // it can leave out the time of the observers between.
+    // it can exclude the time of all other observers.
     StepSampler sampler(static_cast<std::uint64_t>(time.steps));
     const auto outcome = outcome_observer(scenario_, checked_.files(), parts, &*metrics_, length_);
     ProgressBar bar(label, static_cast<std::uint64_t>(time.steps), listener);
@@ -158,7 +158,7 @@ class Run {
     for (const auto& more : {warnings_, tool_warnings(scenario_.rendering, *tool_),
                              diagnosis_ ? std::vector<Warning>() : rule_warnings(checked_.loaded(), result)})
       result.warnings.insert(result.warnings.end(), more.begin(), more.end());
-    // A cylinder is described completely by its fields.
+    // Describe a tool that is not a cylinder. The fields of the scenario describe a cylinder completely.
     if (!std::holds_alternative<CylinderFields>(scenario_.tool)) result.tool = tool_json(*tool_);
     if (const auto* targets = sections_.find<TargetMetricsObserver>()) result.targets = targets->rows();
     if (diagnosis_) result.diagnosis = diagnosis_findings(checked_.loaded(), result, diagnosis_->rows(), *tool_);
@@ -174,8 +174,8 @@ class Run {
   const Recorders& recorders() const { return recorders_; }
 
  private:
-  /// Makes all steps. Ends at a final failure that leaves only one outcome. After any other final failure, continues
-  /// without observers.
+  /// Makes all steps. At a final failure, removes the observers. Then ends after a loss of contact, but continues after
+  /// a passage through the surface, because the run may still diverge.
   SimulationResult step_to_end(Simulation& simulation, const OutcomeObserver& outcome, ProgressBar& bar) {
     // Measure allocations, preemptions and time of the step loop.
     const AllocationCount allocations;
@@ -229,18 +229,20 @@ class Run {
       diagnosis_->add_longest_step(observer.longest_step());
       diagnosis_->add_facts(observer.facts());
     }
-    // A subject whose trial diverges fails the remaining targets.
+    // If a trial diverges, the subject fails its remaining targets.
     if (outcome == Outcome::diverges) {
       if (auto* targets = sections_.find<TargetMetricsObserver>()) targets->fail_rest();
     }
-    // The run gets the worst outcome of its trials (the order of Outcome) and the total number of rows.
+    // Set the outcome of the run to the worst outcome of its trials (the order of Outcome), and add the numbers of
+    // steps.
     const std::uint64_t rows = result.rows + result_.end.rows;
     if (trials_ == 1 || outcome > result_.end.outcome)
       result_.end = {outcome, rows, result.divergence, result_.end.ended_at};
     result_.end.rows = rows;
   }
 
-  /// Removes all numbers from the result of a run that ended at its failure: they would be of a part of the run.
+  /// Removes all numbers from the result of a run that ended at its failure, because they would describe only a part of
+  /// the run.
   static void remove_values(Result& result) {
     for (Metric& metric : result.metrics) metric.value = {};
     for (auto& section : result.sections) {
@@ -310,7 +312,7 @@ Result run_scenario(const CheckedScenario& checked, const std::optional<RunOutpu
   // Evaluate the run and compare it with the scenario's expectations.
   Result result = run.result();
   result.timing.shell = shell_time.count();
-  // A run that ended at its failure has no metrics to compare.
+  // Compare only the outcome if the run ended at its failure, because its metrics have no values.
   const ExpectFields outcomes{scenario.expect.outcomes, {}};
   result.unmet = unmet_expectations(result.end.ended_at ? outcomes : scenario.expect, result);
   result.expected = result.unmet.empty();

@@ -33,8 +33,8 @@ namespace hapbench {
 ///   time.
 /// - `length`: with RunLength::until_failure, a run that fails for good, or diverges unexpectedly, ends at that moment:
 ///   it has RunEnd::ended_at, no metric has a value, and observers and recorded tables get no further step. The outcome
-///   is the outcome of the full run. Therefore, if the tool went through, the remaining steps are simulated without
-///   observers, because they may diverge.
+///   is the outcome of the full run. Therefore, if the tool went through the surface, the remaining steps are simulated
+///   without observers, because the run may still diverge.
 /// Throws InputError before anything is written if the point shell or tool cannot be built from the files.
 /// Throws IoError if writing fails, and Stopped if a signal ends the run. No partial results remain after an
 /// error.

@@ -43,10 +43,11 @@ std::optional<Warning> size_warning(const Environment& environment, const Box& b
                              length_text(kShortestObject), length_text(kLongestObject), size_question(environment))};
 }
 
-/// Returns a warning if the points of a mesh are so far apart that the tool feels each point. Surfaces that a
-/// formula defines are not checked: their spacing was chosen in the scenario.
+/// Returns a warning if the points of a mesh are so far apart that the tool feels each point. Does not check
+/// other environments: if a formula defines the surface, the scenario states the spacing.
 std::optional<Warning> spacing_warning(const LoadedScenario& loaded, const ToolShape& tool) {
-  // Spacings as fractions of the tool's width. "hapbench new" chooses kSmoothSpacing.
+  // Point spacings as fractions of the tool's width: spacings up to kRoughSpacing cause no warning; "hapbench new"
+  // chooses kSmoothSpacing.
   constexpr double kSmoothSpacing = 0.1, kRoughSpacing = 1.0 / 6.0;
   if (!std::holds_alternative<MeshEnvironment>(loaded.scenario.environment)) return std::nullopt;
   const PointDistance distance = *point_distance(loaded);
@@ -175,13 +176,13 @@ SceneFacts scene_facts(const LoadedScenario& loaded) {
   SceneFacts facts;
   WarningList warnings;
 
-  // The step and the tool.
+  // Check the time step and the tool.
   warnings.add(step_warning(step));
   facts.tool = make_tool(scenario, loaded.files);
   const ToolShape& tool = *facts.tool;
   warnings.add(tool_warnings(scenario.rendering, tool));
 
-  // The environment; springs have no points.
+  // Build the environment's point shell. Without points, the remaining checks do not apply.
   const auto shell = make_shell(scenario, loaded.files);
   throw_if_stopped();  // building the shell may have taken seconds
   if (!shell || shell->size() == 0) {
@@ -191,7 +192,7 @@ SceneFacts scene_facts(const LoadedScenario& loaded) {
   if (std::holds_alternative<MeshEnvironment>(scenario.environment))
     facts.is_closed = loaded.files.at(kEnvironmentFile).mesh().open_edges().empty();
 
-  // The path of a drag.
+  // Check the path of a drag.
   Scenario assembled = scenario;
   if (scenario.rendering.contact_source == kContactPlugin)
     assembled.rendering.contact_source = kComputedContacts;  // loads no library; the contacts do not matter here
@@ -201,10 +202,10 @@ SceneFacts scene_facts(const LoadedScenario& loaded) {
     warnings.add(short_path_warning(std::get<DragHandFields>(scenario.hand), *hand, duration, tool));
   }
 
-  // Sizes, and where the tool starts.
+  // Check the sizes and the initial position of the tool.
   const ToolPose pose = first_pose(scenario, parts);
   facts.surface = SceneFacts::Surface{shell->bounds(), shell->size(), gap_between(tool, pose, *shell)};
-  const bool has_size = facts.surface->box.min != facts.surface->box.max;  // unlike a single point
+  const bool has_size = facts.surface->box.min != facts.surface->box.max;  // false for a shell with a single point
   if (has_size) add_size_warnings(warnings, loaded, tool, *facts.surface);
   warnings.add(wrong_side_warning(*shell, tool, pose));
   facts.warnings = warnings.take();

@@ -66,9 +66,9 @@ DeviceLoop admittance_loop(const Scenario& scenario, const AdmittanceDeviceConfi
   return result;
 }
 
-/// Returns the scenario with the stiffness and damping of the friction bristle in place of the contact springs:
-/// the linear loop along a surface on which dry friction holds the tool. The bristle integrates the velocity that the
-/// device measures. Its deflection is therefore the position after the velocity filter.
+/// Returns the scenario with the stiffness and damping of the friction bristle in place of the contact springs: the
+/// linear loop along a surface on which dry friction holds the tool. The bristle integrates the velocity that the
+/// device measures. The deflection of the bristle is therefore the filtered position.
 Scenario stuck_scene(Scenario scenario) {
   RenderingConfig& r = scenario.rendering;
   const SpringDamper bristle = bristle_of(*r.dry_friction, r, scenario.time.step);
@@ -81,9 +81,9 @@ Scenario stuck_scene(Scenario scenario) {
   return scenario;
 }
 
-/// Fields of a device that the linear model covers, as JSON pointers within the device. The loop includes a field, or
-/// SampledLoop::nonlinearity() reports it, or it has no effect as long as nothing saturates. With any other field
-/// that is not at its default, there is no linear model.
+/// Fields of a device that the linear model covers, as JSON pointers within the device. Each of these fields is part of
+/// the loop, or SampledLoop::nonlinearity() reports it, or it has no effect unless something saturates. If any other
+/// field differs from its default, there is no linear model.
 constexpr std::string_view kKnownToTheory[] = {"/handle_mass_kg",
                                                "/viscous_N_s_per_m",
                                                "/coulomb_N",
@@ -202,7 +202,8 @@ static std::vector<Eigen::MatrixXd> loop_with(const Scenario& scenario, const Li
                     device_loop(scenario, 1.0).loop);
 }
 
-/// Returns the loop across the stiffest direction, along the surface, while dry friction holds the tool there.
+/// Returns the matrices of the loop while dry friction holds the tool. The friction bristle acts in the plane
+/// perpendicular to the stiffest direction, which is along the surface.
 static std::vector<Eigen::MatrixXd> loop_held_by_friction(const Scenario& scenario, const LinearContact& contact) {
   const Scenario stuck = stuck_scene(scenario);
   const Mat3& K = contact.rendered.stiffness;

@@ -50,8 +50,8 @@ inline const char* delay_path(const Scenario& scenario) {
   return has_servo ? "device.servo.delay_samples" : "device.delay_samples";
 }
 
-/// Returns the map of (x, v) in one step of the tool on a spring of stiffness lambda K and damping lambda B, without a
-/// device. The hand's force is held over the step.
+/// Returns the matrix that maps position and velocity (x, v) of the tool from one step to the next. The tool is on a
+/// spring of stiffness lambda K and damping lambda B, without a device. The hand's force is constant during a step.
 Eigen::Matrix2d step_matrix_with_hand(const Scenario& scenario, double lambda);
 
 /// Returns true if the linear theory covers the scenario's device: its delay is short enough for eigenvalues, and
@@ -59,24 +59,24 @@ Eigen::Matrix2d step_matrix_with_hand(const Scenario& scenario, double lambda);
 bool has_linear_loop(const Scenario& scenario);
 
 /// Returns the matrices of the scenario's loop of hand, device and contact in three dimensions (contact_loop() in
-/// linear_loops.hpp), and with dry friction also those of the tool that friction holds. Empty without
-/// has_linear_loop(), or if the loop is too large to solve.
+/// linear_loops.hpp), and, with dry friction, also the matrices of the loop in which friction holds the tool. Empty
+/// without has_linear_loop(), or if the loop is too large to solve.
 std::vector<Eigen::MatrixXd> contact_loop(const Scenario& scenario, const LinearContact& contact);
 
 /// The matrices of one variant of a loop in contact.
 struct NamedLoop {
-  std::string name;  ///< empty for the scenario's own loop
+  std::string name;  ///< empty for the loop of the scenario
   std::vector<Eigen::MatrixXd> matrices;
 };
 
 /// Returns the variants of the scenario's loop in contact:
-/// - the scenario's own loop, with an empty name;
+/// - the loop of the scenario, with an empty name;
 /// - with dry friction: the loop along the surface while friction holds the tool;
 /// - with `over_hands`, if a hand holds an impedance device: the loop with each hand of typical_hands().
 /// Omits variants without matrices.
 std::vector<NamedLoop> contact_loops(const Scenario& scenario, const LinearContact& contact, bool over_hands);
-/// contact_loops() of a wall with stiffness lambda K and damping lambda B along one axis, for springs in permanent
-/// contact.
+/// Returns the same variants as contact_loops(), for springs in permanent contact: a wall with stiffness lambda K and
+/// damping lambda B along one axis.
 std::vector<NamedLoop> wall_loops(const Scenario& scenario, double lambda, bool over_hands);
 
 /// Returns the name of the part of the loop that is unstable without contact, by the eigenvalues: "the device's servo"

@@ -24,9 +24,9 @@ inline double intended_drag_length(const DragHandFields& hand, double duration) 
   return std::min(hand.drag.speed * duration, drag_length(hand, duration));
 }
 
-/// Returns a warning if the path of a drag over the surface is shorter than intended_drag_length() in
-/// `duration` [s] by more than the tool's width. It gives the path length and suggests what to change. The path
-/// is computed before the run.
+/// Returns a warning if the path of a drag over the surface is shorter than intended_drag_length() in `duration` [s] by
+/// more than the tool's width. The warning gives the path length and suggests what to change. The path of the drag is
+/// computed before the run.
 std::optional<Warning> short_path_warning(const DragHandFields& fields, const DragHand& hand, double duration,
                                           const ToolShape& tool);
 
@@ -37,8 +37,9 @@ const char* size_question(const Environment& environment);
 /// proportion; otherwise an empty text.
 std::string scale_question(const Scenario& scenario, const ToolShape& tool, const Box& environment);
 
-/// Returns what is unusual about a tool whose bounding box in its own frame is `tool`, such as "lies across its axis";
-/// empty if nothing is unusual. In this frame, the tip centre is the origin and the tip points along -z.
+/// Returns a text that describes an unusual position or orientation of a tool in the tool frame, such as "lies across
+/// its axis". Empty if nothing is unusual. `tool`: bounding box of the tool in the tool frame, in which the tip centre
+/// is the origin and the tip points along -z.
 std::string frame_problem(const Box& tool);
 
 /// Returns warnings about a tool. The proxy algorithm keeps points out of convex tools only, and a mesh may

@@ -7,8 +7,8 @@
 /// Finds out whether, and until when, scripts move the hand or turn the tool.
 namespace hapbench {
 
-/// Returns the time until which a script moves the hand or turns the tool [s]; 0 if it never does. Infinite if
-/// it never stops, or if something other than a script leads the tool (a drag, a subject, a recorded stroke).
+/// Returns the time until which a script moves the hand or turns the tool [s]; 0 if no script moves them. Infinite if a
+/// script never stops, or if a drag, a subject or a recorded stroke leads the tool.
 double script_moves_until(const Scenario& scenario);
 /// Returns the longest period of the periodic scripts of hand and tool [s]; 0 if no script is periodic.
 double script_period(const Scenario& scenario);

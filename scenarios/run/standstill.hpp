@@ -9,10 +9,10 @@
 
 namespace hapbench {
 
-/// Detects a tool that does not move although the target of its hand's spring does. The spring belongs to a
-/// hand or to a subject that aims at an intended position. A target that moves into the surface only presses
-/// the tool against it, and does not count. The target must therefore move away from the tool by more than the
-/// tool's width perpendicular to the contact force.
+/// Detects a tool that does not move although the target of the hand's spring moves. The spring belongs to a hand, or
+/// to a simulated subject whose target is its intended position. A target that moves into the surface does not count,
+/// because it only presses the tool against the surface. The target must therefore move away from the tool by more than
+/// the tool's width perpendicular to the contact force.
 class Standstill {
  public:
   /// `target(t)` returns the position of the spring's target at time t [s]; it is only called with the time of the

@@ -60,9 +60,9 @@ void algorithm_parameters(Fields& f, RenderingConfig& rendering, const Algorithm
   }
 }
 
-/// Describes the field `parameters`, which holds an object for each algorithm that has parameters of its own.
-/// A written scenario has the objects of the scenario's algorithm and of algorithms whose parameters were given. With
-/// the objects of all algorithms, it would change whenever an algorithm is added.
+/// Describes the field `parameters`, which holds an object for each algorithm that has parameters of its own. A written
+/// scenario has the objects of the scenario's algorithm and of algorithms whose parameters were given. If a written
+/// scenario had the objects of all algorithms, its text would change whenever an algorithm is added.
 void algorithm_parameters(Fields& f, RenderingConfig& rendering) {
   const auto presence = [&rendering](const AlgorithmEntry& entry) {
     const bool written = !entry.algorithm_parameters.empty() &&

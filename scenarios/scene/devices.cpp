@@ -136,7 +136,7 @@ static void describe(Fields& f, ImpedanceDeviceConfig& device) {
   f.number(
       "encoder_step_m", device.encoder_step, {0.0, 1.0, "m"},
       "encoder resolution: the measured position is rounded to the nearest multiple (halves away from zero); 0: exact");
-  // In a device with a delay in seconds, the number of samples is NaN until resolve_delay computes it from the time
+  // If the delay is given in seconds, the number of samples is NaN until resolve_delay() computes it from the time
   // step.
   f.number(
       "delay_samples", device.delay_samples, {0.0, kMaxDeviceDelay, "time steps"},
@@ -191,7 +191,8 @@ void resolve_delay(Scenario& scenario) {
     fail_at("/device/delay_s",
             fmt::format("got {} s, {:.3g} time steps; allowed: at most {} of them", delay, samples, kMaxDeviceDelay));
   }
-  // If both delays are given, they must agree up to the rounding of the written numbers.
+  // If the file gives the delay in seconds and in samples, both must be equal up to the rounding of the written
+  // numbers.
   if (std::abs(given - samples) > 1e-9 * std::max(1.0, samples)) {
     fail_at("/device/delay_s",
             fmt::format(
@@ -205,7 +206,7 @@ void resolve_delay(Scenario& scenario) {
 std::unique_ptr<Device> make_device(const Scenario& scenario, Trial trial) {
   if (const auto* ideal = std::get_if<IdealDeviceFields>(&scenario.device))
     return std::make_unique<IdealDevice>(ideal->force_limit);
-  // An impedance device, to whose handle a hand may be fixed.
+  // Build an impedance device. A hand may be fixed to the handle of this device.
   if (const auto* impedance = std::get_if<ImpedanceDeviceConfig>(&scenario.device)) {
     ImpedanceDeviceConfig config = *impedance;
     config.seed = derived_seed(scenario, trial, RandomUse::position_noise);
@@ -214,7 +215,7 @@ std::unique_ptr<Device> make_device(const Scenario& scenario, Trial trial) {
       attached = {hand->mass, hand->spring.stiffness, hand->spring.damping};
     return std::make_unique<ImpedanceDevice>(config, scenario.time.step, attached);
   }
-  // An admittance device, whose force sensor measures the handle's weight.
+  // Build an admittance device. Its force sensor also measures the weight of the handle.
   AdmittanceDeviceConfig config = std::get<AdmittanceDeviceConfig>(scenario.device);
   if (scenario.motion.orientation) config.sensor.down = -scenario.motion.orientation->up.normalized();
   config.sensor.seed = derived_seed(scenario, trial, RandomUse::sensor_noise);

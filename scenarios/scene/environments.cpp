@@ -22,7 +22,7 @@ namespace {
 
 using Shell = std::shared_ptr<const PointShell>;
 
-/// Allowed number of springs in a group.
+/// Allowed number of springs with the same direction, and of springs with random directions.
 constexpr IntegerRange kSpringCount = {0, 20'000'000};
 
 /// Throws InputError if the shell would have too many points. The template parameter is an analytic shape.
@@ -55,7 +55,8 @@ void check_block(const BlockEnvironment& environment, const std::string& at) {
   const auto fail = [&at](const char* field, const std::string& problem) { fail_at(at + "/" + field, problem); };
   if (size.maxCoeff() > longest) fail("grid_m", fmt::format("got {}; allowed: at least size_m / 1e5", grid));
   const double area = 2.0 * (size.x() * size.y() + size.y() * size.z() + size.z() * size.x());
-  const double copies = environment.per_cell ? 4.0 : 1.0;  // each vertex lies on a grid edge that four cells share
+  // A vertex lies on a grid edge, and four cells share each grid edge.
+  const double copies = environment.per_cell ? 4.0 : 1.0;
   require_at_most(kMaxSurfacePoints, copies * area / (grid * grid), at,
                   "shell points (from size_m, grid_m and vertices)");
   if (block.hole_diameter > std::min(size.x(), size.y()) - 2.0 * thinnest || block.hole_diameter < thinnest) {
@@ -244,7 +245,7 @@ Shell make_shell(const Scenario& scenario, const NamedFiles& files) {
 }
 
 std::shared_ptr<const Solid> make_solid(const Scenario& scenario, const NamedFiles& files) {
-  // Only the solids of files take long to build and are cached.
+  // Cache only the solids of environments with a file, because only these solids take long to build.
   const auto make = [&] { return std::visit(BuildSolid{files}, scenario.environment); };
   if (files.find(kEnvironmentFile) == nullptr) return make();
   const auto bytes = [](const Solid& solid) { return solid.bytes(); };
@@ -256,14 +257,14 @@ SpringSet make_springs(const Scenario& scenario) {
   SpringSet springs;
   springs.bilateral = fields.bilateral;
   springs.signed_depths = fields.signed_depths;
-  // Springs with given directions.
+  // Add the springs with given directions.
   for (const SpringGroup& group : fields.groups) {
     const double length = group.direction.norm();
     // A direction whose norm is 1 up to rounding is not normalised, because division would change its last digits.
     const Vec3 unit = std::abs(length - 1.0) <= 1e-12 ? group.direction : Vec3(group.direction / length);
     springs.gradients.insert(springs.gradients.end(), static_cast<std::size_t>(group.count), unit);
   }
-  // Springs with random directions.
+  // Add the springs with random directions.
   Random random(static_cast<std::uint64_t>(scenario.seed));
   for (std::int64_t i = 0; i < fields.random.count; ++i)
     springs.gradients.push_back(fields.random.planar ? random.direction_in_plane() : random.direction());

@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Beginning of the reader's message about a field that does not exist.
+/// Beginning of the error message about a field that does not exist.
 constexpr std::string_view kUnknownField = "unknown field";
 
 /// Returns a hint for an unknown field whose name resembles no field of its object: the paths of the fields with the

@@ -7,7 +7,7 @@
 #include "results/summary/summary.hpp"
 #include "scenarios/input/input_error.hpp"
 
-/// Names the file that sets a field of a scenario, in errors and warnings.
+/// Adds to errors and warnings the name of the file that sets the field of a scenario.
 namespace hapbench {
 
 struct LoadedScenario;
@@ -16,7 +16,8 @@ struct LoadedScenario;
 /// file sets the value, returns the file that has the nearest enclosing object.
 std::filesystem::path file_of(const LoadedScenario& loaded, const std::string& pointer);
 
-/// Returns the warnings as texts for people. Each text begins with the file that sets the value, and its pointer.
+/// Returns the warnings as texts for the user. Each text begins with the file that sets the value, and the JSON pointer
+/// of the value.
 std::vector<std::string> with_files(const LoadedScenario& loaded, const std::vector<Warning>& warnings);
 
 /// Throws a copy of the error that names `file` in front of each fault.

@@ -15,7 +15,8 @@
 namespace hapbench {
 
 constexpr NumberRange kCoordinate = {-1000.0, 1000.0, "m"};
-constexpr NumberRange kAngle = {-6.3, 6.3, "rad"};  ///< range of one full turn in both directions
+/// Range of angles: a little more than one full turn in both directions.
+constexpr NumberRange kAngle = {-6.3, 6.3, "rad"};
 
 static void describe(Fields& f, ForceHandFields& hand) {
   profiles(f, {"x_N", "y_N", "z_N"}, hand.force, "N",
@@ -185,7 +186,7 @@ namespace {
 
 std::unique_ptr<TrackingHand> make_tracking_hand(const Scenario& scenario, const TrackingHandFields& fields,
                                                  Trial trial) {
-  // The order of targets depends only on the scenario's seed and the trial. Therefore a subject gets the same order
+  // The order of targets depends only on the scenario's seed and on the trial. A subject therefore gets the same order
   // with every algorithm.
   return std::make_unique<TrackingHand>(fields.subjects[trial.subject],
                                         TargetTask(fields.task, derived_seed(scenario, trial, RandomUse::target_order)),
@@ -193,7 +194,7 @@ std::unique_ptr<TrackingHand> make_tracking_hand(const Scenario& scenario, const
                                         derived_seed(scenario, trial, RandomUse::motor_noise));
 }
 
-/// Sets the hand and, if the hand controls the tilt, the motion. Precondition: parts.shell is set.
+/// Sets parts.hand and, if the hand controls the tilt, parts.motion. Precondition: parts.shell is set.
 void add_drag(const Scenario& scenario, const DragHandFields& fields, SimulationParts& parts) {
   // Compute the path over the surface: through given points or along a direction.
   const SmoothedSurface surface(*parts.shell, fields.smoothing);
@@ -228,7 +229,7 @@ void add_hand_and_motion(const Scenario& scenario, const NamedFiles& files, Tria
   } else {
     parts.hand = std::make_unique<ForceHand>();
   }
-  // The hand does not control the orientation: use the scripted or recorded motion.
+  // If the hand does not control the orientation, use the scripted or recorded motion.
   if (!parts.motion) parts.motion = make_motion(scenario, files);
 }
 

@@ -30,18 +30,20 @@ struct LoadedScenario {
 /// the rules and errors. Several threads may pass the same `text`.
 LoadedScenario load_scenario(const ScenarioText& text, std::span<const std::string> overrides);
 
-/// Reads a scenario file and the scenarios that it extends, applies the overrides and checks the result. An
-/// override is `path=value`: a dotted path, and a value that is parsed as JSON, or taken as text if it is not
-/// JSON. Later overrides win.
+/// Reads a scenario file and the scenarios that it extends, applies the overrides and checks the result. An override is
+/// `path=value`: a dotted path, and a value that is parsed as JSON, or taken as text if it is not JSON. If two
+/// overrides set the same field, the later override counts.
+///
 /// The field "expect" describes the run without overrides. If an override changes the run, the bounds of "expect" on
 /// metrics are dropped, and the run may also end with an outcome that would be expected without the field "expect"
 /// (ExpectFields).
+///
 /// Throws InputError whose message begins with the faulty file.
 inline LoadedScenario load_scenario(const std::filesystem::path& file, std::span<const std::string> overrides = {}) {
   return load_scenario(read_scenario_text(file), overrides);
 }
-/// Checks a scenario given as JSON, which must not extend another scenario. Relative paths start from
-/// `directory`. Throws InputError without a file.
+/// Checks a scenario given as JSON, which must not extend another scenario. Relative paths start from `directory`. The
+/// InputError that this function throws names no file.
 LoadedScenario read_scenario(const Json& json, const std::filesystem::path& directory);
 
 /// Returns the scenario as JSON with every default filled in. Reading this JSON gives the same run. File paths in

@@ -76,7 +76,7 @@ void report_common_metrics(const MetricsObserver& metrics, const InsideDepths* i
 }
 
 /// Returns the common metrics and the metrics of the sections, without values. `parts(kind)` returns the number of
-/// parts of a section with the meaning of SectionKind::parts. A section with 0 parts is skipped.
+/// parts of a section, as defined at SectionKind::parts. A section with 0 parts is skipped.
 template <class Parts>
 MetricList list_without_values(const Parts& parts) {
   MetricList metrics;

@@ -9,9 +9,9 @@
 #include "results/summary/summary.hpp"
 #include "scenarios/scene/scenario.hpp"
 
-/// The metrics of a run: metrics that every run has, and metrics of optional sections, such as friction. The list
-/// of sections in metric_sections.cpp determines the observers, summary.json, columns.json, the columns of
-/// sweeps, and the metrics in `expect` and `describe`.
+/// Defines the metrics of a run: metrics that every run has, and metrics of optional sections, such as friction. The
+/// list of sections in metric_sections.cpp determines the observers, summary.json, columns.json, the columns of sweeps,
+/// and the metrics in `expect` and `describe`.
 namespace hapbench {
 
 /// Returns the metrics of a run of the scenario with name, unit and meaning but without values, in the order of
@@ -30,7 +30,7 @@ class SectionObservers {
  public:
   SectionObservers(const Scenario& scenario, bool has_reference_force);
 
-  /// Called before each trial.
+  /// Notifies all observers that a trial begins. Called before each trial.
   void begin(const TrialParts& trial);
   /// Returns the observers in the order of the sections.
   const std::vector<std::unique_ptr<MetricObserver>>& all() const { return observers_; }

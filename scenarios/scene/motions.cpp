@@ -69,7 +69,7 @@ void describe(Fields& f, MotionFields& motion) {
       "free: the integrator computes the position; prescribed or file: the position is given, and forces are computed "
       "but do not move the tool");
   if (!f.reads() || !std::holds_alternative<RecordedPosition>(motion.position)) return;
-  // A recorded motion includes the orientation.
+  // Reject an orientation field, because a recorded motion includes the orientation.
   if (f.given("orientation")) {
     fail_at(f.at() + "/orientation",
             "contradicts position type \"file\", whose columns give the orientation; allowed: one of the two");

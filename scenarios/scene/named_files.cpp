@@ -85,7 +85,7 @@ std::vector<Warning> NamedFile::warnings() {
 }
 
 NamedFiles::NamedFiles(Scenario scenario) {
-  // Writing the scenario calls `add` for each file.
+  // json_of() calls `add` for each field that names a file.
   const auto add = [&](const std::string& pointer, const std::string& path, const FileContent& content) {
     files_.push_back(std::make_shared<NamedFile>(pointer, scenario.directory / path, content));
   };

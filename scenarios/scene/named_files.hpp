@@ -17,7 +17,7 @@
 
 namespace hapbench {
 
-// JSON pointers of the fields whose files the program looks up individually.
+// JSON pointers of the fields whose files the program looks up by NamedFiles::find() or NamedFiles::at().
 inline constexpr std::string_view kEnvironmentFile = "/environment/file";
 inline constexpr std::string_view kToolFile = "/tool/file";
 inline constexpr std::string_view kMotionFile = "/motion/position/file";
@@ -57,7 +57,8 @@ class NamedFile {
   struct Read {
     std::string hash;
     Contents contents;
-    std::vector<std::string> notes;  ///< what the reader of a table ignored or assumed (NumberTable::notes)
+    /// Notes about columns and values that the reader of a table ignored or assumed (NumberTable::notes).
+    std::vector<std::string> notes;
   };
 
   /// Returns the contents as a pointer that shares ownership of everything that was read.

@@ -41,7 +41,7 @@ void apply_override(Json& json, const std::string& text) {
     fail_in_option("--set", "got \"" + text + "\"; allowed: path=value, such as rendering.stiffness_N_per_m=40000");
   const std::string path = text.substr(0, equals), value = text.substr(equals + 1);
   const Words keys = parts_of(path, '.');
-  constexpr std::size_t kMaxPathDepth = 64;  // functions that walk through JSON recurse once per level
+  constexpr std::size_t kMaxPathDepth = 64;  // functions that process JSON recurse once for each level
   if (keys.size() > kMaxPathDepth)
     fail_in_option("--set", fmt::format("got a path of more than {0} keys; allowed: at most {0}", kMaxPathDepth));
   // Follow the path, creating objects where they are missing.
@@ -61,8 +61,8 @@ void apply_override(Json& json, const std::string& text) {
 
 bool keeps_run_unchanged(std::string_view override) {
   constexpr std::string_view kWithoutEffect[] = {"expect", "record", "name", "description", "source"};
-  // These fields add or remove metrics. `record.every` also selects the steps that the ideal-trajectory metrics
-  // use.
+  // Fields of `record` that change the metrics: the first three add or remove metrics, and `record.every` selects the
+  // steps that the ideal-trajectory metrics use.
   constexpr std::string_view kMeasured[] = {"record.energy", "record.ideal_trajectory", "record.torque",
                                             "record.every"};
   const std::string_view path = overridden_path(override), section = path.substr(0, path.find('.'));

@@ -13,7 +13,8 @@ inline std::string_view overridden_path(std::string_view override) noexcept {
   return override.substr(0, override.find('='));
 }
 
-/// Returns the value of a text: JSON, a number as other programs write it (".001", "+1"), or else the text itself.
+/// Returns the JSON value of a text. The text is parsed as JSON, or as a number in a notation that JSON does not allow
+/// (".001", "+1"). Any other text becomes a JSON string.
 Json override_value(const std::string& text);
 
 /// Applies an override "path=value". A number in the dotted path is an index of a list. A field that excludes the

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kMaxMagnitude = 1e9;  ///< largest magnitude of a value or a time of a profile
 
-/// All shapes of profiles except a constant, which is written as a number.
+/// All shapes of profiles except a constant. A constant is written as a number.
 using TimeVaryingShape = std::variant<Profile::Ramp, Profile::Sine, Profile::Waypoints>;
 
 /// Throws InputError unless the times of the waypoints increase strictly.

@@ -28,11 +28,11 @@ const std::vector<TableQuantity> kStrokeColumns = {
 constexpr std::size_t kPoseQuantity = 2, kForceQuantity = 3;  ///< indices in kStrokeColumns
 constexpr std::size_t kForceColumns = 3;                      ///< columns of a measured force
 
-/// The faults of a table's rows beyond the notation of numbers. Rows count from 0, samples and contacts in a message
-/// from 1.
+/// Collects faults in the rows of a table, except numbers that cannot be parsed. Row numbers start at 0; the numbers of
+/// samples and contacts in a message start at 1.
 class EntryFaults {
  public:
-  /// `what` names what a row holds, such as "sample". The arguments must outlive the object.
+  /// `what` is the noun for a row in messages, such as "sample". The arguments must outlive the object.
   EntryFaults(const std::filesystem::path& file, const NumberTable& table, const char* what)
       : file_(file), table_(table), what_(what) {}
 
@@ -40,7 +40,8 @@ class EntryFaults {
     faults_.add(table_.line_of(row), problem, fmt::format("{} {}", what_, row + 1));
   }
   bool any() const { return faults_.any(); }
-  /// Throws InputError about the first fault, with the number of further rows with faults, if there is a fault.
+  /// Throws InputError if there is a fault. The message describes the first fault and gives the number of further rows
+  /// with faults.
   void throw_if_any() const { faults_.throw_if_any(file_); }
 
  private:
@@ -50,21 +51,22 @@ class EntryFaults {
   RowFaults faults_;
 };
 
-/// Returns what is wrong with an axis: it is too short or too long to be normalised. Empty if the axis is valid.
+/// Returns a text that describes the fault of an axis that is too short or too long to be normalised. Empty if the axis
+/// is valid.
 std::string axis_problem(const Vec3& axis) {
   const double length = axis.norm();
   if (length > 1e-12 && length < 1e12) return "";
   return fmt::format("got an axis of length {}; allowed: 1e-12 ... 1e12", length);
 }
 
-/// Returns what is wrong with a quaternion: its norm is not 1. Empty if the quaternion is valid.
+/// Returns a text that describes the fault of a quaternion whose norm is not 1. Empty if the quaternion is valid.
 std::string quaternion_problem(const Eigen::Quaterniond& q) {
   const double norm = q.norm();
   if (std::abs(norm - 1.0) <= kMaxNormError) return "";
   return fmt::format("got a quaternion qw,qx,qy,qz of norm {}; allowed: 1 within {}", norm, kMaxNormError);
 }
 
-/// Axes whose length is not 1.
+/// Statistics of the axes in a file whose length is not 1.
 struct OtherLengths {
   std::size_t count = 0, first_line = 0;
   double smallest = 0.0, largest = 0.0;
@@ -78,7 +80,7 @@ struct OtherLengths {
     smallest = std::min(smallest, length);
     largest = std::max(largest, length);
   }
-  /// Adds a note if there are such axes.
+  /// Adds a note if the file has axes whose length is not 1.
   void note(std::vector<std::string>& notes) const {
     if (count == 0) return;
     notes.push_back(
@@ -92,7 +94,7 @@ constexpr std::size_t kMaxContacts = 20'000'000;      ///< maximum number of con
 constexpr std::size_t kMaxContactsPerTime = 100'000;  ///< maximum number of contacts with the same time
 /// Allowed deviation of a gradient's norm from 1. Three decimals in the file suffice.
 constexpr double kMaxLengthError = 1e-3;
-constexpr double kRounding = 1e-12;  ///< deviation of a unit gradient's norm from 1 by rounding
+constexpr double kRounding = 1e-12;  ///< gradients whose norm deviates from 1 by at most this value are not normalised
 /// Quantities of a trace: time, position, gradient, depth.
 const std::vector<TableQuantity> kTraceColumns = {{.alternatives = {{"time_s"}}},
                                                   {.alternatives = {{"x_m", "y_m", "z_m"}}},

@@ -61,8 +61,9 @@ void warn_of_idle_integrator(const Scenario& scenario, std::vector<Warning>& war
            scenario.integrator.type->info.name)});
 }
 
-/// Warns about an admittance device if the hand does not feel the handle: servo and mechanics then have no effect.
-/// Sensor and limiter always have an effect, so there is no warning if only their fields differ from the defaults.
+/// Warns about an admittance device if the force of the hand does not depend on the handle, because servo and mechanics
+/// then have no effect. Does not warn if only fields of sensor and limiter differ from the defaults, because these
+/// fields always have an effect.
 void warn_of_idle_device(const Scenario& scenario, std::vector<Warning>& warnings) {
   const char* hand = std::holds_alternative<NoHandFields>(scenario.hand)      ? "none"
                      : std::holds_alternative<ForceHandFields>(scenario.hand) ? "force"
@@ -82,13 +83,15 @@ void warn_of_idle_device(const Scenario& scenario, std::vector<Warning>& warning
            hand)});
 }
 
-/// Warns about numbers of a device that no haptic device has: probably their unit is wrong. "hapbench import device"
-/// judges a log by the same limits.
+/// Warns about numbers of a device that are outside the range of haptic devices and probably have a wrong unit.
+/// "hapbench import device" applies the same limits to a log.
 void warn_of_unlikely_device(const Scenario& scenario, std::vector<Warning>& warnings) {
-  constexpr std::pair kHandles{1e-3, 20.0}, kCarriages{1e-3, 100.0};      // smallest and largest mass [kg]
-  constexpr double kCoarsestEncoder = 1e-3, kLargestNoise = 1e-3;         // [m]
-  constexpr double kLargestFriction = 100.0, kLargestViscosity = 1000.0;  // [N], [N s/m]
-  constexpr double kLongestDelay = 0.2;                                   // [s]
+  // Smallest and largest mass of a handle and of a carriage [kg].
+  constexpr std::pair kHandles{1e-3, 20.0}, kCarriages{1e-3, 100.0};
+  constexpr double kCoarsestEncoder = 1e-3, kLargestNoise = 1e-3;  // encoder step and position noise [m]
+  // Coulomb friction [N], viscous friction [N s/m].
+  constexpr double kLargestFriction = 100.0, kLargestViscosity = 1000.0;
+  constexpr double kLongestDelay = 0.2;  // delay [s]
   const auto check = [&](const char* field, double value, std::pair<double, double> usual, const char* unit,
                          const char* question) {
     if (value == 0.0 || (value >= usual.first && value <= usual.second)) return;
@@ -122,7 +125,7 @@ bool reads(const AlgorithmEntry& algorithm, std::string_view field) {
 /// Warns about values in `json` that differ from the defaults and that the rendering does not use: parameters of
 /// other algorithms, damping that rendering.damping replaces, and the filter of an unused angular velocity.
 void warn_of_unread_rendering(const Scenario& scenario, const Json& json, std::vector<Warning>& warnings) {
-  // Collect the parameters that only other algorithms use.
+  // Collect the parameters that the scenario's algorithm does not use but another algorithm does.
   const AlgorithmEntry& own = *find_algorithm(scenario.rendering.algorithm);
   const Json initial = {{"rendering", written_object(RenderingConfig{})}};
   // Maps the JSON pointer of a field to the names of the algorithms that use the field.
@@ -138,7 +141,7 @@ void warn_of_unread_rendering(const Scenario& scenario, const Json& json, std::v
     for (const AlgorithmParameter& parameter : other.algorithm_parameters)
       readers[fmt::format("/rendering/parameters/{}/{}", other.info->name, parameter.name)] = {other.info->name};
   }
-  // Warn about the parameters that the file sets.
+  // Warn about the collected parameters that the file sets to another value than the default.
   const auto is_given = [&](const std::string& pointer) {
     const Json::json_pointer at(pointer);
     return json.contains(at) && !(initial.contains(at) && initial.at(at) == json.at(at));
@@ -149,7 +152,7 @@ void warn_of_unread_rendering(const Scenario& scenario, const Json& json, std::v
         {kNoEffect, pointer,
          fmt::format("has no effect on this algorithm; it is a parameter of {}", fmt::join(names, ", "))});
   }
-  // Warn about damping and filter without effect.
+  // Warn about a damping and a filter that have no effect.
   for (const char* pointer : {"/rendering/damping_ratio", "/rendering/damping_N_s_per_m"}) {
     if (scenario.rendering.hunt_crossley && is_given(pointer))
       warnings.push_back({kNoEffect, pointer, "has no effect together with rendering.damping"});
@@ -179,7 +182,7 @@ void warn_of_stiff_bristle(const Scenario& scenario, std::vector<Warning>& warni
 /// Precondition: the reader has checked `json`.
 std::optional<Warning> first_unplayed(const Json& json, const std::string& at, double duration) {
   if (!json.is_object()) return std::nullopt;
-  // Waypoints: the second-to-last time is the beginning of the last segment.
+  // Check a script of waypoints. The time of the second-to-last waypoint is the beginning of the last segment.
   if (json.value("type", Json()) == "waypoints") {
     const Json& points = json.at("points");
     if (points.size() < 2 || points[points.size() - 2][0].get<double>() < duration) return std::nullopt;
@@ -188,7 +191,7 @@ std::optional<Warning> first_unplayed(const Json& json, const std::string& at, d
                                "time.duration_s (or steps) right?",
                                points.back()[0].get<double>(), duration)};
   }
-  // Any other object: search its fields.
+  // Search the fields of any other object.
   for (const auto& field : json.items()) {
     if (auto found = first_unplayed(field.value(), at + "/" + field.key(), duration)) return found;
   }
@@ -205,7 +208,7 @@ std::vector<Warning> relation_warnings(const Scenario& scenario, const Json& jso
   warn_of_unlikely_device(scenario, warnings);
   warn_of_unread_rendering(scenario, json, warnings);
   warn_of_stiff_bristle(scenario, warnings);
-  // Scripts of hand and motion.
+  // Warn about a script of the hand or the motion that is not played to its end.
   const double duration = scenario.time.step * static_cast<double>(scenario.time.steps);
   for (const char* part : {"hand", "motion"}) {
     if (!json.contains(part)) continue;

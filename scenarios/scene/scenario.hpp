@@ -64,7 +64,8 @@ struct BlockEnvironment {
   BlockWithHole block;
   double grid = 0.0001;  ///< spacing of the density field [m]
   Density density = Density::signed_distance;
-  bool per_cell = false;  ///< true: a vertex appears once for each cell that shares it (thesis 2.1, C.2); false: once
+  /// true: the shell contains a vertex once for each cell that shares it (thesis 2.1, C.2); false: once.
+  bool per_cell = false;
 };
 struct PointShellEnvironment {
   std::string file;            ///< CSV or PLY, relative to the scenario file
@@ -121,7 +122,7 @@ struct OrientationFields {
   Profile azimuth;              ///< [rad]
   Profile roll;                 ///< rotation about the tool's axis [rad]
 };
-/// Forces move the tool.
+/// The position of a tool that forces move.
 struct FreePosition {};
 struct PrescribedPosition {
   std::array<Profile, 3> coordinates;  ///< [m]
@@ -177,8 +178,8 @@ struct DragHandFields {
 /// that it travels in `duration` [s].
 double drag_length(const DragHandFields& hand, double duration);
 
-/// A simulated subject in a target-tracking experiment. Every subject does every trial, starting from the initial
-/// state.
+/// A simulated subject in a target-tracking experiment. Every subject does `trials` trials, and each trial starts from
+/// the initial state.
 struct TrackingHandFields {
   static constexpr std::size_t kMaxTargetPositions = 100;  ///< maximum number of target positions
   TargetRules task;
@@ -229,8 +230,7 @@ struct RecordFields : TrajectoryExtras {
 /// Returns true if a run records its time steps in any table.
 bool records_rows(const RecordFields& record);
 
-/// Force that an ideal rendering would give on a prescribed path.
-/// A force that is known.
+/// A reference force (the force that an ideal rendering would give) that the scenario gives as functions of time.
 struct GivenForceFields {
   std::array<Profile, 3> force;  ///< [N]
 };
@@ -251,7 +251,7 @@ struct SixDofFields {
   double coupling_rotation = 0.4;  ///< K_r, rotational stiffness of the 6-DOF coupling [N m/rad]
   double force_point = 0.0;        ///< distance from the tip centre back to the force point [m]
   double grip = 0.0;               ///< c, distance from the force point to the grip, towards the tip [m]
-  double pivot = 0.0;              ///< distance from the tip centre back to the point about which turns go [m]
+  double pivot = 0.0;  ///< distance from the tip centre back to the point about which rotations turn the tool [m]
 };
 
 /// Bounds of a metric. An empty bound is not checked.
@@ -298,16 +298,16 @@ struct Scenario {
   std::filesystem::path directory;  ///< folder of the scenario file; relative paths of files start from it
 };
 
-/// Returns the number of runs of the scenario: subjects times trials for a tracking hand, otherwise 1. The type
-/// is double, because the product may exceed the range of integers.
+/// Returns the number of trials of a run: number of subjects times trials of each subject for a tracking hand,
+/// otherwise 1. The type is double, because the product may exceed the range of integers.
 double trial_count(const HandFields& hand);
 
 /// Returns true if the contacts come from a recording or a shared library, and not from hapbench's contact
 /// search.
 bool has_external_contacts(const Scenario& scenario);
 
-/// Returns true if contacts are found at a lower rate than the steps, so that the contact is not part of a loop at the
-/// period of a step.
+/// Returns true if some steps do not use contacts of the same step: contacts are searched at a lower rate, delayed or
+/// lost. The contact is then not part of a loop with the period of a step.
 inline bool has_multi_rate_contacts(const Scenario& scenario) {
   return scenario.rendering.multi_rate && scenario.rendering.multi_rate->any();
 }

@@ -41,7 +41,7 @@ void check_sizes(const Scenario& scenario, double steps) {
 void check_orientation(const MotionFields& motion) {
   if (!motion.orientation) return;
   const Vec3 &up = motion.orientation->up, &lean = motion.orientation->lean;
-  // 1e-9 allows for the rounding of directions in a file.
+  // The tolerance of 1e-9 allows for directions that are rounded in the file.
   if (up.norm() >= kMinDirectionNorm && lean.norm() >= kMinDirectionNorm &&
       std::abs(up.dot(lean)) <= 1e-9 * up.norm() * lean.norm())
     return;
@@ -172,7 +172,7 @@ constexpr Rule kRules[] = {
      [](const Scenario& s) {
        return has_external_contacts(s) && s.rendering.reduction && s.rendering.reduction->shuffle_seed;
      }},
-    // An impedance device has no virtual mass between hand and tool.
+    // Rules of an impedance device, which has no virtual mass between hand and tool.
     {"/hand/type",
      "got \"mass_spring_damper\", which is fixed to the handle of device \"impedance\"; allowed with other devices: "
      "\"impedance\", the same spring and damper without the mass",

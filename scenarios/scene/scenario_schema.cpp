@@ -26,8 +26,8 @@ ValueGuide full_scenario(Json* definitions) {
   return guide;
 }
 
-/// Returns true if nothing inside the schema is required: an object that lacks some fields of a valid object is then
-/// also valid.
+/// Returns true if no field inside the schema is required. A valid object then stays valid if some of its fields are
+/// removed.
 bool allows_parts(const Json& schema) {
   if (!schema.is_structured()) return true;
   if (schema.is_object() && (schema.contains("required") || schema.contains("oneOf"))) return false;

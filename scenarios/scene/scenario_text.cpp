@@ -46,7 +46,7 @@ void refuse_relative_paths(const Json& json, const std::string& pointer) {
   }
 }
 
-/// Throws InputError if `next` is already one of the layers, so that files extend each other in a circle.
+/// Throws InputError if `next` is already one of the layers, because the files then extend each other in a circle.
 void check_chain(const std::vector<ScenarioLayer>& layers, const fs::path& next) {
   std::error_code ignored;
   const auto is_next = [&](const ScenarioLayer& layer) { return fs::equivalent(layer.file, next, ignored); };

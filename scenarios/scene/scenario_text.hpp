@@ -9,8 +9,8 @@
 /// Reads a scenario file and the files that it extends, without checking their fields.
 namespace hapbench {
 
-/// Field that names a base scenario. The fields of the file that has it are merged over the base scenario's
-/// fields.
+/// Name of the field that names a base scenario. The fields of the file with this field are merged over the fields of
+/// the base scenario.
 inline constexpr const char* kExtends = "extends";
 
 /// A scenario file and its content before merging with the scenario that it extends.
@@ -32,7 +32,7 @@ struct ScenarioText {
 /// Reads a scenario file and, recursively, the scenario that its field "extends" names. The field holds a file
 /// path, relative to the file that has the field, or the name of a bundled scenario. Rules of the merge:
 ///   - Objects are merged field by field. An object with another "type" replaces the base's object.
-///   - Every other value replaces the base's value; null does too.
+///   - Every other value, including null, replaces the base's value.
 ///   - If two fields exclude each other ("steps" and "duration_s"), the given field removes the
 ///     base's other field.
 ///   - "name" and "expect" are not inherited.

@@ -6,7 +6,7 @@
 namespace hapbench {
 namespace {
 
-/// Returns the rendering of the law that the field six_dof names.
+/// Returns the rendering settings of the law on the 3-DOF device (SixDofFields::law).
 RenderingConfig rendering_of(const Scenario& scenario, const six_dof::HandAndCoupling& springs) {
   const std::string& law = scenario.six_dof->law;
   if (law.empty()) return scenario.rendering;
@@ -16,8 +16,8 @@ RenderingConfig rendering_of(const Scenario& scenario, const six_dof::HandAndCou
   return config;
 }
 
-/// Returns the intent of the scripted pose. Rotations move the tip about the pivot; the scripted motion of the tip is
-/// added.
+/// Returns the pose that the hand intends, computed from the scripted pose. A rotation of the tool moves the tip about
+/// the pivot, in addition to the scripted motion of the tip.
 six_dof::Intent intent_of(const SixDofFields& fields, const ToolPose& pose, const Vec3& first_axis) noexcept {
   six_dof::Intent intent;
   intent.orientation = Eigen::Quaterniond(pose.rotation()).normalized();

@@ -10,8 +10,9 @@
 namespace hapbench {
 
 /// Compares, in every step, the force of the scenario's law on a 3-DOF device with the force of a 6-DOF device
-/// (algorithms/six_dof/devices.hpp). The scripted motion is the intent of the hand. Both devices are quasi-static, so
-/// neither time nor the simulated force matters. Allocates nothing during the run; about 0.1 ms to some ms a step.
+/// (algorithms/six_dof/devices.hpp). The scripted motion is the pose that the hand intends to reach. Both devices are
+/// computed in static equilibrium, so neither time nor the simulated force affects the result. Allocates nothing during
+/// the run; about 0.1 ms to some ms a step.
 class SixDofObserver final : public MetricObserver {
  public:
   SixDofObserver() = default;
@@ -26,10 +27,10 @@ class SixDofObserver final : public MetricObserver {
   const SixDofRow& row() const noexcept { return row_; }
 
  private:
-  const Scenario* scenario_ = nullptr;  ///< null: only lists the metrics
+  const Scenario* scenario_ = nullptr;  ///< null in an object that only lists the metrics
   std::optional<six_dof::SixDofDevice> reference_;
   std::optional<six_dof::ThreeDofDevice> device_;
-  Vec3 first_axis_ = Vec3::Zero();  ///< axis of the intent at t = 0
+  Vec3 first_axis_ = Vec3::Zero();  ///< axis of the tool in the scripted motion at t = 0
   SixDofRow row_;
   SixDofMetrics metrics_;
 };

@@ -27,8 +27,8 @@ constexpr TypeName kToolTypes[] = {
     {"mesh", "surface from an OBJ, PLY, STL or OFF file"},
 };
 
-/// Calls `make`, which constructs a shape. Converts a std::invalid_argument into an InputError at the JSON
-/// pointer `at`.
+/// Checks a shape: calls `make`, which constructs the shape. Converts a std::invalid_argument into an InputError at the
+/// JSON pointer `at`.
 template <class Make>
 void check_shape(const std::string& at, const char* allowed, const Make& make) {
   try {

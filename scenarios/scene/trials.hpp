@@ -7,13 +7,14 @@
 
 namespace hapbench {
 
-/// One run of a scenario: a trial of a simulated subject. A scenario without subjects has one run.
+/// Identifies a trial of a simulated subject. A scenario without subjects has a single trial, with the numbers 0.
 struct Trial {
   std::size_t subject = 0;  ///< index of the subject, from 0
   std::size_t number = 0;   ///< index of the subject's trial, from 0
 };
 
-/// Uses of random numbers that differ from trial to trial. Seeds depend on the numeric values; do not renumber.
+/// Purposes of random numbers. Each trial has a seed for each purpose. Seeds depend on the numeric values; do not
+/// renumber.
 enum class RandomUse { sensor_noise = 1, motor_noise, target_order, position_noise, lost_queries, tremor };
 /// Returns a 64-bit seed for one use of random numbers in one trial. Different uses, trials and scenario seeds
 /// give unrelated seeds.

@@ -82,8 +82,8 @@ MeasuredCase approach(const Evidence& e, const std::string& scene, std::size_t p
            {"swings", {swings}}}};
 }
 
-// ---- A2, A3: one case for each algorithm, number of pairs and definition of the depth: signed, or nonnegative with
-// the gradient along the displacement (2.3: d >= 0).
+// ---- A2: a mass on many springs without force limits. One case for each algorithm, number of pairs of springs, and
+// definition of the depth: signed, or nonnegative with the gradient along the displacement (2.3: d >= 0).
 
 constexpr std::size_t kPairCounts[] = {1, 2, 4, 10, 30, kPairs};
 
@@ -137,11 +137,12 @@ Finding judge_springs_unlimited(const Measured& measured, const PublishedNumbers
       fmt::format("{} of {} algorithms are smooth with 100 pairs", smooth, std::size(kAlgorithms))};
 }
 
-// Number of pairs with which the plain sum is smooth without limits. With 100 pairs it is not smooth even without
-// limits (A2).
+// Number of pairs with which the plain sum is smooth without force limits. With 100 pairs it is not smooth even without
+// force limits (A2).
 constexpr std::size_t kStablePairs = 4;
 
-/// Returns two cases for each algorithm and number of pairs: without force limits, then with force limits.
+/// Measures claim A3. Returns two cases for each algorithm and number of pairs: without force limits, then with force
+/// limits.
 Measured measure_springs_limited(const Evidence& e) {
   Measured measured;
   for (const std::size_t pairs : {kPairs, kStablePairs}) {
@@ -183,7 +184,7 @@ Finding judge_springs_limited(const Measured& runs, const PublishedNumbers& p) {
 constexpr const char* kSpring = "single_spring";
 constexpr double kLimitResolution = 1e-4;
 constexpr const char* kUndamped = "rendering.damping_ratio=0";
-constexpr double kSameEnergy = 1e-9;  // relative; stated in the rule's text
+constexpr double kSameEnergy = 1e-9;  // largest relative change of a conserved energy; stated in the rule's text
 
 /// Returns the largest value of a field at which the motion of a mass on the spring stays bounded after an initial
 /// velocity of 1 mm/s.
@@ -245,8 +246,7 @@ Finding judge_damping_at_limit(const MeasuredCase& m, const PublishedNumbers& p)
 }
 
 // ---- A6: three energies of an undamped mass on a spring, as Eq. A.1 moves it.
-// mass: largest excess of the kinetic energy over the work F_k (p_k - p_(k-1)) of the force on the mass, in units of
-// the
+// mass: largest excess of the kinetic energy over the work F_k (p_k - p_(k-1)) of the force on the mass, divided by the
 //   initial energy; the excess is -M |dv|^2 / 2 in each step, so that the mass alone is passive.
 // kept: largest relative change of the modified energy (K x^2 + M v^2 - K dt x v) / 2, which Eq. A.1 keeps.
 // naive: largest energy (K x^2 + M v^2) / 2 in units of its initial value; bound: 1 / (1 - w dt / 2), with the angular
@@ -267,7 +267,7 @@ MeasuredValues measure_energy(const Evidence& e) {
       modified_start = modified;
       kinetic_start = kinetic;
     } else {
-      work += -K * x.dot(position - x);  // the force at the position before moves the mass to this position
+      work += -K * x.dot(position - x);  // the force at the previous position moves the mass to this position
       excess = std::max(excess, kinetic - kinetic_start - work);
     }
     largest = std::max(largest, energy);

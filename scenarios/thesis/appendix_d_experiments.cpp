@@ -13,7 +13,7 @@
 namespace hapbench {
 namespace {
 
-/// A measure of the experiments.
+/// Names of a quantity that the experiments measure.
 struct MeasuredColumn {
   const char* name;       ///< name of the measure
   const char* column;     ///< column of targets.csv
@@ -183,8 +183,9 @@ constexpr double kOffsets[] = {0.4e-3,  0.46e-3, 0.52e-3,
 constexpr double kHeights[] = {2e-3, 2.5e-3, 3e-3, 3.5e-3, 4e-3, 4.5e-3};  ///< height above the hole's bottom [m]
 constexpr double kHoleDepth = 5e-3;                                        ///< [m]
 
-/// Returns the mean success rate of the subjects at one position [m], with four targets for each subject. Each position
-/// has a run of its own, because a subject who loses the drill misses all remaining targets.
+/// Returns the mean success rate of the subjects at one position [m]. Each subject has four targets, or one target in a
+/// reduced measurement. Each position has a separate run, because a subject who loses the drill misses all remaining
+/// targets.
 double success_rate(const Evidence& e, const std::string& scenario, const Vec3& position) {
   const Result run =
       e.run(scenario, {fmt::format("hand.task.places_m=[[{},{},{}]]", position.x(), position.y(), position.z()),
@@ -211,8 +212,8 @@ Measured measure_pilots(const Evidence& e) {
   return measured;
 }
 
-/// Result of one pilot experiment, which varies either the offset or the height of the targets. Success rates are
-/// those of the original algorithm unless a member says otherwise.
+/// Result of one pilot experiment, which varies either the offset or the height of the targets. A member is about the
+/// original algorithm unless its comment names stiffness shaping.
 struct PilotResult {
   bool easy = false;       ///< true if, at some position, most targets are removed
   bool beyond = false;     ///< true if, at some position beyond the published position, the success rate is above

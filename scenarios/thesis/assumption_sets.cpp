@@ -26,7 +26,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Returns a cell of an assumption's column. Throws InputError if the assumption does not allow its value.
+/// Returns the value in a cell of an assumption's column. Throws InputError if the assumption does not allow this
+/// value.
 std::string allowed_value(const Assumption& assumption, std::string_view cell, const fs::path& file, std::size_t line) {
   const auto& range = assumption.range;
   const auto number = finite_number(cell);
@@ -38,7 +39,8 @@ std::string allowed_value(const Assumption& assumption, std::string_view cell, c
   fail_in_line(file, line, fmt::format("{}: got \"{}\"; allowed: {}", assumption.id, cell, allowed));
 }
 
-/// Runs a scenario and writes its results. Returns why the results cannot be used; empty if they can.
+/// Runs a scenario and writes its results. Returns the reason why the results cannot be used; empty if they can be
+/// used.
 std::string problem_of_run(const Evidence& evidence, const std::string& name) {
   try {
     const CheckedScenario scene = checked(evidence.load(name));
@@ -70,7 +72,7 @@ double raw_ratio(const Assumptions& assumptions, const std::vector<std::string>&
 bool calibrate(const Assumptions& assumptions, std::vector<std::string>& values, std::size_t index) {
   constexpr int kRuns = 8;
   const Assumption& assumption = assumptions.all()[index];
-  // The number of raw points grows with the value; bound the estimated exponent.
+  // The number of raw points grows with the value of the input. Bound the estimated slope of its logarithm.
   constexpr double kSmallestSlope = 0.3, kLargestSlope = 5.0;
   const double low = math::log(assumption.range->first), high = math::log(assumption.range->second);
   double at = math::log(finite_number(assumption.value).value()), slope = 1.0;

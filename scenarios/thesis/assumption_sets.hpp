@@ -28,7 +28,8 @@ std::vector<AssumptionSet> read_assumption_sets(const std::filesystem::path& fil
 /// Returns the assumptions whose values differ from the recorded values, as "servo.delay = 2, local.average = false".
 std::string difference_text(const AssumptionSet& set, const Assumptions& assumptions);
 
-/// Relative difference from the published number of raw points at which an input counts as calibrated.
+/// Largest relative difference of the number of raw points (colliding points) from the published number at which an
+/// input counts as calibrated.
 inline constexpr double kCalibrationTolerance = 0.03;
 
 /// An assumption set whose calibrated assumptions have the values that give the published numbers of raw points.
@@ -37,19 +38,19 @@ struct CalibratedSet {
   std::set<std::size_t> missed = {};  ///< assumptions that could not be calibrated within their range
 };
 
-/// Calibrates the inputs of a set, by secants in logarithms from the recorded value with at most 8 runs for each input.
-/// Calibrates only inputs whose scenario differs from the recorded scenario, and no given value. Throws InputError.
+/// Calibrates the inputs of a set. Leaves an input unchanged if its value is given, or if no other assumption of the
+/// set changes the scenario of its calibration. Uses the secant method on logarithms, from the recorded value, with at
+/// most 8 runs for each input. Throws InputError.
 CalibratedSet calibrated(AssumptionSet set, const Assumptions& assumptions);
 
-/// Share of the targets of appendix D that a reduced run has: 4 of 15 targets at each position, by each of the six
-/// subjects.
+/// Overrides that reduce the experiments of appendix D: 4 of 15 targets at each position, for each of the six subjects.
 inline constexpr const char* kReducedSubjects[] = {"hand.trials=1", "hand.task.targets_per_place=4"};
 
 /// Inputs with which the claims are judged.
 struct JudgingInputs {
   const Assumptions& assumptions;
   const PublishedNumbers& published;  ///< without the values of assumptions
-  bool reduced = false;               ///< true: experiments with subjects have kReducedSubjects
+  bool reduced = false;               ///< true: experiments with subjects use the overrides kReducedSubjects
 };
 
 /// The verdict on a claim under an assumption set.
@@ -62,9 +63,9 @@ struct SetFinding {
 /// Verdict of a claim that could not be measured: a run diverged unexpectedly, or a field refuses the value.
 inline constexpr const char* kNotMeasured = "not measured";
 
-/// Judges the claims under a set. Runs each scenario once, when a claim first needs it. A claim that uses a scenario of
-/// a missed calibration is not judged. Writes results into `directory` and removes it at the end. Thread-safe if each
-/// call has its own directory. Throws IoError.
+/// Judges the claims under a set. Runs each scenario once, when a claim first needs it. A claim has the verdict "not
+/// judged" if it uses the scenario of an input that could not be calibrated. Writes results into `directory` and
+/// removes this directory at the end. Thread-safe if each call has a different directory. Throws IoError.
 std::vector<SetFinding> judge_set(const JudgingInputs& inputs, const CalibratedSet& calibrated,
                                   const std::vector<Claim>& claims, const std::filesystem::path& directory);
 

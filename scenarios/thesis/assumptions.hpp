@@ -13,9 +13,9 @@
 #include "scenarios/thesis/claims.hpp"
 #include "scenarios/thesis/published_numbers.hpp"
 
-/// Assumptions: what the thesis leaves open, with the value that the bundled scenarios have. They are stored in
-/// results/reference/assumptions.json; assumptions.schema.json documents the format, and a test validates the file
-/// against it.
+/// Assumptions: the values that the thesis leaves open, each with the value that the bundled scenarios have. They are
+/// stored in results/reference/assumptions.json; assumptions.schema.json documents the format, and a test validates the
+/// file against the schema.
 namespace hapbench {
 
 /// A scenario field that an assumption sets.
@@ -26,7 +26,7 @@ struct AssumedField {
                                        ///< replaces this value
 };
 
-/// The quantity to which an assumption is calibrated: mean number of colliding points over the steps with contact of a
+/// Target of a calibration. `raw` is the published mean number of colliding points, over the steps with contact of the
 /// scenario.
 struct Calibration {
   std::string scenario = {};
@@ -46,7 +46,8 @@ struct Assumption {
   std::string text = {};                        ///< JSON text of the whole entry
 
   /// Returns the plausible values other than the recorded value, as texts for --set: the other options, or the ends of
-  /// the range and, with `middle`, its middle. Omits a middle within a tenth of the range of the recorded value.
+  /// the range and, with `middle`, the middle of the range. Omits a middle that differs from the recorded value by at
+  /// most a tenth of the range's width.
   std::vector<std::string> other_values(bool middle = true) const;
 
   /// Returns true if the assumption can change a claim: it sets a field of one of `scenarios`, or it has no fields and
@@ -72,7 +73,8 @@ class Assumptions {
   /// scenario that the assumption names, or if a field to multiply is not a number.
   std::vector<std::string> overrides(const Scenario& scenario, std::span<const std::string> values) const;
 
-  /// Returns `published` with the values of the assumptions without fields added, by the assumptions' ids.
+  /// Returns `published` together with the values of the assumptions that have no fields. The id of each added number
+  /// is the id of its assumption.
   PublishedNumbers with_numbers(PublishedNumbers published, std::span<const std::string> values) const;
 
   /// Returns a hash of the assumptions that can change a claim (Assumption::reaches). Empty if there are none.

@@ -13,12 +13,12 @@
 #include "scenarios/thesis/measurements.hpp"
 
 /// Claims of 1.2, 2.8, 3.4 and F.2: the computing time of contact points. Times differ between machines and runs, so
-/// that the numbers in two ledgers are not equal. They are medians of repetitions, and a verdict needs a difference of
-/// a factor rule.margin.
+/// that the numbers in two ledgers are not equal. The times are medians of repetitions. A verdict requires that two
+/// times differ by at least the factor rule.margin.
 namespace hapbench {
 namespace {
 
-constexpr int kIterations = 3;  ///< default of the thesis
+constexpr int kIterations = 3;  ///< default number of iterations in the thesis
 
 /// Stiffness shaping as formulated in the thesis: with the n x n matrix of squared inner products of n gradients.
 class DenseShaping {
@@ -86,8 +86,8 @@ Finding judge_tensor_deadline(const MeasuredCase& m, const PublishedNumbers& pub
                           : "without the reduction the tensor form misses the deadline, too"};
 }
 
-// ---- T5: computing time of one step over the time step [1] for the contacts of task 3, in the dense form and in the
-// tensor form.
+// ---- T5: computing time of one step divided by the time step [1], for the contacts of task 3, in the dense form and
+// in the tensor form.
 
 MeasuredValues measure_loop_load(const Evidence& e) {
   const LoadedScenario task = e.load("task3_spin_signed_distance");
@@ -122,11 +122,11 @@ Finding judge_loop_load(const MeasuredCase& m, const PublishedNumbers& p) {
               margin * m["tensor_reduced_3"] <= m["tensor_unreduced_3"] ? "lowers" : "does not lower")};
 }
 
-// ---- P2, F3: computing time of one step over the time step [1], of another algorithm and of stiffness shaping: the
-// proxy in task 2 (P2); tandpasta for the largest number of contacts of task 2 (F3).
+// ---- P2, F3: computing time of one step divided by the time step [1], of another algorithm and of stiffness shaping.
+// P2: the proxy in task 2. F3: tandpasta for the largest number of contacts of task 2.
 
 MeasuredValues measure_proxy_cost(const Evidence& e) {
-  // Run both in turn, so that a change of the machine's speed affects both.
+  // Run both laws in turn, so that a change of the machine's speed affects both.
   constexpr int kRuns = 3;
   std::map<std::string, std::vector<double>> shares;
   for (int i = 0; i < kRuns; ++i) {

@@ -29,11 +29,11 @@ namespace hapbench {
 namespace {
 
 // ---- T1, T2, T3: number of points in each step with contact. One case for each point density. The hands are
-// calibrated to the mean and standard deviation of the raw counts, so that the raw counts are inputs; the counts after
-// the reduction are results. Our hands also tap with more than the input limit. Steps within kAfterTap after such a
-// tap count for the means, but not for the bound of 15 points.
+// calibrated to the mean and standard deviation of the raw counts (before the reduction), so that the raw counts are
+// inputs; the counts after the reduction are results. The simulated hands also tap with forces above the input limit.
+// Steps within kAfterTap after a tap count for the means, but not for the bound of 15 points.
 
-constexpr double kAfterTap = 0.1;  ///< [s]
+constexpr double kAfterTap = 0.1;  ///< time after a tap [s]
 
 Measured measure_counts(const Evidence& e, const std::string& task) {
   Measured measured;
@@ -45,7 +45,7 @@ Measured measure_counts(const Evidence& e, const std::string& task) {
     for (std::size_t i = 0; i < table.at("colliding").size(); ++i) {
       const double time = table.at("time_s")[i];
       const Vec3 force{table.at("fmeas_x_N")[i], table.at("fmeas_y_N")[i], table.at("fmeas_z_N")[i]};
-      // Steps within kAfterTap of a force beyond the input limit do not count for the bound.
+      // Steps within kAfterTap after a force above the input limit do not count for the bound.
       if (force.norm() > e.published["L1.measured"].mean) tap = time;
       if (time >= tap + kAfterTap) outside = std::max(outside, table.at("rendered")[i]);
       if (table.at("colliding")[i] == 0.0) continue;
@@ -70,9 +70,9 @@ Finding judge_flat_reduction(const Measured& counts, const PublishedNumbers& pub
           one ? "on a flat all gradients are equal, so one point is left" : "more than one point is left on the flat"};
 }
 
-/// Returns whether the mean and the spread of counts are near the published values of recording `one`. The thesis
-/// publishes two recordings of a task without errors. A value is near recording `one` if its difference from this
-/// recording is at most the difference between the two recordings.
+/// Returns whether the mean, and whether the spread, of counts is near the published value of recording `one`. The
+/// thesis publishes two recordings of a task without errors. A value is near recording `one` if its difference from
+/// this recording is at most the difference between the two recordings.
 std::pair<bool, bool> nearness(const MeasuredCase& c, const std::string& counts, const PublishedNumber& one,
                                const PublishedNumber& other) {
   const auto is_near = [](double value, double published, double elsewhere) {
@@ -86,11 +86,11 @@ std::pair<bool, bool> nearness(const MeasuredCase& c, const std::string& counts,
 struct CountsAgree {
   bool raw = false;    ///< true if mean and spread of the raw counts agree
   bool mean = false;   ///< true if, in addition, the mean after the reduction agrees
-  bool whole = false;  ///< true if, in addition, the spread after the reduction agrees and no step exceeds the bound
+  bool whole = false;  ///< true if, in addition, the spread after the reduction agrees and no step reaches the bound
 };
 
 /// Compares the counts of one density with both published recordings of a task: the counts of 3.3 and of appendix C.3
-/// differ. `bounded`: true if no step exceeds the published bound.
+/// differ. `bounded`: true if no step reaches the published bound.
 CountsAgree agreement(const MeasuredCase& c, const PublishedNumbers& published, const std::string& task, bool bounded) {
   CountsAgree agree;
   for (const auto& [one, other] : {std::pair("", ".C3"), std::pair(".C3", "")}) {
@@ -114,7 +114,8 @@ std::string agreement_text(const CountsAgree& agree, bool bounded, double bound)
          (bounded ? std::string("its spread is not") : fmt::format("some rows keep {} or more", bound));
 }
 
-/// A density whose raw counts, which are an input, are not the published counts predicts nothing.
+/// Judges the number of points after the reduction. The raw counts are an input: a density whose raw counts differ from
+/// the published raw counts predicts nothing.
 Finding judge_reduced_points(const Measured& counts, const PublishedNumbers& published, const std::string& task) {
   const double bound = published["T3.reduced.bound"].at_most;
   std::size_t inputs = 0, all = 0, means = 0;

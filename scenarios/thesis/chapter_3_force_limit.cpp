@@ -31,7 +31,7 @@ namespace {
 // ---- L1: displacement of the tool into the flat as a function of the measured force.
 // deviation: rms difference, without the force limit, between the displacement and the ideal line of Fig. 6,
 //   (measured force - weight) / K, divided by the largest displacement.
-// onset: measured force from which the displacement is constant with the limit [N].
+// onset: measured force [N] from which on, with the force limit, the displacement is constant.
 // plateau_spread: (max - min) / mean of the displacement beyond the onset.
 
 /// Displacements of the tool (depth) and of the handle into the flat [m], and the measured force [N], in a step with
@@ -60,7 +60,7 @@ MeasuredValues measure_force_limit(const Evidence& e) {
   for (std::size_t i = on.size() - last; i < on.size(); ++i) plateau += on[i].depth / static_cast<double>(last);
   for (const auto& [depth, handle, force] : on)
     if (depth >= 0.99 * plateau) onset = std::min(onset, force);
-  // Find the spread of the plateau, from 0.2 N beyond the onset on.
+  // Find the smallest and the largest displacement at forces that exceed the onset by at least 0.2 N.
   double low = plateau, high = plateau;
   for (const auto& [depth, handle, force] : on) {
     if (force < onset + 0.2) continue;
@@ -108,10 +108,11 @@ Finding judge_felt_stiffness(const MeasuredCase& m, const PublishedNumbers& p) {
                       times)};
 }
 
-// ---- L2: the steps of task 2 in contact in which the hand's force is at the limit: the spring force f (the reaction)
-// [N], and the fraction of the steps in which f does not grow along the velocity v, <v, grad |f|> = -K <f, S v> / |f|
-// <= 0. At the limit the tool is near equilibrium, so that the sign of v is a matter of chance; if the tool moves only
-// where the reaction decreases, the reaction does not exceed the limit.
+// ---- L2: the steps of task 2 in contact in which the hand's force is at the input limit. Measures the magnitude of
+// the spring force f (the reaction) [N] in these steps. Also measures the fraction of these steps in which |f| does not
+// grow along the velocity v: <v, grad |f|> = -K <f, S v> / |f| <= 0. At the limit the tool is near equilibrium, so that
+// the sign of v is a matter of chance. If the tool moves only where the reaction decreases, the reaction does not
+// exceed the limit.
 
 MeasuredValues measure_saturated_motion(const Evidence& e) {
   // The hand pushes with more than the input limit of 2 N while the drill rotates once back and forth.

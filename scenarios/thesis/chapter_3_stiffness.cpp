@@ -31,10 +31,13 @@ namespace hapbench {
 namespace {
 
 // ---- R1, R3, R4, R6: smallest and largest stiffness ratio in the recorded steps of tasks 2 and 3. One case for each
-// task and density; then one case for each density with the averages over the steps of all three tasks. Values of a
-// number of updates have the suffix _1, _2 or _3. inside: fraction of the steps with both extremes in the published
-// range; min, max: over all steps; any_max: after any number of updates; damped: fraction of the steps in which the
-// relative damping sqrt(ratio) zeta of both extremes is within a factor rule.around of zeta.
+// task and density; then one case for each density with averages over the steps of all three tasks. The suffixes _1, _2
+// and _3 are the number of updates.
+// inside: fraction of the steps in which both ratios are in the published range.
+// min, max: smallest and largest ratio over all steps; in the cases of averages, the means of both ratios.
+// any_max: largest ratio after any number of updates.
+// damped: fraction of the steps in which the relative damping sqrt(ratio) zeta is, for both ratios, within a factor
+// rule.around of zeta.
 
 /// The tasks in the hole.
 constexpr const char* kHoleTasks[] = {"task2_rotate", "task3_spin"};
@@ -99,10 +102,10 @@ Measured measure_ratios(const Evidence& e) {
   return measured;
 }
 
-/// The number of cases of tasks at the beginning of measure_ratios(); the averages follow.
+/// Number of cases with a single task. They are at the beginning of measure_ratios(), and the averages follow.
 constexpr std::size_t kTaskCases = std::size(kHoleTasks) * std::size(kDensities);
 
-/// Returns the smallest value of the tasks, or their largest.
+/// smallest() and largest() return the extreme of the measured number `value` over the cases with a single task.
 double smallest(const Measured& measured, const std::string& value) {
   double result = std::numeric_limits<double>::infinity();
   for (const MeasuredCase& m : std::span(measured).first(kTaskCases)) result = std::min(result, m[value]);
@@ -114,8 +117,9 @@ double largest(const Measured& measured, const std::string& value) {
   return result;
 }
 
-/// Returns the smallest ratio after one update of one contact against `parallel` parallel contacts. With x, the square
-/// of the inner product of the two directions, the ratio of the single contact is 1 / (1 + k x) + k x / (k + x).
+/// Returns the smallest ratio after one update of one contact against `parallel` parallel contacts. With k = `parallel`
+/// and the square x of the inner product of the two directions, the ratio of the single contact is
+/// 1 / (1 + k x) + k x / (k + x).
 double smallest_after_one_update(int parallel) {
   const double k = parallel;
   double smallest_ratio = 1.0;
@@ -252,7 +256,8 @@ Mat3 shaped_tensor(const Directions& contacts, int iterations, ContactBuffer& bu
   return S;
 }
 
-/// Returns 2 to kMaxDirections random directions, a fifth of the sets in a plane, with log-uniform weights.
+/// Returns 2 to kMaxDirections random directions with log-uniform weights from 0.01 to 100. In a fifth of the sets, all
+/// directions lie in one plane.
 Directions random_directions(Random& random) {
   Directions contacts(2 + random.below(kMaxDirections - 1));
   const bool planar = random.uniform(0.0, 1.0) < 0.2;
@@ -265,7 +270,8 @@ Directions random_directions(Random& random) {
   return contacts;
 }
 
-/// Returns the set after one random contact was changed by about `step`.
+/// Returns the set after a random change of one contact: its direction turns by about `step` [rad], and its weight
+/// changes by a factor of at most exp(2 step).
 Directions neighbour(Directions contacts, double step, Random& random) {
   WeightedDirection& contact = contacts[random.below(contacts.size())];
   contact.direction = (contact.direction + step * random.direction()).normalized();
@@ -301,7 +307,7 @@ double stiffest_contacts(int iterations) {
 }
 
 Measured measure_guarantee(const Evidence&) {
-  // The search does not depend on the evidence: its result is computed once for all readings.
+  // The search does not depend on the evidence: its result is computed once for all assumption sets.
   static const Measured found = [] {
     Measured measured;
     for (const int iterations : {1, 2, 3, 10, kExactLimit}) {
@@ -334,7 +340,8 @@ Finding judge_guarantee(const Measured& measured, const PublishedNumbers& publis
 constexpr int kRandomSets = 2000;
 constexpr double kRounding = 1e-9;  // stated in the rules' texts
 
-/// Calls `look` for random sets of 2 to kMaxDirections contacts of equal depth [m], with weights of 1.
+/// Calls `look` for kRandomSets random sets of 2 to kMaxDirections contacts. Each contact has a depth of 1 mm and the
+/// weight 1.
 template <class Look>
 void for_random_contacts(Look look) {
   Random random(1);

@@ -68,8 +68,8 @@ double deepest(const MeasuredCase& m) {
   return largest;
 }
 
-/// Judges whether the drill sinks in easily with the law of the second case, compared with stiffness shaping (first
-/// case), at the tilt where it sinks in most.
+/// Judges whether the drill sinks in easily with the law of the second case. Compares its largest depth over the tilts
+/// with the largest depth of stiffness shaping (first case).
 Finding judge_sinking(const Measured& m, const PublishedNumbers& p) {
   const double law = deepest(m.at(1)), shaped = deepest(m.at(0));
   const bool easily = law >= threshold(p, "easily") * shaped, more = law > shaped;

@@ -18,8 +18,8 @@
 /// The source file of each chapter measures the claims and decides the verdicts.
 namespace hapbench {
 
-/// The functions that measure a claim and decide its verdict from the measurement alone. A constant in them that is not
-/// an assumption must also be stated in the claim's text.
+/// The functions that measure a claim and decide its verdict from the measurement alone. If one of these functions has
+/// a constant that is not an assumption, the claim's text must state the constant too.
 struct ClaimRule {
   const char* id = nullptr;
   Measure measure = nullptr;
@@ -50,15 +50,15 @@ std::vector<AbstractSentence> abstract_sentences();
 
 // The rules of each chapter or appendix, defined in the source file of the same name, with the ids of their claims.
 
-std::vector<ClaimRule> chapters_1_and_4();        ///< V, S1, S3, B1b, B5, G, B4, C1 to C3, C7, C8
+std::vector<ClaimRule> chapters_1_and_4();        ///< V1, V2, S1, B1b, B4, B5, G1, G1b, G2, C1 to C3, C7, C8
 std::vector<ClaimRule> chapter_3_counts();        ///< T1 to T3
-std::vector<ClaimRule> chapter_3_stiffness();     ///< R
-std::vector<ClaimRule> chapter_3_force_limit();   ///< L
-std::vector<ClaimRule> chapter_3_trajectory();    ///< J, C5, T2b
-std::vector<ClaimRule> chapter_3_cost();          ///< T4, T5, P2, F3
-std::vector<ClaimRule> whole_tasks();             ///< S2, T6, G3
-std::vector<ClaimRule> appendix_a();              ///< A
-std::vector<ClaimRule> appendix_b_c_f();          ///< B1 to B3, P1, C6, F1, F2, F4, F5
-std::vector<ClaimRule> appendix_d_experiments();  ///< D
+std::vector<ClaimRule> chapter_3_stiffness();     ///< R1 to R6, R1b, S3, F5
+std::vector<ClaimRule> chapter_3_force_limit();   ///< L1 to L4
+std::vector<ClaimRule> chapter_3_trajectory();    ///< J1, J2, C5, T2b
+std::vector<ClaimRule> chapter_3_cost();          ///< T4, T4b, T5, P2, F3
+std::vector<ClaimRule> whole_tasks();             ///< S2, G3
+std::vector<ClaimRule> appendix_a();              ///< A1 to A6
+std::vector<ClaimRule> appendix_b_c_f();          ///< B1 to B3, P1, T6, C6, F1, F2, F4
+std::vector<ClaimRule> appendix_d_experiments();  ///< D1 to D4, D6, D7
 
 }  // namespace hapbench

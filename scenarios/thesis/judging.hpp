@@ -14,8 +14,8 @@
 namespace hapbench {
 
 /// The outcome of testing a claim. `consistent` and `not_consistent` are for experiments with people, which simulated
-/// subjects cannot replicate; `holds` and `does_not_hold` for findings of this project; the others for all other
-/// claims.
+/// subjects cannot replicate. `holds` and `does_not_hold` are for findings of this project. The other values are for
+/// all other claims.
 enum class Verdict {
   replicated,
   qualitatively,
@@ -135,16 +135,15 @@ struct Claim {
   Judge judge = nullptr;
   bool timing = false;  ///< true: the finding contains run times, which differ between runs
   bool ours = false;    ///< true: a finding of this project, not counted as a claim of the thesis
-  bool costly = false;  ///< true: slow to measure, so the record of sensitivity.hpp has it with fewer targets
+  bool costly = false;  ///< true: slow to measure, so its verdicts in the record of sensitivity.hpp use fewer targets
   bool drawn = false;   ///< true: a figure plots the numbers of its cases, so the ledger stores them
 
-  std::string number = {};           ///< short text with the measured number that decides, like `measured`
-  std::string published_short = {};  ///< the published number beside `number`; empty: `published`
+  std::string number = {};           ///< short text with the measured number that decides, in the form of `measured`
+  std::string published_short = {};  ///< published number that is compared with `number`; empty: `published`
 
   /// A rule that was changed after its verdict was known. Empty for other claims.
   struct Revision {
-    std::string rule = {}, verdict = {},
-                reason = {};  ///< the rule and the verdict before, and why the rule was changed
+    std::string rule = {}, verdict = {}, reason = {};  ///< the earlier rule, its verdict, and why the rule was changed
   } revised = {};
   bool added = false;  ///< true: the rule was committed before the claim was measured for the first time
 
@@ -161,12 +160,13 @@ struct JudgedClaim {
   double seconds = 0.0;                     ///< time to run its scenarios and to measure it [s]
 };
 
-/// Measurements of claims, so that claims with the same measurement share it. Holds for one set of assumptions.
+/// Caches the measurements of claims, so that claims with the same function Claim::measure share one measurement. An
+/// instance is valid for one assumption set.
 class Measurements {
  public:
   /// Measures a claim and returns the verdict on it. Calls evidence.used with the name of each scenario that the
-  /// measurement needs, also if an earlier claim has made it. Without anything to measure, the verdict is
-  /// `not_judged`. Throws InputError.
+  /// measurement needs, also if the measurement was made for an earlier claim. If the run has nothing to measure, the
+  /// verdict is `not_judged`. Throws InputError.
   Finding finding(const Claim& claim, const Evidence& evidence);
 
  private:

@@ -75,7 +75,7 @@ std::string seconds_text(const Json& claim) {
   return seconds < 1.0 ? "< 1 s" : fmt::format("{:.0f} s", seconds);
 }
 
-/// Returns the number of a claim for a table; the reason for a claim without a number.
+/// Returns the number of a claim for a table; a dash for a claim without a number.
 std::string ours(const Json& claim) {
   const std::string number = text_at(claim, "number");
   return number.empty() ? "–" : number;
@@ -89,7 +89,7 @@ std::string row_of(const Json& claim) {
                      text_at(claim, "published"), ours(claim), text_at(claim, "verdict"), decided_by(claim));
 }
 
-/// Returns the cell of an abstract's row: the text of each claim, after its id if there are several.
+/// Returns a cell of the abstract's table: the text of each claim, after its id if there are several claims.
 std::string joined(const std::vector<const Json*>& claims, const std::function<std::string(const Json&)>& text) {
   std::string cell;
   for (const Json* claim : claims)
@@ -137,8 +137,8 @@ std::string failures(const Json& claims) {
   return text;
 }
 
-/// Returns a table of the other values of assumptions with which claims have another verdict, by assumption, and a note
-/// for each claim whose record has another verdict than the ledger. Empty without such values.
+/// Returns a table with a row for each assumption: its other values with which claims have another verdict. Adds a note
+/// for each claim that has another verdict in the record of sensitivity than in the ledger. Empty without such values.
 std::string other_values(const Json& claims) {
   std::map<std::string, std::string> cells;
   std::string notes;
@@ -166,8 +166,8 @@ std::string other_values(const Json& claims) {
   return text + notes;
 }
 
-/// Returns the verdict of a claim's record under the recorded assumptions, if it differs from the verdict of the
-/// ledger.
+/// Returns a note with the verdict that a claim has in the record of sensitivity under the recorded assumptions. Empty
+/// if the ledger has the same verdict.
 std::string sampled_text(const Json& claim) {
   return claim.contains("sampled_verdict")
              ? fmt::format("with fewer targets, the recorded assumptions give: {}; ", text_at(claim, "sampled_verdict"))
@@ -196,7 +196,8 @@ std::string table_of(const Json& claims, const std::string& title, bool (*belong
   return rows.empty() ? "" : fmt::format("\n### {}\n\n{}{}", title, kHeading, rows);
 }
 
-/// Returns the list of revised rules, with the verdict before.
+/// Returns the table of revised rules with their earlier verdicts, and a sentence with the claims whose rules were
+/// committed before the measurement (Claim::added).
 std::string revisions(const Json& claims) {
   std::string rows, added;
   for (const Json& claim : claims) {

@@ -25,7 +25,8 @@ namespace hapbench {
 /// The algorithm that the thesis proposes.
 inline constexpr const char* kProposedLaw = "shaped_stiffness";
 
-/// Names of the tasks of 3.2 and of the densities of the block; a scenario TASK_DENSITY has both.
+/// Names of the tasks of section 3.2 and of the block's point densities. The scenario of a task with a density has the
+/// name TASK_DENSITY.
 inline constexpr const char* kTasks[] = {"task1_flat", "task2_rotate", "task3_spin"};
 inline constexpr const char* kDensities[] = {"signed_distance", "binary"};
 
@@ -79,8 +80,8 @@ ContactBuffer largest_of(const std::vector<ContactBuffer>& sets);
 /// Returns the size of the largest set; 0 without sets.
 std::size_t largest_size(const std::vector<ContactBuffer>& sets);
 
-/// Returns the median processor time [s], over the repetitions, of a pass that copies each set and calls `work` with
-/// the copy.
+/// Returns the median processor time [s], over the repetitions, of one pass over all sets. A pass copies each set and
+/// calls `work` with the copy.
 template <class Work>
 double seconds_with(const std::vector<ContactBuffer>& sets, int repetitions, Work work) {
   ContactBuffer copy(largest_size(sets));
@@ -95,21 +96,23 @@ double seconds_with(const std::vector<ContactBuffer>& sets, int repetitions, Wor
 /// Returns the vibration measures of a run: total variation of the velocity [m/s], power of the velocity above 30 Hz
 /// [m^2/s^2], and number of force reversals.
 MeasuredCase vibration(const std::string& name, const Result& run);
-/// Returns vibration() of the run that others are compared with. If this run diverges, the values are NaN, so that
-/// every comparison with them fails: a law that diverges at once has a small variation.
+/// Returns vibration() of a run with which other runs are compared. If this run diverges, the values are NaN, so that
+/// every comparison with them is false. Without NaN, a run that diverges at once would count as smooth, because its
+/// variation is small.
 MeasuredCase reference_vibration(const std::string& name, const Result& run);
 
 /// Returns true if `a` has a larger velocity variation and a larger vibration power than `b`.
 bool vibrates_more(const MeasuredCase& a, const MeasuredCase& b);
 /// Returns true if `a` vibrates in comparison with a smooth algorithm `b`. With the factor f = rule.vibrates: either
 /// its velocity variation is at least f times, and its vibration power at least f^2 times, the value of `b`; or
-/// vibrates_more() is true and its number of force reversals is at least f times the number of `b`.
+/// vibrates_more() is true and its number of force reversals is at least f times the number of `b`, or f if `b` has
+/// none.
 bool vibrates_much_more(const MeasuredCase& a, const MeasuredCase& b, const PublishedNumbers& p);
 
 /// Returns the damping ratio zeta of an oscillation about zero, from positions `x` [m], one for each time step. With
-/// the mean ratio q of the magnitudes of successive extremes, zeta = -ln q / sqrt(pi^2 + ln^2 q). Ignores the
-/// oscillation from the first extreme within 1 um of zero on: rounding and grazing contact are not oscillations. Empty
-/// with fewer than two extremes.
+/// the mean ratio q of the magnitudes of successive extremes, zeta = -ln q / sqrt(pi^2 + ln^2 q), or 0 if q is at least
+/// 1. Ignores the oscillation from the first extreme within 1 um of zero on: rounding and grazing contact are not
+/// oscillations. Empty with fewer than two extremes.
 std::optional<double> damping_ratio_of_swings(std::span<const double> x);
 
 }  // namespace hapbench

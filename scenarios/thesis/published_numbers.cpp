@@ -40,8 +40,8 @@ const PublishedNumber& PublishedNumbers::operator[](const std::string& id) const
 
 namespace {
 
-/// Returns a number in the format g, such as "1e+01", without its exponent if it is below 100,000: "10". Texts of other
-/// formats stay.
+/// Returns a number in the format g, such as "1e+01", without its exponent if it is below 100,000: "10". Returns texts
+/// in other formats unchanged.
 std::string without_exponent(const std::string& text, std::string_view format) {
   constexpr double kLargest = 1e5;
   if (!format.ends_with('g') || text.find("e+") == std::string::npos) return text;

@@ -12,8 +12,9 @@
 namespace hapbench {
 namespace {
 
-/// Returns the values of an assumption with which a claim is judged. Empty for an input, and for an assumption or a
-/// claim that other values cannot change. Costly claims have the ends of a range only.
+/// Returns the values of an assumption with which a claim is judged. Empty for a calibrated input, for an assumption
+/// that cannot change the claim, and for a claim about computing time or without a judge. Costly claims have the ends
+/// of a range only.
 std::vector<std::string> values_to_try(const Assumption& assumption, const Claim& claim,
                                        const std::vector<std::string>& scenarios) {
   if (assumption.calibration || claim.timing || claim.judge == nullptr || !assumption.reaches(scenarios, claim.rule))

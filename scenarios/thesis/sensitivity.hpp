@@ -16,7 +16,7 @@
 /// calibrated again. The record is results/reference/sensitivity.json.
 namespace hapbench {
 
-/// Returns a member that is a text. Throws Json::exception.
+/// Returns the text of the member `key`. Throws Json::exception if the member is missing or not a text.
 inline std::string text_at(const Json& json, const char* key) {
   return json.at(key).get<std::string>();
 }
@@ -32,10 +32,12 @@ class SensitivityRecord {
   /// Reads the file; an empty record if there is no file. Throws InputError for another format.
   explicit SensitivityRecord(const std::filesystem::path& file);
 
-  /// Returns the entry of a claim; null if there is none for these assumptions.
+  /// Returns the entry of a claim; null if the record has no entry of this claim with the hash `reach`
+  /// (Assumptions::reach).
   Json entry(const std::string& claim, const std::string& reach) const;
   /// Begins the entry of a claim with the verdict under the recorded assumptions and the number of cases of a complete
-  /// entry. Keeps the cases of an entry with the same hash, verdict and number.
+  /// entry. Keeps the cases of an earlier entry with the same hash, verdict and number; otherwise the entry has no
+  /// cases.
   void begin(const std::string& claim, const std::string& reach, const SetFinding& recorded, std::size_t complete);
   /// Returns true if the entry of the claim has this case. Precondition: begin().
   bool has(const std::string& claim, const std::string& assumption, const std::string& value) const;
@@ -66,12 +68,14 @@ inline constexpr const char* kSensitiveVerdict = "sensitive to";  ///< one assum
 inline constexpr const char* kSeveralVerdict = "depends on several";
 inline constexpr const char* kNotSampledVerdict = "not sampled";  ///< the record has no complete entry for the claim
 
-/// Returns the robustness of a judged claim from its entry in the record; `entry` is null if there is none. A case
-/// without a verdict (not judged, not measured) changes nothing. Without all cases no claim is robust or sensitive to a
-/// single assumption.
+/// Returns the robustness of a judged claim from its entry in the record; `entry` is null if the record has no entry. A
+/// case without a verdict (not judged, not measured) changes nothing. The robustness is kNotSampledVerdict if cases are
+/// missing and fewer than two assumptions change the verdict, for a claim about computing time, and for a claim that is
+/// not testable.
 Robustness robustness_of(const JudgedClaim& judged, const Json& entry);
 
-/// Returns the number of cases of a claim that uses these scenarios.
+/// Returns the number of cases in the complete entry of a claim. `scenarios`: names of the scenarios that the claim
+/// uses.
 std::size_t case_count(const Assumptions& assumptions, const Claim& claim, const std::vector<std::string>& scenarios);
 
 /// A case of the record: the claims that one value of one assumption can change.
@@ -81,8 +85,8 @@ struct SensitivityCase {
   std::vector<Claim> claims = {};
 };
 
-/// Returns the cases that the record lacks, cheap claims first. Costly claims have the ends of a range only.
-/// `reached[i]` are the scenarios of claims[i].
+/// Returns the cases that the record lacks, first the cases of claims that are cheap to measure. Costly claims have no
+/// case in the middle of a range. `reached[i]`: names of the scenarios that claims[i] uses.
 std::vector<SensitivityCase> missing_cases(const SensitivityRecord& record, const Assumptions& assumptions,
                                            const std::vector<Claim>& claims,
                                            const std::vector<std::vector<std::string>>& reached);

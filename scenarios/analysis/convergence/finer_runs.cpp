@@ -41,7 +41,7 @@ std::optional<double> KnownError::sum() const {
 
 FinerRuns::FinerRuns(const Comparison& comparison, std::span<const Result> reports, const JobOptions& jobs)
     : comparison_(comparison), reports_(reports) {
-  // Collect the refined cases of all scenes; a refinement that is impossible records its reason.
+  // Collect the refined cases of all scenes. For an impossible refinement, store the reason.
   std::vector<Cases> finer;
   std::size_t runs = 0;
   const auto part_of = [&](const Cases& cases, const std::function<LevelSweep()>& levels) {

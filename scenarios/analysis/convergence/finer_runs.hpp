@@ -39,8 +39,8 @@ class FinerRuns {
   /// at the times of the original run's steps.
   KnownError known_error(std::size_t run, const std::string& metric) const;
 
-  /// Returns a clause that names the refinements that were made of a scene, and for every other refinement the reason
-  /// why it was not made.
+  /// Returns a clause about both refinements of a scene: for each, the values of its levels, or the reason why it was
+  /// not made.
   std::string refined(std::size_t scene) const;
 
  private:
@@ -59,8 +59,8 @@ class FinerRuns {
   const Comparison& comparison_;
   std::span<const Result> reports_;
   std::vector<Scene> scenes_;
-  std::vector<Result> finer_;  ///< refined runs, sorted by refinement, then by level, then in the order of the
-                               ///< comparison
+  std::vector<Result> finer_;  ///< refined runs, sorted by scene, then by refinement, then by level, then in the order
+                               ///< of the comparison
 };
 
 }  // namespace hapbench

@@ -16,7 +16,7 @@ inline constexpr const char* kStepPath = "time.step_s";
 struct LevelSweep {
   Axis axis;                  ///< the field's values, and the overrides that each value needs
   double ratio = 2.0;         ///< r, ratio of each value to the next value
-  double formal_order = 2.0;  ///< largest order of the integrator in the step; 2 for a spacing
+  double formal_order = 2.0;  ///< expected order of convergence in the time step; 2 for a point spacing
   std::string no_order = {};  ///< why metrics of this scene have no convergence order; empty if they can have an order
 };
 

@@ -23,7 +23,7 @@ struct MetricErrors {
 /// Refinements of a run that estimate the errors of its metrics.
 enum class Refinement {
   resolution,  ///< two runs: half the time step, and half the point spacing
-  depth        ///< one run with the depth evaluated at every step: ten times as expensive as the scene's own run
+  depth  ///< one run with the depth evaluated at every step: ten times as expensive as the run of the scene itself
 };
 
 /// Returns true if evaluating the depth at every step can change the metric: the two depths of the tool inside the
@@ -32,14 +32,15 @@ inline bool depends_on_sampled_depth(std::string_view metric) {
   return metric == "inside_max_m" || metric == "inside_settled_m";
 }
 
-/// Returns the largest change of each value in `metrics` by a refinement; infinite for a metric that the refined run
-/// lacks. Uses up to `threads` threads. Adds the number of runs to `runs`: none if the scene has no points to refine.
+/// Returns the largest change of each value in `metrics` by a refinement; infinite for a metric that a refined run
+/// lacks. Uses up to `threads` threads. Adds the number of refined runs to `runs`. Without surface points,
+/// Refinement::depth makes no run and all its changes are 0.
 MetricValues metric_changes(const ScenarioText& scene, const std::vector<std::string>& overrides,
                             const MetricValues& metrics, Refinement refinement, unsigned threads, std::size_t& runs);
 
 /// Returns the error estimates of metrics of one scene: the largest change of each value in `metrics` if the time step
-/// is halved, if the point spacing is halved, and if the depth is evaluated at every step. Uses up to `threads`
-/// threads.
+/// is halved, if the point spacing is halved, and, if `metrics` has a depth, if the depth is evaluated at every step.
+/// Uses up to `threads` threads.
 MetricErrors metric_errors(const ScenarioText& scene, const std::vector<std::string>& overrides,
                            const MetricValues& metrics, unsigned threads);
 

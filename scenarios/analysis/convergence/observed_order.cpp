@@ -18,8 +18,8 @@ constexpr double kRoundingShare = 1e-10;
 constexpr double kGciSafety = 1.25;        // Roache's safety factor for three or more levels
 constexpr double kAsymptoticWithin = 0.1;  // largest |GCI_21 / (r^p GCI_32) - 1|
 constexpr std::size_t kMinLevels = 3;
-/// Fewer levels of an extreme, or of a metric that depends on events, can look regular by chance: the event stays
-/// between the same two rows for some levels and then moves.
+/// Minimum number of levels for an extreme, or for a metric that depends on events. Fewer levels can look regular by
+/// chance: the event stays between the same two samples for some levels and then moves.
 constexpr std::size_t kMinLevelsOfEvents = 5;
 
 std::size_t min_levels(const MetricTraits& traits) {
@@ -85,7 +85,7 @@ struct CountedLevels {
   bool is_rounding(double difference) const { return std::abs(difference) <= kRoundingShare * largest; }
 };
 
-/// Finds the levels that count.
+/// Returns the levels that count.
 CountedLevels counted_levels(std::span<const LevelResult> levels) {
   CountedLevels counted;
   std::size_t first = levels.size();
@@ -98,7 +98,7 @@ CountedLevels counted_levels(std::span<const LevelResult> levels) {
   return counted;
 }
 
-/// Writes the observed order of each level, from its result and the results of the two next coarser levels.
+/// Writes to `c` the observed order of each level, from its result and the results of the two next coarser levels.
 void add_orders(const LevelSweep& sweep, const CountedLevels& counted, Convergence& c) {
   const std::vector<double>& f = counted.f;
   for (std::size_t i = 2; i < f.size(); ++i) {
@@ -108,15 +108,15 @@ void add_orders(const LevelSweep& sweep, const CountedLevels& counted, Convergen
   }
 }
 
-/// Writes the band of the last levels, and the error estimates that hold without an order. `spread`: sampling spread of
-/// a metric that is not smooth.
+/// Writes to `c` the band of the last levels, and the error estimates for the case without an order. `spread`: sampling
+/// spread of a metric that is not smooth.
 void add_band(const CountedLevels& counted, const MetricTraits& traits, double spread, Convergence& c) {
   const std::vector<double>& f = counted.f;
   if (f.size() < 2) return;
   const auto last = f.end() - static_cast<std::ptrdiff_t>(std::min(f.size(), kMinLevels));
   c.band = {*std::min_element(last, f.end()), *std::max_element(last, f.end())};
   const double width = c.band->second - c.band->first;
-  // At first order, the levels beyond the finest level add as much as the last refinement.
+  // At first order, all further refinements together change the result as much as the last refinement did.
   const double beyond = traits.smooth ? 0.0 : std::abs(f[f.size() - 1] - f[f.size() - 2]) + spread;
   for (std::size_t i = 0; i < f.size(); ++i) {
     double error = width;
@@ -126,7 +126,7 @@ void add_band(const CountedLevels& counted, const MetricTraits& traits, double s
   if (!traits.smooth) c.band = {c.band->first - spread, c.band->second + spread};
 }
 
-/// Returns Richardson's value of results of order `p`.
+/// Returns Richardson's extrapolated value of the results `f`, which converge with order `p`.
 double extrapolated_value(const LevelSweep& sweep, std::span<const double> f, double p) {
   return f[f.size() - 1] + (f[f.size() - 1] - f[f.size() - 2]) / (math::pow(sweep.ratio, p) - 1.0);
 }
@@ -150,8 +150,8 @@ std::string no_order_reason(const LevelSweep& sweep, std::span<const LevelResult
   return fmt::format("the extrapolated value {:.3g} is negative, which this metric cannot be", extrapolated);
 }
 
-/// Writes what follows from the observed order: Richardson's value, the GCI and the error estimates of all levels.
-/// Precondition: the last level has an order.
+/// Writes to `c` the quantities that follow from the observed order: Richardson's value, the GCI and the error
+/// estimates of all levels. Precondition: the last level has an order.
 void add_extrapolation(const LevelSweep& sweep, const CountedLevels& counted, const MetricTraits& traits, double spread,
                        Convergence& c) {
   const std::vector<double>& f = counted.f;

@@ -45,10 +45,12 @@ struct Convergence {
   std::optional<std::pair<double, double>> band;
   /// Observed order at each level, computed from this level and the two next coarser levels; empty if undefined.
   std::vector<std::optional<double>> orders;
-  /// Error estimate (not a bound) of each level [metric's unit]. With an order: 1.25 |f - f*|, which equals the GCI at
-  /// the finest level. Without: the largest distance to a finer level, at least the range of the last three levels.
-  /// For a metric that is not smooth: the larger of both, plus the difference of the two finest levels if there is no
-  /// order (what remains beyond them at first order), plus the sampling spread at the finest level.
+  /// Error estimate (not a bound) of each level [metric's unit]. With an order: 1.25 |f - f*|, which at the finest
+  /// level equals |f| times the GCI. Without an order: the largest distance to the result of a finer level, at least
+  /// the range of the last three levels. The estimate of a metric that is not smooth includes more. With an order, it
+  /// is at least the range of the last three levels. Without an order, the difference of the two finest levels is
+  /// added: at first order, further levels would change the result by this difference. In both cases, the sampling
+  /// spread at the finest level is added.
   std::vector<std::optional<double>> errors;
 };
 

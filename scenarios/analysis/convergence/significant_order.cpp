@@ -9,7 +9,7 @@
 namespace hapbench {
 namespace {
 
-/// Returns the names at these positions, joined by `between`.
+/// Returns the names at the given indices, joined by `between`.
 std::string joined(std::span<const std::size_t> positions, std::span<const std::string> names, const char* between) {
   std::vector<std::string> found;
   for (const std::size_t i : positions) found.push_back(names[i]);

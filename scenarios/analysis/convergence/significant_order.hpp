@@ -7,7 +7,7 @@
 
 #include "scenarios/batch/number_with_error.hpp"
 
-/// The order of numbers with errors: which numbers are significantly smaller than others.
+/// Orders numbers with errors: finds which numbers are significantly smaller than other numbers.
 namespace hapbench {
 
 /// An order of groups of numbers, given as indices of the numbers.

@@ -156,8 +156,8 @@ void add_linear_limit(const LimitQuestion& question, const std::map<double, RunS
     limit.no_linear = "the delay or a field of the device is not part of the linear theory";
     return;
   }
-  // Springs that cannot lose contact have the same loop in every run. Their equilibrium needs no search: at zero
-  // deflection no spring is in contact.
+  // Springs that cannot lose contact have the same linear loop in every run. The search for an equilibrium in contact
+  // is skipped, because at zero deflection no spring is in contact.
   if (has_permanent_springs(scenario)) {
     const TheoreticalLimit loop = frictionless_limit(question);
     limit.linear = loop.has_none ? 0.0 : loop.value;
@@ -192,10 +192,10 @@ std::optional<double> IntervalEnd::tolerance() const {
   return std::abs(beyond->value - *value);
 }
 
-/// Finds the limit with the bounds of the question's rule as they are.
+/// Finds the limit with the bounds of the question's rule. Ignores the errors of the bounded metrics.
 static FieldLimit limit_with_bounds(const LimitQuestion& question) {
   FieldLimit limit;
-  // Find the linear limit, where the theory applies.
+  // Find the linear limit, if the theory applies.
   TheoreticalLimit theory = eigenvalue_limit(question);
   limit.theory = theory.value;
   limit.theory_has_none = theory.has_none;
@@ -211,8 +211,9 @@ static FieldLimit limit_with_bounds(const LimitQuestion& question) {
   return limit;
 }
 
-/// Adds the errors of the bounded metrics at a value to `errors`, where they are larger. Tightens each bound of `rule`
-/// that a metric violates within its error, and returns true if a bound was tightened.
+/// Computes the errors of the bounded metrics at a value of the field. Stores each error in `errors` if it is larger
+/// than the stored error. If a metric with its error violates the user's bound, sets the bound in `rule` to the user's
+/// bound, tightened by the error. Returns true if a bound was set.
 static bool tighten_bounds(const LimitQuestion& question, double value, StabilityRule& rule, MetricValues& errors) {
   std::vector<std::string> chosen = question.overrides;
   chosen.push_back(override_of(question, value));
@@ -236,11 +237,11 @@ static bool tighten_bounds(const LimitQuestion& question, double value, Stabilit
   return is_tighter;
 }
 
-/// Finds the limit with the bounds of the question's rule and the errors of the bounded metrics.
+/// Finds the limit at which the bounded metrics keep the bounds of the question's rule even with their errors added.
 static FieldLimit limit_with_errors(const LimitQuestion& question) {
   FieldLimit limit = limit_with_bounds(question);
   if (question.rule.bounds.empty()) return limit;
-  constexpr int kMaxTightenings = 4;  // the error changes little from one search to the next
+  constexpr int kMaxTightenings = 4;  // maximum number of repeated searches; the errors change little between them
   LimitQuestion tighter = question;
   MetricValues errors;
   for (int i = 0; i < kMaxTightenings && limit.end.value; ++i) {

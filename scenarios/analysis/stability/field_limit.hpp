@@ -21,14 +21,14 @@ struct JudgedValue {
 
 /// An end of the interval of stable values.
 struct IntervalEnd {
-  std::optional<double> value;        ///< outermost stable value; empty if no run is stable
+  std::optional<double> value;        ///< outermost stable value; empty if no stable interval was found
   std::optional<JudgedValue> beyond;  ///< nearest unstable value beyond it; empty if the end of the range is stable
 
   /// Returns |beyond - value|: the limit lies between `value` and `beyond`. Returns nothing if one of them is empty.
   std::optional<double> tolerance() const;
 };
 
-/// The one value of a limit that a user may render; see quoted_limit().
+/// The value of a stability limit that the program reports as usable; see quoted_limit().
 struct QuotedLimit {
   std::optional<double> value = {};
   std::string reason = {};  ///< why the limit has this value, or why no value can be quoted
@@ -37,7 +37,8 @@ struct QuotedLimit {
 /// The result of a search for a stability limit.
 struct FieldLimit {
   QuotedLimit quoted = {};
-  IntervalEnd end;    ///< the limit: the end of the interval that the question selects
+  IntervalEnd end;    ///< the limit: the high end of the stable interval, or the low end in a search for the smallest
+                      ///< stable value
   IntervalEnd other;  ///< the other end of the interval
   /// Linear limit by the eigenvalues of a step, for springs that stay in contact. If the whole range is stable, it is
   /// infinite, or 0 in a search for the smallest stable value. Empty if the theory does not apply or no value is
@@ -62,7 +63,8 @@ struct FieldLimit {
   SettledState settled;              ///< settled state of the run at the limit
   std::string unstable_part = {};    ///< name of the part that is unstable without contact, such as "hand and device";
                                      ///< empty unless `unstable_alone`
-  std::optional<JudgedValue> own;    ///< the run at the scenario's value; empty if the value is outside of the range
+  std::optional<JudgedValue>
+      own;  ///< verdict at the scenario's current value; empty if this value is outside of the range
   /// True if the loop of hand and device is unstable without contact (unstable_without_contact()) at the nearest
   /// value beyond the limit, or at the smallest evaluated value if there is no limit.
   bool unstable_alone = false;

@@ -19,7 +19,7 @@ bool is_unstable_entry(const EvaluatedParameters::value_type& evaluated) {
   return !evaluated.second;
 }
 
-/// The search of find_stable_interval.
+/// Implements find_stable_interval().
 class TransitionSearch {
  public:
   TransitionSearch(const IntervalSearchOptions& options, EvaluatedParameters& evaluated, const IsStable& stable)
@@ -34,8 +34,8 @@ class TransitionSearch {
 
   /// Returns the first transition that samples on either side confirm, with the other end of its interval.
   StableInterval confirmed() {
-    constexpr int kMaxRounds = 6;  // maximum number of bisections; each is at the transition that the previous
-                                   // samples revealed
+    // Maximum number of bisected transitions. The samples beside a transition may reveal an earlier transition.
+    constexpr int kMaxRounds = 6;
     start();
     StableInterval interval;
     for (int round = 0; round < kMaxRounds; ++round) {

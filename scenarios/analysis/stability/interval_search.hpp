@@ -44,8 +44,8 @@ struct StableInterval {
   std::optional<double> first = {};   ///< smallest stable parameter of the interval; empty if the other end was not
                                       ///< searched
   std::optional<double> before = {};  ///< unstable parameter just below `first`; empty if t = 0 is stable
-  bool scattered = false;  ///< true if stable parameters exist, but no contiguous interval of them is as long as
-                           ///< kNearLimit
+  bool scattered = false;  ///< true if stable parameters exist, but no contiguous stable interval is as long as
+                           ///< kNearLimit times the limit
 };
 
 /// Evaluated parameters. The value of an entry is true if the parameter is stable.
@@ -53,7 +53,7 @@ using EvaluatedParameters = std::map<double, bool>;
 /// Evaluates a parameter. Returns true if it is stable.
 using IsStable = std::function<bool(double t)>;
 
-/// Evaluates the `intervals` + 1 end points of equal intervals of [0, 1], from t = 0 to t = 1.
+/// Divides [0, 1] into `intervals` equal intervals and evaluates their end points, from t = 0 to t = 1.
 EvaluatedParameters evaluate_scan(int intervals, const IsStable& stable);
 
 /// Bisects the first stable-to-unstable transition above the current value, or above the first stable parameter if the

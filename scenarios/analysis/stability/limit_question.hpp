@@ -22,8 +22,7 @@ struct LimitQuestion {
   std::string path = {};  ///< path of the field, dotted as in --set
   IntervalSearchOptions search = {};
   StabilityRule rule = {};
-  std::vector<std::string> warnings = {};  ///< warnings of the scenario whose field has the value at the end of the
-                                           ///< range
+  std::vector<std::string> warnings = {};  ///< warnings of the scenario with the field at the upper end of the range
   bool between = true;                     ///< true: further samples verify the interval (find_verified_interval)
   unsigned threads = 1;                    ///< number of parallel runs; does not change the result
 

@@ -25,7 +25,7 @@ using IsTrueOf = std::function<bool(const Scenario&)>;
 // bisection continues down to rounding.
 constexpr int kTheoryIntervals = 256;
 constexpr double kTheoryResolution = 1e-12;
-constexpr double kContactResolution = 1e-9;  // the derivatives of a rendered force are known to 1e-7
+constexpr double kContactResolution = 1e-9;  // relative; the derivatives of a rendered force are accurate to 1e-7
 
 /// Returns true for springs in permanent contact with a tool whose loop with hand and device is linear.
 bool has_eigenvalues(const Scenario& scenario) {
@@ -52,7 +52,7 @@ bool has_inequality(const Scenario& scenario) {
          scenario.integrator.type->stability_margin != nullptr;
 }
 
-/// Returns true if the stiffest direction satisfies the integrator's stability inequality.
+/// Returns true if the motion along the stiffest direction satisfies the integrator's stability inequality.
 bool keeps_inequality(const Scenario& scenario) {
   const double lambda = stiffness_eigenvalues(scenario)[2];
   return scenario.integrator.type->stability_margin(tool_on_spring(scenario, lambda)) >= 0.0;

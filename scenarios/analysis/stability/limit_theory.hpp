@@ -10,7 +10,7 @@
 /// Stability limits of a field from linear theory, without runs. One evaluation costs about a thousandth of a run.
 namespace hapbench {
 
-/// The limit of a stability condition over the range of a question.
+/// Limit of a stability condition, found in the range of a LimitQuestion.
 struct TheoreticalLimit {
   /// Last stable value before the first stable-to-unstable transition. If the whole range is stable, it is infinite,
   /// or 0 in a search for the smallest stable value; empty if the condition does not apply to the scene or no value
@@ -44,7 +44,7 @@ std::optional<double> contact_limit(const LimitQuestion& question, double stable
 /// Limits of the stiffness K [N/m] on a two-sided wall that holds the handle of an impedance device.
 struct WallLimits {
   /// Limits by the closed forms of stiffness_limits(), in their order; an entry is empty if its form does not apply.
-  /// Empty if the question does not concern K on such a wall.
+  /// The list is empty if the question does not vary K on such a wall.
   std::vector<std::optional<double>> closed_forms = {};
   std::optional<double> worst_hand = {};  ///< smallest limit over the hands of typical_hands()
   std::string no_theory = {};             ///< why the eigenvalues of the loop give no limit; empty if they give a limit

@@ -8,7 +8,7 @@
 #include "scenarios/analysis/stability/run_verdict.hpp"
 #include "sim/loop/simulation.hpp"
 
-/// Classifies a run by the motion of its tool alone, without eigenvalues or knowledge of the force law.
+/// Classifies a run only by the motion of its tool, without eigenvalues or knowledge of the force law.
 ///
 /// The run is divided into quarters. The amplitude of a quarter is the largest speed of the tool in it. If the handle
 /// moves the tool, the speed of the handle is used, because an encoder quantizes the motion of the tool. A turn is a

@@ -12,7 +12,8 @@ std::string number(double value) {
   return fmt::format("{:.6g}", value);
 }
 
-/// Names what was measured in the stable run at the simulated limit, which is beyond the linear limit.
+/// Returns a clause with the measured property of the run at the simulated limit that may explain why the run is stable
+/// beyond the linear limit.
 std::string measured_cause(const LimitQuestion& question, const FieldLimit& limit) {
   const SettledState& settled = limit.settled;
   const std::string run = fmt::format("the run at {}", number(*limit.end.value));
@@ -27,8 +28,8 @@ std::string measured_cause(const LimitQuestion& question, const FieldLimit& limi
   return run + " shows no growth in its duration";
 }
 
-/// Counts the stable runs beyond the unstable run next to the simulated limit, if there are any: then a value beyond
-/// the limit may be stable.
+/// Returns a clause with the number of stable runs beyond the unstable run next to the simulated limit; empty if there
+/// are no such runs.
 std::string stable_beyond(const LimitQuestion& question, const FieldLimit& limit) {
   const auto is_beyond = [&](const JudgedValue& run) {
     const double next = limit.end.beyond->value;
@@ -42,7 +43,7 @@ std::string stable_beyond(const LimitQuestion& question, const FieldLimit& limit
   return fmt::format("; {} of {} runs beyond it are stable", stable, std::ranges::count_if(limit.runs, is_beyond));
 }
 
-/// Names the unstable run next to the simulated limit.
+/// Returns a clause about the unstable run next to the simulated limit.
 std::string next_run(const LimitQuestion& question, const FieldLimit& limit) {
   const auto& [value, verdict] = *limit.end.beyond;
   return fmt::format("the run at {} is {}{}", number(value), run_verdict_name(verdict), stable_beyond(question, limit));
@@ -65,7 +66,7 @@ QuotedLimit quoted_limit(const LimitQuestion& question, const FieldLimit& limit)
   const auto& [value, beyond] = limit.end;
   if (limit.theory_has_none) return {{}, "by the eigenvalues of one step, no value of the range is stable"};
   if (!value) return {{}, "no interval of values is stable"};
-  // Returns true if the field reaches a before b on its way to the limit.
+  // Returns true if the field reaches the value a before the value b on its way from stable to unstable values.
   const auto is_first = [smallest](double a, double b) { return smallest ? a > b : a < b; };
   const auto& linear = limit.known_linear_limit();
   if (limit.linear == 0.0) return {{}, "by the eigenvalues of the loop in contact, no value of the range is stable"};
@@ -79,7 +80,8 @@ QuotedLimit quoted_limit(const LimitQuestion& question, const FieldLimit& limit)
                           without_linear(limit))};
     return {value, fmt::format("simulated limit: {}; {}", next_run(question, limit), without_linear(limit))};
   }
-  // The linear limit is nearer than the stable runs, or agrees with their limit within the resolution.
+  // Find out whether the simulated limit agrees with the linear limit within the resolution of the search. If not,
+  // quote the limit that the field reaches first.
   const double resolution = question.search.range.logarithmic
                                 ? question.search.resolution * std::abs(*linear)
                                 : question.search.resolution * (question.search.range.to - question.search.range.from);

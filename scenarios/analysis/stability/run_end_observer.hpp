@@ -33,7 +33,8 @@ struct SettledState {
 };
 
 /// Returns true if the contact persists over the last quarter of the run and has a single linear loop, because the same
-/// points touch. While a script or a hand moves the tool, other points may touch if the stiff directions do not change.
+/// points touch. If a script moves the tool in the last quarter, the touching points may change as long as the stiff
+/// directions do not.
 bool contact_lasts(const SettledState& settled, const Scenario& scenario);
 
 /// Records the end position of the tool, whether the tool was in contact, and the vibration and bounces over the

@@ -40,7 +40,7 @@ RunVerdict verdict_of(MotionClass motion, const SettledState& settled, std::opti
   return settled.vibration && *settled.vibration <= *max_vibration ? RunVerdict::stable : RunVerdict::vibrating;
 }
 
-/// Returns the verdict with the same name as the outcome; empty if the outcome has no verdict of its own.
+/// Returns the verdict with the same name as the outcome; empty if no verdict has this name.
 std::optional<RunVerdict> verdict_of(Outcome outcome) {
   const auto texts = run_verdict_texts();
   const auto found = std::ranges::find(texts, outcome_name(outcome), &RunVerdictText::name);
@@ -48,7 +48,7 @@ std::optional<RunVerdict> verdict_of(Outcome outcome) {
   return static_cast<RunVerdict>(found - texts.begin());
 }
 
-/// Returns true for the verdicts on a tool that its hand does not move on.
+/// Returns true for the verdicts on a tool that does not follow its hand.
 bool is_left_behind(RunVerdict verdict) {
   return verdict == RunVerdict::stuck || verdict == RunVerdict::not_dragged;
 }
@@ -61,7 +61,8 @@ RunStability judged_once(const Scenario& scenario, const NamedFiles& files,
   RunEndObserver run_end(scenario);
   SimulationParts parts = assemble(scenario, files, shell, {});
   const std::shared_ptr<const ToolShape> tool = parts.tool;
-  // The class of the motion needs the whole run. Once the tool has gone through, its depth needs no search any more.
+  // Simulate the whole run, which the class of the motion needs. After the tool has gone through the surface, the
+  // outcome observer no longer searches its depth.
   const auto outcome_seen = outcome_observer(scenario, files, parts, nullptr, RunLength::until_failure);
   Simulation simulation(simulation_config(scenario), std::move(parts), {&classifier, &run_end, outcome_seen.get()});
   const MotionClass motion = classify(simulation, classifier);

@@ -20,8 +20,8 @@ struct StabilityRule {
   /// Bounds on metrics of summary.json, by name. A metric without a value violates its bound.
   std::map<std::string, MetricBound> bounds = {};
   bool bounded = false;  ///< true: a run of class `vibrating`, whose amplitude does not grow, also counts as stable
-  /// False: the outcomes `stuck` and `not_dragged` are not used, so a tool that its hand does not move on is judged by
-  /// its motion.
+  /// False: the outcomes `stuck` and `not_dragged` are ignored, so that the motion decides about a tool that does not
+  /// follow its hand.
   bool judges_progress = true;
 
   /// Returns true if a run with this verdict is stable by this rule.

@@ -17,9 +17,9 @@ struct StressCounts {
   std::uint64_t sets = 0;            ///< number of sets
   std::uint64_t in_contact = 0;      ///< sets with at least one contact
   std::uint64_t non_finite = 0;      ///< sets with a force, tensor or depth that is not finite
-  std::uint64_t out_of_bound = 0;    ///< sets whose results are finite, but one of them exceeds its bound
+  std::uint64_t out_of_bound = 0;    ///< sets with finite results, at least one of which exceeds its bound
   std::uint64_t points_dropped = 0;  ///< points dropped because the reduction was full
-  double largest_force = 0.0;        ///< largest |f_spring| / (K d), with the largest depth d of the set
+  double largest_force = 0.0;        ///< largest |f_spring| / (K d) over all sets, with the largest depth d of each set
   /// Largest ratio of |f_spring| to its bound (AlgorithmEntry::force_bound); empty for algorithms without a bound.
   std::optional<double> largest_share;
   std::optional<std::uint64_t> first_bad;  ///< index of the first set that is not finite or out of bound

@@ -55,7 +55,7 @@ Vec3 in_tool(Random& random, const ContactSet& set) {
 /// Draws a random vector.
 using Draw = std::function<Vec3()>;
 
-/// Returns a generator of point positions, of a random kind.
+/// Selects one of five kinds of point positions at random, and returns a generator of such positions.
 Draw positions(Random& random, const ContactSet& set) {
   const double radius = set.tool.radius(), length = set.tool.length();
   switch (random.below(5)) {
@@ -80,7 +80,7 @@ Draw positions(Random& random, const ContactSet& set) {
   }
 }
 
-/// Returns a generator of point normals, of a random kind.
+/// Selects one of five kinds of point normals at random, and returns a generator of such normals.
 Draw normals(Random& random, const ContactSet& set) {
   const Vec3 u = chance(random, 0.2) ? set.pose.axis : random.direction();
   switch (random.below(5)) {
@@ -101,7 +101,8 @@ Draw normals(Random& random, const ContactSet& set) {
 
 /// Draws the tool's size, pose and velocity.
 void draw_tool(Random& random, ContactSet& set) {
-  // A fifth of the scenes has the smallest size, a fifth has the largest size, and the others lie in between.
+  // A fifth of the scenes has the smallest size, a fifth has the largest size, and the other scenes have sizes in
+  // between.
   const double which = random.uniform();
   const double scale = which < 0.2 ? 1e-12 : which < 0.4 ? 1e3 : log_uniform(random, 1e-12, 1e3);
   set.tool = {scale * random.uniform(0.05, 1.0), scale * random.uniform(0.1, 3.0),

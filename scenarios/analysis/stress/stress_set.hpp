@@ -24,8 +24,8 @@ struct ContactSet {
 /// Largest number of points of a set. In some sets the reduction keeps fewer points (n_ext).
 inline constexpr std::size_t kMaxContacts = 200;
 
-/// Returns set number `i` of a seed (StressCounts::first_bad is such a number). Points are random, coincident, on the
-/// tool's axis or on its surface. Normals are random, zero, or exactly or nearly equal or opposite. The number of
+/// Returns set number `i` of a seed (StressCounts::first_bad is the number of a set). Points are random, coincident, on
+/// the tool's axis or on its surface. Normals are random, zero, or exactly or nearly equal or opposite. The number of
 /// different normals can exceed n_ext. Scenes measure 1e-12 to 1e3 m.
 ContactSet stress_set(std::uint64_t seed, std::uint64_t i);
 

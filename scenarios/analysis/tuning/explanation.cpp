@@ -18,13 +18,14 @@ using IsFeasible = std::function<bool(const TuneLimits& limits)>;
 
 constexpr const char* kRules = "the requirement of low vibration";
 
-/// A change of the limits, with its text.
+/// Relaxed limits, and a text for the user about their changes.
 struct Relaxation {
   TuneLimits limits;
   std::string text;
 };
 
-/// Returns the value rounded away from the limit, to the three digits that are printed.
+/// Returns the value rounded to the three digits that are printed: upwards if `up` is true, otherwise downwards.
+/// Rounding thus never makes a limit stricter.
 double printed_beyond(double value, bool up) {
   constexpr double kRounding = 0.006;  // more than half a unit of the third digit
   return std::stod(fmt::format("{:.3g}", value + (up ? kRounding : -kRounding) * std::abs(value)));
@@ -56,7 +57,8 @@ bool relax(const Trials& trials, const TuneTrial& trial, const std::string& name
   return true;
 }
 
-/// Returns the confirmed relaxation of all limits that a trial violates; empty if no relaxation is confirmed.
+/// Relaxes all limits that a trial violates, in up to three steps, until a search finds a verified choice that keeps
+/// the relaxed limits. Returns the text of this relaxation; empty if no relaxation is confirmed.
 std::optional<std::string> confirmed(Trials& trials, const TuneLimits& limits, const TuneTrial& trial,
                                      const MetricValues& violated, const IsFeasible& is_feasible) {
   for (const double factor : {1.0, 1.1, 1.5}) {
@@ -65,7 +67,7 @@ std::optional<std::string> confirmed(Trials& trials, const TuneLimits& limits, c
       if (!relax(trials, trial, name, factor, relaxation)) return std::nullopt;
     trials.set_aim(relaxation.text);
     if (is_feasible(relaxation.limits)) return relaxation.text;
-    if (relaxation.limits.allow_vibration && violated.size() == 1) break;  // a factor changes nothing
+    if (relaxation.limits.allow_vibration && violated.size() == 1) break;  // a larger factor changes nothing
   }
   return std::nullopt;
 }
@@ -97,17 +99,18 @@ std::map<std::string, std::vector<const TuneTrial*>> candidates(Trials& trials, 
   return all;
 }
 
-/// Returns true if a completed trial still violates no other limit than `name`.
+/// Returns true if a trial violates no other limit than `name`. Precondition: the trial was evaluated as far as
+/// Need::all.
 bool violates_only(const Trials& trials, const TuneTrial& trial, const std::string& name) {
   return std::ranges::all_of(trials.violated_limits(trial), [&](const auto& entry) {
     return entry.first == name || (name == kRules && trials.is_rule(entry.first));
   });
 }
 
-/// Returns for each limit the smallest confirmed relaxation of this limit alone; if no single relaxation is confirmed,
-/// the relaxations that the trial `nearest` needs together.
+/// Returns a text with the smallest confirmed relaxation of each single limit. If none is confirmed, the text has the
+/// confirmed relaxation of all limits that the trial `nearest` violates, or states that none was found.
 std::string relaxations(Trials& trials, const TuneTrial& nearest, const IsFeasible& is_feasible) {
-  constexpr std::size_t kMaxCompleted = 8;  // trials of each limit that are evaluated further
+  constexpr std::size_t kMaxCompleted = 8;  // maximum number of trials that are evaluated further for each limit
   const TuneLimits limits = trials.limits();
   // Complete the nearest trials of each limit before the searches with other limits begin.
   std::vector<std::pair<const TuneTrial*, MetricValues>> chosen;
@@ -157,7 +160,7 @@ const TuneFailure* binding_failure(const Trials& trials) {
   return binding;
 }
 
-/// Returns the option or field that changes a failure of a motion.
+/// Returns the option or field to change after a failure, as a text for the user.
 std::string remedy(const TuneQuestion& question, const TuneFailure& failure) {
   std::vector<std::string> others;
   for (const char* family : kFamilies)
@@ -185,7 +188,8 @@ std::string remedy(const TuneQuestion& question, const TuneFailure& failure) {
 }  // namespace
 
 void explain(Trials& trials, const IsFeasible& is_feasible, TunedLaw& law) {
-  // A trial that violates limits in the scene's own run may also fail in another variant: then no limit is responsible.
+  // Discard trials that violate limits in the run of the scene itself but also fail in another variant: relaxing a
+  // limit would not make them feasible.
   constexpr std::size_t kMaxCompleted = 8;
   std::vector<const TuneTrial*> nearest = trials.nearest(kMaxCompleted);
   std::erase_if(nearest,

@@ -39,7 +39,7 @@ double last_settled(Trials& trials, const TuneTrial& trial, const IntervalSearch
     const auto override_at = [&](std::size_t) { return override_of(options.value_at(t)); };
     return !trials.first_failing(trial, trials.variant_count(), override_at);
   };
-  bool so_far = true;  // false after the first failure; values beyond it do not change the result and are not run
+  bool so_far = true;  // false after the first failure; larger values do not change the result and are not run
   const auto holds_so_far = [&](double t) {
     so_far = so_far && holds(t);
     return so_far;
@@ -56,10 +56,11 @@ double last_settled(Trials& trials, const TuneTrial& trial, const IntervalSearch
   }
 }
 
-/// Returns the damping ratio of the mode with the eigenvalue z of one step; empty for a state of a delay line, and for
-/// a tool that moves freely in some direction.
+/// Returns the damping ratio of the mode with the eigenvalue z of one step; empty if the mode is a state of a delay
+/// line or the free motion of a tool in some direction.
 std::optional<double> damping_ratio(const std::complex<double>& z) {
-  constexpr double kDelayLine = 1e-9, kFree = 1e-5;  // is_stable_loop() has the same distance of a free tool from 1
+  constexpr double kDelayLine = 1e-9, kFree = 1e-5;  // largest |z| of a delay-line state; largest |z - 1| of a freely
+                                                     // moving tool, as in is_stable_loop()
   const double magnitude = math::hypot(z.real(), z.imag()), decay = -math::log(std::max(magnitude, kDelayLine));
   if (magnitude < kDelayLine || std::norm(z - 1.0) < kFree * kFree || decay == 0.0) return std::nullopt;
   return decay / math::hypot(decay, math::atan2(z.imag(), z.real()));

@@ -5,10 +5,11 @@
 /// Robustness margins of the choice, that is, of the setting and stiffness that the search selected.
 namespace hapbench {
 
-/// Margins up to which a choice stays stable in all scene variants. They are searched up to kMaxGainMargin and
-/// kMaxDelayMargin. A margin is empty if it has no meaning, such as the delay of an ideal device.
+/// Robustness margins of a choice. All scene variants are settled up to the gain margin and up to the delay margin.
+/// These margins are searched up to kMaxGainMargin and kMaxDelayMargin. A margin is empty if it does not apply, such as
+/// the delay of an ideal device. The gain margin is also empty if the range of K ends at the required margin.
 struct TuneMargins {
-  std::optional<double> gain;           ///< largest factor on K
+  std::optional<double> gain;           ///< largest factor on the stiffness K
   std::optional<double> delay_samples;  ///< largest additional delay of the device's force or servo [samples]
   std::optional<double> damping_ratio;  ///< damping ratio of the least damped mode of the loop in contact
 };

@@ -37,7 +37,7 @@ std::vector<SceneVariant> hand_variants(const Scenario& scenario) {
 /// Returns the variants with other seeds and slightly shifted starts.
 std::vector<SceneVariant> seed_variants(const LoadedScenario& loaded) {
   constexpr std::size_t kSeeds = 5;    // number of seeds, including the scene's seed
-  constexpr double kSeedShift = 1e-5;  // [m]
+  constexpr double kSeedShift = 1e-5;  // displacement of the start [m]
   const Axis axis = seed_axis(loaded.scenario, kSeeds, kSeedShift);
   std::vector<SceneVariant> seeds;
   for (std::size_t k = 1; k < kSeeds; ++k)
@@ -45,8 +45,8 @@ std::vector<SceneVariant> seed_variants(const LoadedScenario& loaded) {
   return seeds;
 }
 
-/// Multiplies all speeds and rates in the JSON of a hand or a motion by a factor, and divides periods and times by
-/// it.
+/// Multiplies all speeds and rates in the JSON of a hand or a motion by a factor, and divides periods and times by the
+/// same factor.
 void scale_speed(Json& json, double factor) {
   if (!json.is_structured()) return;
   for (auto& [key, value] : json.items()) {

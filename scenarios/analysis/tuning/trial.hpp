@@ -15,8 +15,8 @@
 /// A trial of `tune`: a setting with a stiffness K, and whether it is feasible.
 namespace hapbench {
 
-/// Metrics that are reported for a choice (the setting that the search selected), in the order of the tables. Users
-/// most often limit the first three.
+/// Metrics that are reported for a choice (the setting that the search selected), in the order of the result tables.
+/// Users most often limit the first three metrics.
 inline constexpr std::array kTuneMetrics = {"inside_max_m",     "force_rms_above_30Hz_N",  "settled_force_step_max_N",
                                             "inside_settled_m", "force_mean_in_contact_N", "landing_force_max_N"};
 /// Returns the value of the metric `name` times a factor; empty if there is no such metric.
@@ -78,9 +78,9 @@ struct TuneTrial {
   /// without errors.
   MetricValues error = {};
 
-  // How far the trial was evaluated. A trial is evaluated further only while a question needs it (Trials::Need).
+  // How far the trial was evaluated. Trials evaluates a trial only as far as a caller needs it (Need).
   std::size_t judged = 0;     ///< number of variants whose motion was judged, the scene itself first
-  bool is_measured = false;   ///< true if the limits were measured in the scene's own run
+  bool is_measured = false;   ///< true if the limits were measured in the run of the scene itself
   bool is_complete = false;   ///< true if the limits were measured in all variants
   bool is_refined = false;    ///< true if `error` has the changes by Refinement::resolution
   bool has_error = false;     ///< true if `error` has the changes by all refinements

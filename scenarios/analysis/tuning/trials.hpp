@@ -30,13 +30,13 @@ struct Failing {
   std::string why;  ///< reason, for the user
 };
 
-/// The part of a trial's evaluation that a question needs. Each part includes the parts before it. A violated limit is
-/// known from the scene's own run; the other variants and the errors of metrics can only add failures.
+/// States how far a trial is evaluated. Each value includes the values before it. The run of the scene itself suffices
+/// to find a violated limit; the other variants and the errors of metrics can only add failures.
 enum class Need {
   feasibility,  ///< whether the trial keeps all constraints
   softness,     ///< also whether a larger K may help (TuneTrial::too_soft)
   excess,       ///< also the factor by which limits are violated, with the errors of the limited metrics
-  all           ///< also all variants and these errors for a trial far from the limits
+  all           ///< also all variants and these errors if the trial is far from the limits
 };
 
 /// The limits of a search.
@@ -50,16 +50,16 @@ struct TuneLimits {
 /// Invariants:
 /// - each run of a setting and stiffness is made once, when a search first needs it;
 /// - whether a trial is feasible depends only on the trial, on the limits and on its verification, not on other trials.
-///   A trial that keeps some limits therefore keeps all looser limits. Its metrics keep the limits including their own
-///   errors;
-/// - a search sees only the trials that it requested itself, and what it costs does not depend on earlier searches: it
-///   gives the same result in a new program;
-/// - a trial is evaluated only as far as a question needs it (Need). The answers are the answers of a complete
+///   A trial that keeps some limits therefore keeps all looser limits. The metrics of a feasible trial keep the limits
+///   even with their errors added;
+/// - a search uses only trials that it requested itself. Its result and its number of runs do not depend on earlier
+///   searches;
+/// - a trial is evaluated only as far as a caller needs it (Need). The results equal the results of a complete
 ///   evaluation, except that TuneTrial::binding and `why` of an infeasible trial may lack a later failure or the error;
 /// - runs() counts every simulation.
 class Trials {
  public:
-  /// `question` and `algorithm` must outlive this.
+  /// `question` and `algorithm` must outlive this object.
   Trials(const TuneQuestion& question, const std::string& algorithm);
 
   // ---- Scenarios and settings of the question
@@ -78,10 +78,11 @@ class Trials {
 
   // ---- Searches
 
-  /// Starts a search with these limits: forgets which trials were requested and which were refuted.
+  /// Starts a search with these limits: forgets which trials were requested, which were refuted, and the smallest
+  /// unstable K.
   void begin_search(TuneLimits limits);
   const TuneLimits& limits() const { return limits_; }
-  /// Returns true if the search has reached its largest number of runs. Later trials fail.
+  /// Returns true if the search has reached its maximum number of runs (kMaxTuneRuns). New trials then fail.
   bool is_exhausted() const { return search_runs_ >= kMaxTuneRuns; }
   /// Requests all trials of all searches and evaluates them with the current limits.
   void recall_all();
@@ -110,26 +111,28 @@ class Trials {
   /// excess() first.
   std::vector<const TuneTrial*> nearest(std::size_t count);
   /// Returns the first `count` of `trials` by excess(), smallest first, evaluated as far as Need::excess. Leaves out
-  /// trials that fail `counts` after this evaluation, and with `one_per_setting` all but the first trial of a setting.
+  /// trials for which `counts` returns false after this evaluation. With `one_per_setting`, also leaves out all but the
+  /// first trial of each setting.
   std::vector<const TuneTrial*> smallest_excess(std::vector<const TuneTrial*> trials, std::size_t count,
                                                 bool one_per_setting,
                                                 const std::function<bool(const TuneTrial&)>& counts);
   /// Returns true if a trial violates only limits, by a smaller excess() than `other`.
   bool is_nearer(const TuneTrial& trial, const TuneTrial& other);
-  /// Returns the loops of a scenario in a contact (contact_loops()), with its own stiffness and damping. In a scene of
-  /// springs in permanent contact, the loops on their stiffest direction. Empty without contact.
+  /// Returns the linear loops of a scenario in a contact (contact_loops()), with the scenario's stiffness and damping.
+  /// For springs in permanent contact, returns the loops along their stiffest direction. Empty without contact.
   std::vector<NamedLoop> loops_in_contact(const Scenario& scenario, const ContactOfTrial& contact,
                                           bool over_hands) const;
-  /// Makes `count` runs of a trial that cycle through the variants. `more`: additional override of a run, such as a
-  /// larger K. Returns the first run that is not settled or whose loop in contact is unstable between the trial's K and
-  /// the run's K; empty if all runs are settled.
+  /// Makes `count` runs of a trial; the runs cycle through the variants. `more`: additional override of a run, such as
+  /// a larger K. Returns the first run that is not settled or whose loop in contact is unstable between the trial's K
+  /// and the run's K; empty if all runs are settled.
   std::optional<Failing> first_failing(const TuneTrial& trial, std::size_t count,
                                        const std::function<std::string(std::size_t run)>& more);
 
   // ---- Limits on metrics
 
   /// Returns the violated limits of a trial, each with the factor > 1 by which the worst value and its error are beyond
-  /// the limit. A limited metric without a value has an infinite factor; a low-vibration rule without a value is kept.
+  /// the limit. A limited metric without a value has an infinite factor. A low-vibration rule without a value counts as
+  /// kept.
   MetricValues violated_limits(const TuneTrial& trial) const;
   /// Returns true for the name of a low-vibration rule.
   bool is_rule(const std::string& name) const { return rules_.contains(name); }
@@ -139,10 +142,12 @@ class Trials {
 
   // ---- Verification
 
-  /// Marks trials of a choice's setting from `from` to `to` [N/m] as infeasible, because the choice failed a
-  /// verification. Unless `exact_refutations`, also marks settings whose numbers differ by less than a third.
+  /// Marks the trials of a choice's setting with K from `from` to `to` [N/m] as infeasible, because the choice failed a
+  /// verification. Before restrict_refutations(), also marks the trials of settings with the same filter whose zeta and
+  /// mass differ by a factor of less than 4/3.
   void refute(const TuneSetting& setting, double from, double to, std::string constraint, std::string reason);
-  /// Restricts every refutation to its own setting. Returns false if they were already restricted.
+  /// Restricts every refutation to the setting that failed. Returns false if there are no refutations or they are
+  /// already restricted.
   bool restrict_refutations();
   /// Returns the smallest K that is known to be unstable for a choice [N/m]; infinite if none is known.
   double smallest_unstable() const { return smallest_unstable_; }
@@ -155,7 +160,7 @@ class Trials {
   std::size_t runs() const { return runs_; }
   /// Adds simulations that were made outside of this class.
   void count_runs(std::size_t count) { runs_ += count; }
-  /// Sets what the next runs are made for (TuneQuestion::on_runs).
+  /// Sets the purpose of the next runs, which is passed to TuneQuestion::on_runs.
   void begin_purpose(std::string purpose);
   /// Sets the relaxation that the next searches are to confirm; empty: none.
   void set_aim(std::string aim) { aim_ = std::move(aim); }

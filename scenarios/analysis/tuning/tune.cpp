@@ -13,7 +13,8 @@
 namespace hapbench {
 namespace {
 
-/// Evaluates the choice's setting at stiffnesses from 1/30 to 30 times the choice's K, for plots.
+/// Evaluates the choice's setting at 17 stiffnesses from 1/30 to 30 times the choice's K, so that TunedLaw::trials has
+/// these points for plots.
 void evaluate_along_stiffness(Trials& trials, const TuneTrial& choice) {
   const Range around{choice.stiffness / 30.0, choice.stiffness * 30.0, true}, whole = trials.ranges().stiffness;
   for (int i = 0; i <= kScanIntervals; ++i) {
@@ -23,18 +24,18 @@ void evaluate_along_stiffness(Trials& trials, const TuneTrial& choice) {
 }
 
 /// Searches with the current limits until a choice passes its verification; `any`: true if the choice need not be the
-/// stiffest feasible trial. Returns an empty choice if no trial is feasible.
+/// stiffest feasible trial. Returns an empty choice if no feasible trial passes.
 std::optional<TuneTrial> verified_choice(Trials& trials, bool any, TunedLaw& law) {
   constexpr int kMaxVerifications = 60;
   TuneSearch search(trials);
   for (int i = 0; i < kMaxVerifications; ++i) {
     trials.begin_purpose("search");
     const std::optional<TuneTrial> choice = any ? search.first_feasible() : search.best();
-    // A choice that fails its verification refutes trials of similar settings. If no choice is left, every refutation
-    // is restricted to its own setting, and the search is repeated.
+    // A choice that fails its verification refutes trials of similar settings. If no choice is left, restrict every
+    // refutation to the setting that failed, and repeat the search.
     if (!choice && trials.restrict_refutations()) continue;
-    // The search does not evaluate the depth at every step where its tolerance decides; the choice keeps its limits
-    // with all errors.
+    // The search may skip the run with the depth evaluated at every step (Refinement::depth). Check that the choice
+    // also keeps its limits with all errors.
     if (choice && !trials.evaluated(*choice, Need::excess).feasible()) continue;
     trials.begin_purpose("verification");
     if (choice && !is_verified(trials, *choice, law)) continue;

@@ -37,8 +37,8 @@ struct TunedLaw {
 /// Tunes one law. The result does not depend on the number of threads. G: TuneQuestion::margin.
 ///
 /// A setting at K is feasible if
-/// - every variant of the scene, including the scene itself, is settled at K (rule_of) and keeps the limits on metrics,
-///   even if its metrics are off by their errors.
+/// - every variant of the scene, including the scene itself, is settled at K, that is, stable by rule_of(). It also
+///   keeps the limits on metrics if its metrics are off by their errors.
 /// - unless TuneQuestion::allow_vibration, the run of the scene itself has low vibration (low_vibration_numbers in
 ///   diagnosis.hpp).
 /// - the run of the scene itself renders a force, and explicit integration of friction is stable in all its steps.

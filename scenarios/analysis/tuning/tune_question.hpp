@@ -31,7 +31,7 @@ struct TuneQuestion {
   std::optional<Range> mass = {};
   bool filters = false;  ///< true: velocity filters of impedance devices are searched too
   unsigned threads = 1;  ///< number of parallel runs; does not change the result
-  /// Called repeatedly with the number of runs so far, and what they are made for, such as "search".
+  /// Called repeatedly with the number of runs so far and the purpose of the current runs, such as "search".
   std::function<void(std::size_t runs, const std::string& purpose)> on_runs = {};
 };
 
@@ -41,7 +41,7 @@ struct TuneRanges {
   std::optional<Range> damping_ratio;  ///< zeta; empty if it has no effect
   std::optional<Range> mass;           ///< virtual mass [kg]; empty if it has no effect
 };
-/// Returns the ranges for one law in the scene of the question.
+/// Returns the ranges that a search uses for one law in the question's scene.
 TuneRanges tune_ranges(const TuneQuestion& question, const std::string& algorithm);
 
 }  // namespace hapbench

@@ -57,7 +57,8 @@ std::optional<TuneTrial> TuneSearch::best() {
     for (const TuneSetting& setting : settings_)
       if (setting.mass == best_->setting.mass) improve({setting.damping_ratio, setting.mass, filter});
   refine();
-  // The trial beyond the best is named with the limit that it violates, and with the error of this metric.
+  // Evaluate the trial just above the best trial further, so that its violated limit is reported with the error of the
+  // metric.
   if (beyond_.stiffness > 0.0) beyond_ = trials_.evaluated(beyond_, Need::excess);
   return best_;
 }
@@ -71,7 +72,8 @@ std::optional<TuneTrial> TuneSearch::first_feasible() {
 /// searches.
 void TuneSearch::search_settings() {
   constexpr std::size_t kStarts = 3;  // number of descents, which start from different settings
-  // A trial that was evaluated earlier in this search may be the only feasible trial.
+  // Begin with the known feasible trials: a trial that was evaluated earlier in this search may be the only feasible
+  // trial.
   best_.reset();
   if (const TuneTrial* known = trials_.stiffest_feasible()) improve(TuneTrial(*known).setting);
   for (const TuneSetting& setting : settings_) improve(setting);
@@ -87,8 +89,8 @@ void TuneSearch::search_settings() {
       if (!best_) approach(*start);
 }
 
-/// Evaluates K of a setting in steps of a third of the scan's steps, next to values at which the scene's own run is
-/// settled. Stops at the first feasible trial, and improves it.
+/// Evaluates K of a setting in steps of a third of the scan's steps, next to values at which the run of the scene
+/// itself is settled. Stops at the first feasible trial, and improves it.
 void TuneSearch::scan_finely(const TuneSetting& setting) {
   constexpr int kParts = 3;
   if (best_) return;
@@ -110,8 +112,8 @@ Range TuneSearch::stiffnesses() const {
   return {whole.from, whole.to / trials_.question().margin, true};
 }
 
-/// Searches a feasible K of a setting above the best K so far. If such a K exists, makes the trial with the largest
-/// such K the best trial and returns true.
+/// Searches a feasible K of a setting above the best K so far. If there is a feasible K, makes the trial at the largest
+/// feasible K the best trial and returns true.
 bool TuneSearch::improve(const TuneSetting& setting) {
   // Search only above the best K.
   IntervalSearchOptions options{.range = stiffnesses(), .resolution = kTuneResolution};

@@ -13,14 +13,17 @@ namespace hapbench {
 
 /// Searches the settings of a law for the largest feasible K.
 ///
-/// Starts from damping ratios zeta in factors of 10^(1/4), with the scene's mass and both ends of the range of the
-/// virtual mass. For each setting that allows a K larger than the best K by 0.5 %, searches its largest feasible K. If
-/// no trial is feasible, evaluates K in steps of 2^(1/3) wherever the scene's own run is settled, also with the
-/// velocity filters, and descends from the nearest trials of several settings towards the limits. Then evaluates
-/// velocity filters with the best mass. Finally refines zeta and mass until a change by 0.4 % no longer raises K.
+/// The initial settings combine damping ratios zeta, spaced by factors of about 10^(1/4), with up to three virtual
+/// masses: the scene's mass and both ends of the mass range. The search has four stages:
+/// - It searches the largest feasible K of each initial setting that is feasible at a K 0.5 % above the best K so far.
+/// - Only if no trial is feasible, it evaluates K in steps of a third of the scan's steps, next to values at which the
+///   run of the scene itself is settled. It then evaluates the velocity filters. Finally, it descends towards the
+///   limits from the trials with the smallest excess().
+/// - It evaluates the velocity filters with the best mass.
+/// - It refines zeta and mass until a change by 0.4 % no longer raises K.
 class TuneSearch {
  public:
-  /// `trials` must outlive this.
+  /// `trials` must outlive this object.
   explicit TuneSearch(Trials& trials);
 
   /// Returns the feasible trial with the largest K; empty if no trial is feasible.

@@ -12,9 +12,11 @@
 namespace hapbench {
 namespace {
 
-constexpr double kStiffnessReduction = 1.25;  // K is divided by this if a longer run is not settled
+// If a longer run is not settled, all stiffnesses above the choice's K divided by this number are refuted.
+constexpr double kStiffnessReduction = 1.25;
 
-/// Records that K is not settled, and refutes the stiffnesses whose margin reaches K. Returns true.
+/// Records that K is not settled, and refutes all stiffnesses from K / G (or from the K of the choice, if smaller).
+/// Returns true.
 bool refute(Trials& trials, const TuneTrial& choice, double K, const std::string& why) {
   trials.note_unstable(K);
   const double lowest = std::min(K / trials.question().margin, choice.stiffness) * (1.0 - kTuneResolution);

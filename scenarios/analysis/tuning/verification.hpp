@@ -15,7 +15,8 @@ std::string with_gain(const TuneTrial& trial, double gain);
 /// Returns true if a choice passes all verifications, the cheapest first:
 /// - it is settled at 56 gains from 1 to G, in runs that cycle through the variants;
 /// - the stability limit of K in the scene itself, found by field_limit(), is beyond G K;
-/// - it is settled in runs twice as long, unless a script would move on after the scene's end.
+/// - it is settled in runs twice as long. This check is skipped if a script would move the tool on after the scene's
+///   end.
 ///
 /// If a verification fails, refutes the choice in `trials` (Trials::refute). Writes TunedLaw::verified and limits.
 bool is_verified(Trials& trials, const TuneTrial& choice, TunedLaw& law);

@@ -11,7 +11,7 @@
 namespace hapbench {
 namespace {
 
-/// Stores every n-th step.
+/// Stores the tip position and the rendered force in every n-th step.
 class MotionSampler final : public Observer {
  public:
   MotionSampler(std::uint64_t steps, std::uint64_t every) : every_(every) {

@@ -30,7 +30,8 @@ struct MotionDifference {
   double position = 0.0;  ///< [m]
   double force = 0.0;     ///< [N]
 };
-/// Returns the difference of two motions; nothing if they have no common sample, or if one of them ended earlier.
+/// Returns the difference of two motions; nothing if there are no samples, or if the motions differ in their number of
+/// samples or their ending.
 std::optional<MotionDifference> difference(const SampledMotion& a, const SampledMotion& b);
 
 }  // namespace hapbench

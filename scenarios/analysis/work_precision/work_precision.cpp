@@ -86,7 +86,7 @@ class Study {
     return values.empty() ? loaded_.scenario.rendering.algorithm : fmt::format("{}", fmt::join(values, ", "));
   }
 
-  /// Loads and checks a run. The integrator and the time step come after the fields of the problem.
+  /// Loads and checks a run. The overrides of integrator and time step follow the overrides of the problem.
   CheckedScenario load(const StudyRun& run) const {
     std::vector<Axis> axes = axes_;
     axes.push_back({kIntegratorPath, {run.integrator}});
@@ -104,14 +104,14 @@ class Study {
   LevelSweep levels_;
 };
 
-/// Makes the runs of a study that are compared with each other, each once.
+/// Makes and stores the motions that a study compares with each other, each once.
 class Motions {
  public:
   explicit Motions(const Study& study) : study_(study) {
     for (std::size_t problem = 0; problem < study.problems(); ++problem) {
       for (const std::string& curve : study.curves()) {
         for (std::size_t level = 0; level <= study.finest(); ++level) add({problem, curve, level});
-        // Two levels of the reference solution give its error.
+        // Two levels of the reference solution give an estimate of its error.
         for (const std::size_t back : {0u, 1u})
           add({problem, reference_integrator(curve), study.reference_level() - back});
       }
@@ -168,7 +168,7 @@ class Motions {
     return largest;
   }
 
-  /// Returns the distance to which two runs grow that start kInitialShift apart [m]; infinite if they end differently.
+  /// Returns the rms distance [m] between two runs that start kInitialShift apart; infinite if they end differently.
   double grown_shift(std::size_t problem) const {
     const auto grown = difference(at({problem, study_.curves().front(), study_.finest()}), shifted_[problem]);
     return grown ? grown->position : std::numeric_limits<double>::infinity();
@@ -245,7 +245,7 @@ std::vector<WorkPrecisionProblem> work_precision(const WorkPrecisionQuestion& qu
   Motions motions(study);
   motions.check();
   motions.run(jobs);
-  // Errors.
+  // Compute the errors.
   std::vector<WorkPrecisionProblem> problems;
   std::vector<StudyRun> timed;
   for (std::size_t p = 0; p < study.problems(); ++p) {
@@ -256,7 +256,7 @@ std::vector<WorkPrecisionProblem> work_precision(const WorkPrecisionQuestion& qu
     for (const std::string& curve : study.curves())
       for (std::size_t level = 0; level <= study.finest(); ++level) timed.push_back({p, curve, level});
   }
-  // Costs, measured when nothing else runs.
+  // Measure the costs when nothing else runs.
   const std::vector<RunCost> costs = measure_cost(
       timed.size(), [&](std::size_t i) { return study.load(timed[i]); }, jobs);
   for (std::size_t i = 0; i < timed.size(); ++i) {

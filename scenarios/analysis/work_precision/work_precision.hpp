@@ -15,18 +15,18 @@
 
 /// Work-precision studies: the discretisation error of integrators and time steps, and their cost.
 ///
-/// A problem is a scene with a force law and every other field except integrator and time step. Two laws are two
+/// A problem is a scene with given values of all fields except integrator and time step. Two force laws give two
 /// problems, because they have different solutions. The error of a setting is the difference from the converged
 /// solution of the same problem, at times that all settings share.
 namespace hapbench {
 
-/// The question of a work-precision study.
+/// Inputs of work_precision().
 struct WorkPrecisionQuestion {
   ScenarioText scenario;
   std::vector<std::string> overrides = {};  ///< overrides for all runs, as in --set
   /// Fields that vary. The axis `integrator.type` gives the curves of a problem, every other axis gives problems.
   std::vector<Axis> over = {};
-  std::size_t levels = 4;   ///< number of time steps; the coarsest is the time step of the scenario
+  std::size_t levels = 4;   ///< number of step sizes; the largest is the time step of the scenario
   double ratio = 2.0;       ///< ratio of two neighbouring time steps; an integer
   double max_error = 1e-6;  ///< requested error: rms of the tip's position [m]
 };
@@ -47,12 +47,13 @@ struct WorkPrecisionSetting {
   /// True if the scenario expects the outcome. The error of a run with another outcome has no meaning: a tool that does
   /// not move has a small error.
   bool is_expected = true;
-  std::optional<MotionDifference> error = {};  ///< empty if the run ended otherwise than the reference solution
+  std::optional<MotionDifference> error = {};  ///< empty if the problem is not predictable, if the reference solutions
+                                               ///< ended differently, or if the run ended otherwise than its reference
   MotionDifference reference_error = {};       ///< error of the reference solution
   RunCost cost = {};
-  bool on_front = false;  ///< no other setting of the problem has a smaller position error at a smaller cost, among the
-                          ///< settings with an expected outcome
-  bool is_knee = false;   ///< knee of the front (pareto_front.hpp)
+  bool on_front = false;  ///< true if no other setting of the problem has a smaller position error at a smaller cost.
+                          ///< Only settings with an expected outcome and a resolved error are compared
+  bool is_knee = false;   ///< true for the knee of the front (pareto_front.hpp)
 
   /// Returns true if the position error is known and resolved. The outcome does not matter.
   bool is_resolved() const { return error && error->position >= kResolvedError * reference_error.position; }
