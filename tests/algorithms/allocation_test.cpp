@@ -179,7 +179,7 @@ TEST_P(NoAllocation, InAStepOrAReset) {
   EXPECT_EQ(observer.rows_with_contact, 600 - (config.multi_rate ? 2 * config.multi_rate->delay : 0));
 }
 
-/// Some integrators find contacts and render again within a step.
+/// Checks every algorithm with every integrator, because some integrators find contacts and render again within a step.
 class NoAllocationOf : public testing::TestWithParam<std::tuple<AlgorithmEntry, const IntegratorEntry*>> {};
 INSTANTIATE_TEST_SUITE_P(Every, NoAllocationOf,
                          testing::Combine(testing::ValuesIn(algorithms().begin(), algorithms().end()),

@@ -64,7 +64,8 @@ TEST(ShortestDistance, DirectionsLongerThan1e12thOfTheRadiusAreDefined) {
   }
 }
 
-/// Calls check(tool, pose, shell, contacts) with cylinders of both tips among points in, on and around them.
+/// Calls check(tool, pose, shell, contacts) with cylinders of both tips. The shell has points in, on and around the
+/// tool.
 template <class Check>
 void for_tools(std::size_t n, Check check) {
   Random random(1);
@@ -132,7 +133,7 @@ bool collides(const ToolShape& tool, const ToolPose& pose, const Vec3& point) {
   return !contacts.empty();
 }
 
-/// Returns the kinds of cylinders: with flat and with round tips.
+/// Returns the two kinds of cylinders: with flat and with round tips.
 std::span<const test::ToolKind> cylinders() {
   return test::tool_kinds().first(2);
 }
@@ -177,7 +178,7 @@ TEST_P(NormalProjectionDepthOf, ARayInwardsFromTheSurfaceCrossesTheTool) {
 }
 
 TEST_P(NormalProjectionDepthOf, HandlesRaysAlongAndAcrossTheAxis) {
-  // Rays for which the denominator of (F.7) or (F.12) is zero or nearly zero.
+  // Checks rays for which the denominator of (F.7) or (F.12) is zero or nearly zero.
   Random random(3);
   for (std::size_t i = 0; i < test::cases(20000); ++i) {
     const test::DefinedTool tool = GetParam().make(random, 0.001);
@@ -226,7 +227,7 @@ TEST(NormalProjectionDepth, OfAZeroNormalIsZero) {
   EXPECT_EQ(depth_at(Cylinder{}, kOrigin, {0, 0, 0.001}, Vec3::Zero()), 0.0);
 }
 
-/// Rounding of coordinates up to 1 m in a few operations [m].
+/// Rounding error of coordinates up to 1 m in a few operations [m].
 constexpr double kRounding = 4e-15;
 
 /// Depths of a colliding point in one step [m].
@@ -249,7 +250,7 @@ class Stroke {
     model_->reset();
   }
 
-  /// Moves the tool and returns the depths by index of the point.
+  /// Moves the tool to the pose and returns the depths of the colliding points by index.
   std::map<std::uint32_t, Depths> to(const ToolPose& pose) {
     query_->contacts_at(pose, contacts_);
     std::map<std::uint32_t, Depths> depths;

@@ -193,7 +193,7 @@ TEST_P(Answer, ATurnIsFeltWithAngularDampingOnly) {
   EXPECT_EQ(with == without, feels_nothing);
 }
 
-/// Uses a single contact away from the tip.
+/// Checks a single contact away from the tip: rotation acts like the velocity of the tool at the contact.
 TEST(AngularDamping, InOneContactATurnIsTheVelocityOfTheToolThere) {
   const Vec3 arm(0.0003, 0.0002, 0.004), turn(0.5, -1.0, 2.0), velocity(0.02, -0.03, 0.01);
   test::Setting setting;

@@ -49,7 +49,7 @@ TEST(PenaltyRendering, SpringsBringTheirOwnDepths) {
     config.algorithm = "summation";
     config.depth_model = model.info->name;
     test::Probe probe(three_springs(), config);
-    // -K (2 x + y): the pair along x counts twice, the spring along -y is 2 mm deep.
+    // The force is -K (2 x + y): the pair along x counts twice, the spring along -y is 2 mm deep.
     const Vec3 force = probe.force_at(three_springs().pose).spring;
     EXPECT_LE((force - Vec3(-40.0, 40.0, 0.0)).norm(), 1e-13);
     EXPECT_EQ(probe.contacts().depth[1], -0.001);
@@ -169,7 +169,7 @@ TEST(TurningVelocity, OfWeightedLawsIsTheSumOverTheirContacts) {
 TEST(TurningVelocity, OfVirtualCouplingPassesTheCouplingAsDepthsDo) {
   for_random_contacts(
       "virtual_coupling", [](const ForceLaw& law, const Mat3& S, const ContactBuffer& contacts, const ToolState& tool) {
-        // K_vc = K.
+        // The default is K_vc = K.
         const test::Dense dense(contacts);
         const Mat3 series = (Mat3::Identity() + dense.U * dense.U.transpose()).inverse();
         const Vec3 expected = series * (dense.U * normal_speeds(contacts, tool));

@@ -18,7 +18,7 @@
 namespace hapbench::registry_test {
 namespace {
 
-/// Each algorithm is found by its name, so no two algorithms have the same name.
+/// Checks that each algorithm is found by its name, so that no two algorithms have the same name.
 TEST(Registry, EveryListedNameIsFoundAndBuilds) {
   for (const AlgorithmEntry& entry : algorithms()) {
     EXPECT_EQ(find_algorithm(entry.info->name), &entry);
@@ -83,7 +83,8 @@ WedgeStiffness of_weight(double w, double weight) {
   return {2.0 * weight * std::pow(std::sin(w), 2), 2.0 * weight * std::pow(std::cos(w), 2)};
 }
 
-/// Returns the stiffness along an axis with the summed stiffness s: s / (added + s).
+/// Returns the stiffness of the faces in series with springs of the stiffness `added`: s / (added + s), where s is the
+/// summed stiffness along the axis.
 WedgeStiffness in_series(double w, double n, double added) {
   const auto [along, across] = of_weight(w, n);
   return {along / (added + along), across / (added + across)};
@@ -128,7 +129,7 @@ TEST(Registry, EveryWedgeHasTheTensorOfItsClosedForm) {
     config.algorithm = name;
     for (const double w : {0.1, 0.2, 0.5, 0.25 * std::numbers::pi, 1.0, 1.4}) {
       for (const std::size_t points : {1u, 3u, 7u}) {
-        // Two faces at the half angle w from the plane x = 0; +y points out of the wedge.
+        // The two faces have the half angle w from the plane x = 0; +y points out of the wedge.
         test::Setting setting;
         setting.springs = SpringSet{std::vector<Vec3>(points, Vec3(std::cos(w), -std::sin(w), 0.0)), false};
         setting.springs->gradients.resize(2 * points, Vec3(-std::cos(w), -std::sin(w), 0.0));
@@ -168,8 +169,8 @@ TEST(ForceBound, HoldsForSpringsOfEqualDepthInClosedForm) {
   EXPECT_EQ(bound("shaped_stiffness", 50), 50.0);  // summation
 }
 
-/// Returns a hash of the contacts of the tilted peg in its hole after the algorithm. Takes a second step, so that a
-/// depth model with a memory affects the result.
+/// Returns a hash of the contacts of the tilted peg in its hole after the algorithm has processed them. Renders two
+/// steps, so that a depth model with a memory affects the result.
 std::uint64_t rendered_contacts(const RenderingConfig& config) {
   test::Setting setting;
   setting.tool = {0.0005, 0.005, Tip::round};

@@ -15,26 +15,28 @@
 /// of groups are part of the interface, because scripts and people compare them between commits.
 namespace hapbench::bench {
 
-/// law/<algorithm>/{50,250,1000}, reduction/{50,250,1000}, growth/{law/<algorithm>,reduction}/<contacts>
+/// Registers law/<algorithm>/{50,250,1000}, reduction/{50,250,1000}, growth/{law/<algorithm>,reduction}/<contacts>.
 void register_laws();
-/// step/<one of kSteps>, latency/<step>: counters of single steps, skip/<what>/{taken,off}, growth/step/<contacts>
+/// Registers step/<one of kSteps>, latency/<step> (counters of single steps), skip/<what>/{taken,off},
+/// growth/step/<contacts>.
 void register_steps();
-/// search/{brute_force,neighbour_list}/{T1,T2,T3}, shell/build, growth/{shell,search/<search>,list_rebuild}/<shell
-/// points>; if `full` also for shells that take minutes
+/// Registers search/{brute_force,neighbour_list}/{T1,T2,T3}, shell/build, growth/{shell,search/<search>,list_rebuild}/
+/// <shell points>. With `full`, also registers shells whose benchmarks take minutes.
 void register_searches(bool full);
 
-/// Ends a benchmark whose result is wrong, and ends the program with status 1.
+/// Ends a benchmark because its result is wrong. The program runs the other benchmarks and then exits with status 1.
 void refute(benchmark::State& state, const std::string& what);
 
-/// For long checks: calls `wrong` once for each process and benchmark. It returns a description of what is wrong with
-/// the result, or nothing. Refutes the benchmark if something is wrong. Returns true if the result is right.
+/// Checks a result, for checks that take long: calls `wrong` only once per process and benchmark. `wrong` returns a
+/// description of the error, or an empty text. With an error, ends the benchmark like refute() and returns false.
+/// Otherwise returns true.
 bool proved(benchmark::State& state, const std::string& benchmark, const std::function<std::string()>& wrong);
 
-/// Numbers of contacts over which growth is measured.
+/// Numbers of contacts at which the growth of the run time is measured.
 inline constexpr std::size_t kGrowthContacts[] = {10, 100, 1000, 10'000, 100'000};
 
-/// Returns n contacts with depths and gradients before the reduction, from poses of T2 a tenth of a second apart, at
-/// most about 2000. Padded.
+/// Returns n padded contacts of the task T2, with depths and gradients before the reduction. The contacts come from
+/// poses 0.1 s apart. Throws std::logic_error if T2 has fewer than n contacts (about 2000).
 ContactBuffer task_contacts(std::size_t n);
 
 // ---- Scenes
@@ -51,20 +53,24 @@ struct TaskScene {
   std::vector<ToolPose> poses;  ///< consecutive poses, 2048 per second, in contact most of the time
 };
 
-/// Returns the scene of one of kTasks, which is computed once. The poses of T2 and T3 are one period of the script.
+/// Returns the scene of one of kTasks, computed at the first call. The poses of T2 and T3 cover one period of the
+/// script.
 const TaskScene& task_scene(std::string_view task);
 
-/// The scenario a step is timed in: one of kTasks, `T2_proxy` (T2 with a proxy), `unreduced_1000` (a drill that nearly
-/// fills the hole touches about 1000 points, none of them reduced away), `free_air` (an upright drill at rest 5 cm
-/// above the block), `upright` or `upright_proxy` (a simulated subject of appendix D leads the upright drill over the
-/// bottom of the hole, with shaping and with a proxy), `pressed_ideal` or `pressed_impedance` (a hand's spring presses
-/// an upright drill on the bottom of the hole, through either device), or a task with `_mesh` behind it, whose
-/// drill TimedRun replaces by a mesh of it. Nothing is recorded.
+/// Returns the scenario in which a step is timed, without records. `name` is one of these:
+/// - T1, T2 or T3: the task of the thesis; `T2_proxy`: T2 with a proxy
+/// - `unreduced_1000`: a drill that nearly fills the hole touches about 1000 points, and nothing is reduced
+/// - `free_air`: an upright drill at rest 5 cm above the block
+/// - `upright`, `upright_proxy`: a simulated subject of appendix D leads the upright drill over the bottom of the hole,
+///   with shaping or with a proxy
+/// - `pressed_ideal`, `pressed_impedance`: a hand's spring presses an upright drill on the bottom of the hole, through
+///   the device of this name
+/// - a task followed by `_mesh`: the scenario of the task; TimedRun replaces its drill by a mesh of the drill
 const LoadedScenario& step_scenario(const std::string& name);
-/// Returns a bundled scenario with overrides as for `--set`, without records.
+/// Returns a bundled scenario that records nothing, with overrides as for `--set`.
 LoadedScenario load_unrecorded(const char* bundled, std::vector<std::string> overrides);
 
-/// Returns the shell of all these scenes, which have the same block; built once.
+/// Returns the shell of the block, which all these scenes share; built at the first call.
 std::shared_ptr<const PointShell> block_shell();
 
 }  // namespace hapbench::bench

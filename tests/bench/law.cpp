@@ -10,11 +10,11 @@
 #include "sim/contact/contact_query.hpp"
 #include "tests/bench/bench.hpp"
 
-/// The force laws and the reduction on contacts of the tasks.
+/// Times the force laws and the reduction on contacts of the tasks.
 namespace hapbench::bench {
 
 ContactBuffer task_contacts(std::size_t n) {
-  constexpr std::size_t kEvery = 205;  // 0.1 s
+  constexpr std::size_t kEvery = 205;  // steps in 0.1 s
   const TaskScene& scene = task_scene("T2");
   const auto query = make_contact_query(*scene.shell, *scene.tool, Skips::on);
   const auto depth_model = make_depth_model("surface_normal");
@@ -31,7 +31,7 @@ ContactBuffer task_contacts(std::size_t n) {
 
 namespace {
 
-/// Returns n contacts for any n; beyond kRepeated contacts, they repeat.
+/// Number of contacts from which repeated_contacts() repeats contacts. It returns n contacts for any n.
 constexpr std::size_t kRepeated = 1000;
 ContactBuffer repeated_contacts(std::size_t n) {
   const ContactBuffer base = task_contacts(std::min(n, kRepeated));
@@ -62,7 +62,7 @@ void law(benchmark::State& state, const std::string& algorithm, std::size_t n) {
 
 void add_laws() {
   for (const AlgorithmEntry& algorithm : algorithms()) {
-    // An algorithm that finds its own contacts is timed as a step, such as T2_proxy.
+    // An algorithm that finds its own contacts is timed only as a step, such as step/T2_proxy.
     if (!algorithm.make_law) continue;
     const std::string name(algorithm.info->name);
     for (const std::size_t n : {50u, 250u, 1000u}) {
@@ -76,7 +76,7 @@ void add_laws() {
   }
 }
 
-/// Buffers that are reduced in sequence and restored together outside of the measured time.
+/// Number of buffers that are reduced one after the other. All are restored together, outside of the measured time.
 constexpr std::size_t kBuffers = 16;
 
 void reduction(benchmark::State& state, std::size_t n) {

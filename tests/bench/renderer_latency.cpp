@@ -36,7 +36,7 @@ double microseconds(Clock::duration duration) {
   return std::chrono::duration<double, std::micro>(duration).count();
 }
 
-/// Prints the median, the 99.9th percentile and the maximum.
+/// Prints the median, the 99.9th percentile and the maximum of the times [us]. Sorts the times.
 void print_latency(const char* what, std::vector<double>& times) {
   std::sort(times.begin(), times.end());
   const auto at = [&](double share) {
@@ -47,7 +47,7 @@ void print_latency(const char* what, std::vector<double>& times) {
 
 void measure(const Scene& scene, std::size_t calls) {
   using namespace hapbench;
-  // Run the scenario offline, and keep poses and times.
+  // Run the scenario offline, and keep the poses of the tool and the times of the steps.
   class Poses final : public Observer {
    public:
     void on_step(const StepRecord& record) noexcept override {
@@ -66,7 +66,7 @@ void measure(const Scene& scene, std::size_t calls) {
     more = simulation.step();
     offline.push_back(microseconds(Clock::now() - start));
   }
-  // Render the same poses.
+  // Render the same poses with the renderer.
   HapbenchMount mount = HAPBENCH_MOUNT_INIT;
   mount.max_force = INFINITY;
   Renderer renderer(scene.scenario, mount, scene.overrides);
@@ -81,7 +81,7 @@ void measure(const Scene& scene, std::size_t calls) {
   for (std::size_t i = 0; i < calls; ++i) {
     const std::size_t k = i / n % 2 == 0 ? i % n : n - 1 - i % n;
     const ToolState& tool = poses.tools[k];
-    // Rotation from the tool's -z to its axis.
+    // Rotation from the tool's axis at rest, -z, to its axis in this step.
     const Eigen::Quaterniond q = Eigen::Quaterniond::FromTwoVectors(-Vec3::UnitZ(), tool.pose.axis);
     input.time_ns += static_cast<std::uint64_t>(1e9 * period);
     input.handle = {{tool.pose.position.x(), tool.pose.position.y(), tool.pose.position.z() + scene.lift},

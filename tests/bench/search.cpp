@@ -34,7 +34,7 @@ struct Search {
   std::size_t brute_force_every;
 
   std::unique_ptr<ContactQuery> make() const { return make_search(name, *shell, *scene.tool); }
-  /// Returns where the search differs from brute force; empty if it never differs.
+  /// Returns the first compared pose at which the search differs from brute force, as a text; empty if there is none.
   std::string wrong() const {
     const auto query = make(), brute = make_search("brute_force", *shell, *scene.tool);
     ContactBuffer found(query->capacity()), all(brute->capacity());
@@ -60,7 +60,7 @@ void time_search(benchmark::State& state, const Search& search) {
   const auto batch = static_cast<benchmark::IterationCount>((poses.size() - 1) / every);
   std::uint64_t found = 0, queries = 0, tested = 0;
   while (state.KeepRunningBatch(batch)) {
-    state.PauseTiming();  // back to the first pose, with a list that is in use
+    state.PauseTiming();  // returns to the first pose, for which a neighbour list is built
     tested += query->work().points_tested;
     query->reset();
     query->contacts_at(poses[0], contacts);
@@ -101,7 +101,7 @@ double memory(const std::string& key) {
   return 0.0;
 }
 
-/// Returns the growth of the process while it builds the shell [bytes].
+/// Returns the growth of the process's memory at its peak while it builds the shell [bytes].
 double memory_of_building(const Scenario& scenario) {
   malloc_trim(0);                               // returns free memory to the system
   std::ofstream("/proc/self/clear_refs") << 5;  // resets the peak
@@ -110,8 +110,8 @@ double memory_of_building(const Scenario& scenario) {
   return memory("VmHWM") - before;
 }
 
-/// Times the construction of the scenario's shell. Counters: points, and bytes_per_point, the peak growth of the
-/// process.
+/// Times the construction of the scenario's shell. Counters: points, and bytes_per_point, the growth of the process's
+/// memory at its peak divided by the number of points.
 void build_shells(benchmark::State& state, const Scenario& scenario) {
   const double bytes = memory_of_building(scenario);
   std::shared_ptr<const PointShell> shell;

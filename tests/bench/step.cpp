@@ -26,7 +26,7 @@
 namespace hapbench::bench {
 namespace {
 
-/// The runs whose steps are timed.
+/// Names of the runs whose steps are timed.
 constexpr const char* kSteps[] = {"T1",
                                   "T2",
                                   "T2_proxy",
@@ -45,7 +45,7 @@ constexpr const char* kSteps[] = {"T1",
                                   "pressed_ideal",
                                   "pressed_impedance"};
 
-/// Steps before the first timed one. By then T1 has touched the block, and every buffer has been used.
+/// Number of steps before the first timed step. By then T1 has touched the block, and every buffer has been used.
 constexpr std::uint64_t kWarmUp = 1024;
 
 /// Returns the grid of the drill of all tasks: a mesh with 128 sides, and some 128^3 nodes.
@@ -149,7 +149,7 @@ class TimedRun {
     simulation().reset();
     for (std::uint64_t k = 0; k < kWarmUp; ++k) simulation().step();
   }
-  /// Returns the number of steps after rewinding.
+  /// Returns the number of steps from the rewound state to the end of the run.
   std::uint64_t steps_left() const { return steps_ - kWarmUp; }
   /// Returns true if every step has been taken.
   bool at_end() const { return run_.simulation.next_row() == steps_; }
@@ -167,8 +167,9 @@ class TimedRun {
   WatchedRun run_;
 };
 
-/// Returns what is wrong with the first second of the run; empty if nothing is wrong. The reference is the run without
-/// skips (brute force, everything computed); position, velocity and force of every step must be identical.
+/// Compares the first second of the run with the run without skips (brute force, everything computed). Position,
+/// velocity and force of every step must be identical. Returns a description of the error; empty if all steps are
+/// identical.
 std::string wrong_run(const std::string& name) {
   TimedRun run(name), reference(name, Skips::off);
   for (int k = 0; k < 2048; ++k) {
@@ -251,7 +252,7 @@ std::shared_ptr<const PointShell> wall(std::size_t n, const Cylinder& tool) {
   return std::make_shared<const PointShell>(points, 0.0);
 }
 
-/// Returns the drill at rest in this hole, held by its contacts, without a hand.
+/// Returns a run of the drill at rest in the hole of wall(n), held by its n contacts, without a hand.
 std::unique_ptr<WatchedRun> filled_hole(std::size_t n, Skips skips) {
   static const LoadedScenario loaded =
       load_unrecorded("round_the_wall", {"rendering.reduction=null", "hand={\"type\":\"none\"}",

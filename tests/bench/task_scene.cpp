@@ -10,7 +10,8 @@
 namespace hapbench::bench {
 namespace {
 
-/// First pose and number of poses [steps]: T1 from its start, the other tasks during one later period of 6 s.
+/// First pose and number of poses [steps]. T1 begins at the start of its run; the other tasks use one later period of 6
+/// s.
 struct Window {
   std::uint64_t first, count;
 };
@@ -29,13 +30,14 @@ LoadedScenario load_step_scenario(const std::string& name) {
                                               "rendering.reduction=null"});
   }
   if (name == "upright" || name == "upright_proxy") {
-    // The first 10 s of the first trial, with points shared by cells; here the proxy needs most passes.
+    // Take the first 10 s of the first trial, with points shared by cells. In this scene the proxy needs the largest
+    // number of passes per step.
     std::vector<std::string> overrides = {"environment.vertices=shared", "time.duration_s=10"};
     if (name == "upright_proxy") overrides.emplace_back("rendering.algorithm=proxy");
     return load_unrecorded("vertical_peg_in_hole_shaped_stiffness", std::move(overrides));
   }
   if (name == "pressed_ideal" || name == "pressed_impedance") {
-    // Soft enough that both devices rest on the same points.
+    // The hand is so soft that the drill rests on the same points with both devices.
     const char* device =
         name == "pressed_ideal"
             ? R"(device={"type":"ideal"})"
@@ -81,7 +83,7 @@ TaskScene make_task_scene(const std::string& task) {
 }  // namespace
 
 LoadedScenario load_unrecorded(const char* bundled, std::vector<std::string> overrides) {
-  // Records take time, so only the summary is written.
+  // Write only the summary, because records take time.
   for (const char* off : {"record.trajectory=false", "record.ratio_iterations=[]", "record.ideal_trajectory=false"}) {
     overrides.emplace_back(off);
   }

@@ -55,7 +55,8 @@ TEST(ForcePath, DelaysByWholeAndFractionalPeriods) {
     EXPECT_EQ(path.switch_fraction(), delay - std::floor(delay));
     for (int round = 0; round < 2; ++round) {
       for (int k = 0; k < 10; ++k) {
-        // Force k + 1 acts from k + delay on. Before the first force, the motors' force is zero.
+        // The force k + 1 N of sample k acts from sample k + delay on. Before the first force, the motors' force is
+        // zero.
         const HeldForce held = path.hold({k + 1.0, 0, 0});
         EXPECT_EQ(held.after.x(), std::max(0.0, k + 1.0 - std::floor(delay))) << delay;
         EXPECT_EQ(held.before.x(), std::max(0.0, k - std::floor(delay))) << delay;
@@ -128,14 +129,15 @@ TEST(ImpedanceDevice, ItsNoiseIsThatOfTheSeedAndGaussian) {
   EXPECT_NE(readings(config), x);
   double squares = 0.0, beyond = 0.0;
   for (const double value : x) squares += value * value, beyond += std::abs(value) > 2e-6 ? 1.0 : 0.0;
-  // Four standard errors of 20 000 values: 2 % of the standard deviation, and 1.3 % of the fraction beyond one standard
-  // deviation, 31.7 %.
+  // Allow four standard errors of 20 000 values: 2 % of the standard deviation, and 1.3 % for the fraction beyond one
+  // standard deviation, which is 31.7 %.
   EXPECT_NEAR(std::sqrt(squares / 20'000) / 2e-6, 1.0, 0.02);
   EXPECT_NEAR(beyond / 20'000, 0.3173, 0.0132);
 }
 
-/// Computes the definition on all samples at once: the longest window, grown from 1, in which all samples differ from
-/// the line through its ends by at most the noise.
+/// Returns the slope of the longest window that ends at the last sample and is a line. The window grows from 1
+/// interval, while all its samples differ from the line through its ends by at most the noise. Uses all samples at
+/// once.
 double longest_line(const std::vector<double>& x, double noise) {
   const std::size_t k = x.size() - 1;
   double slope = 0.0;
@@ -256,7 +258,7 @@ TEST(ImpedanceDevice, TheToolIsAtTheMeasuredPosition) {
   }
 }
 
-/// A push beyond the saturation of the motors moves the handle.
+/// Checks that a push beyond the saturation of the motors moves the handle, and that a smaller push does not.
 TEST(ImpedanceDevice, SaturatedMotorsYield) {
   for (const double push : {-2.9, -3.1}) {
     ImpedanceDeviceConfig config;
@@ -329,7 +331,7 @@ TEST(ForceSensor, NoiseHasTheGivenDeviationInEveryComponentAndNoMean) {
     squares += e.cwiseAbs2();
     products += Vec3(e.x() * e.y(), e.y() * e.z(), e.z() * e.x());
   }
-  // Five standard errors: 1 / sqrt(n) for the mean and for a product, sqrt(2 / n) for the square.
+  // Allow five standard errors: 1 / sqrt(n) for the mean and for a product, sqrt(2 / n) for the square.
   const double error = 5.0 / std::sqrt(kSamples);
   EXPECT_LE((sum / kSamples).cwiseAbs().maxCoeff(), error);
   EXPECT_LE((products / kSamples).cwiseAbs().maxCoeff(), error);
@@ -439,7 +441,8 @@ TEST(AdmittanceDevice, AHandStrongerThanTheActuatorsMovesTheHandle) {
     AdmittanceDevice device({});
     device.reset({});
     for (int i = 0; i < 8192; ++i) device.advance({}, {0, 0, -push}, kStep);
-    // Four seconds with a force of 1 N beyond the 30 N, against a friction of 2 N s/m: the handle moves by metres.
+    // A force of 1 N beyond the limit of 30 N acts for four seconds against a friction of 2 N s/m: the handle moves by
+    // metres.
     EXPECT_EQ(device.handle().position.z() < -0.5, push > 30.0);
   }
 }

@@ -29,8 +29,8 @@ ElasticMotion motion_of(const ImpedanceDeviceConfig& config, const AttachedHand&
   return {config, *config.transmission, hand};
 }
 
-/// Without damping, the centre of mass moves like a body of 0.1 kg, and the stretch s = x_m - x_h oscillates about f /
-/// (m_m w^2) with w^2 = k (1 / m_m + 1 / m_h).
+/// Checks the motion without damping: the centre of mass moves like a body of 0.1 kg, and the stretch s = x_m - x_h
+/// oscillates about f / (m_m w^2) with w^2 = k (1 / m_m + 1 / m_h).
 TEST(ElasticMotion, SwingsAsTheNormalModesDo) {
   constexpr double k = 5000.0, f = 2.0, v0 = 0.3;
   const double w = std::sqrt(k * (1.0 / 0.06 + 1.0 / 0.04)), rest = f / (0.06 * w * w);
@@ -47,8 +47,8 @@ TEST(ElasticMotion, SwingsAsTheNormalModesDo) {
   }
 }
 
-/// A push F on a handle of 0.04 kg, with motors that stick, loads the spring with F (1 - cos(w t)), w^2 = k / m_h. The
-/// motors start to move when this force reaches c.
+/// Checks when sticking motors start to move. A push F on a handle of 0.04 kg loads the spring with F (1 - cos(w t)),
+/// w^2 = k / m_h. The motors start to move when this force reaches the friction c.
 TEST(ElasticMotion, StickingMotorsBreakLooseWhereTheClosedFormSays) {
   constexpr double k = 4000.0, kPush = 0.5, c = 0.7;
   ImpedanceDeviceConfig config = elastic_device(k, 0.0);
@@ -66,8 +66,8 @@ TEST(ElasticMotion, StickingMotorsBreakLooseWhereTheClosedFormSays) {
       EXPECT_NEAR(motion.handle().position.x(), swung + speed * after, 1e-15);
       continue;
     }
-    // From then on, the spring's force grows as k speed t: v_m = k speed t^2 / (2 m_m), with a relative error of (w
-    // t)^2 / 12.
+    // After the motors have started to move, the spring's force grows as k speed t: v_m = k speed t^2 / (2 m_m), with a
+    // relative error of (w t)^2 / 12.
     const double v = 0.5 * k * speed * after * after / 0.06;
     EXPECT_NEAR(motion.motor().velocity.x(), v, (after < 1e-6 ? 1e-3 : 0.02) * v) << after;
   }
@@ -112,7 +112,7 @@ struct FineRun {
   }
 };
 
-/// Random forces stop the motors and start them again some fifty times.
+/// Checks the motion with random forces, which stop the motors and start them again some fifty times.
 TEST(ElasticMotion, WithDryFrictionFollowsAnIndependentIntegrator) {
   ImpedanceDeviceConfig config = elastic_device(3000.0, 0.8);
   config.viscous = 0.5;
@@ -169,7 +169,7 @@ TEST(ElasticMotion, KeepsItsEnergyBalance) {
 
 using Complex = std::complex<long double>;
 
-/// Computes position and velocity from the two exponentials, in complex long doubles.
+/// Reference that computes position and velocity from the two exponentials of the motion, in complex long doubles.
 struct Reference {
   MotionLaw law;
 
@@ -216,7 +216,7 @@ TEST(FreeMotion, WithoutASpringIsTheOneOfAFrictionalMass) {
       const double S = -std::expm1(-k * t) / k;
       EXPECT_NEAR(m.S, S, 1e-14 * t + 1e-13 * S);
       EXPECT_NEAR(m.V, std::exp(-k * t), 1e-13);
-      // (t - S) / k, or its series if the difference cancels.
+      // P is (t - S) / k, or its series if the difference cancels.
       const double z = k * t, P = z < 1e-4 ? t * t * (0.5 - z / 6.0 + z * z / 24.0) : (t - S) / k;
       EXPECT_NEAR(m.P, P, (z < 1e-4 ? 1e-14 : 1e-12) * P / std::min(1.0, z < 1e-4 ? 1.0 : z));
     }
@@ -227,7 +227,7 @@ TEST(FreeMotion, WithoutASpringIsTheOneOfAFrictionalMass) {
   EXPECT_EQ(free.V, 1.0);
 }
 
-/// Compared with Simpson's rule, whose error is (rate h)^4 / 180 = 1e-12 for the highest rate, 600 / s.
+/// Checks the integral against Simpson's rule, whose error is (rate h)^4 / 180 = 1e-12 for the highest rate, 600 / s.
 TEST(FreeMotion, IntegratesTheSquareOfTheVelocity) {
   for (const MotionLaw& law : {MotionLaw{0.0, 3000.0}, MotionLaw{300.0, 3000.0}, MotionLaw{40.0, 0.0}, MotionLaw{}}) {
     for (const auto& [v, g] : {std::pair{1.0, 0.0}, {0.0, 100.0}, {-0.7, 55.0}}) {
@@ -288,7 +288,7 @@ ImpedanceDeviceConfig handle_of(double viscous, double coulomb) {
   return config;
 }
 
-/// Returns a handle that starts with this velocity at the origin, with a hand that exerts no force.
+/// Returns a handle that starts at the origin with this velocity. The hand exerts no force.
 HandleMotion started(const ImpedanceDeviceConfig& config, const Vec3& velocity, const AttachedHand& hand = {}) {
   HandleMotion motion(config, hand);
   motion.reset({Vec3::Zero(), velocity});
@@ -324,8 +324,8 @@ TEST(HandleMotion, SticksUpToTheFrictionAndBreaksAwayBeyond) {
   EXPECT_EQ(motion.handle().position.z(), 0.0);
 }
 
-/// A mass on a spring with dry friction loses an amplitude of 2 c / k in each half period, and stops where the spring
-/// force is smaller than the friction. One call covers the whole motion.
+/// Checks a mass on a spring with dry friction. It loses an amplitude of 2 c / k in each half period, and stops where
+/// the spring force is smaller than the friction. One call covers the whole motion.
 TEST(HandleMotion, SwingsOutUnderAHandWithASpring) {
   constexpr double k = 100.0, kStart = 0.0987;
   HandleMotion motion(handle_of(0.0, kCoulomb), {0.1, k, 0.0});
@@ -343,7 +343,7 @@ TEST(HandleMotion, SwingsOutUnderAHandWithASpring) {
   EXPECT_EQ(motion.handle().position.y(), 0.0);
 }
 
-/// A sticking handle stays at rest although the spring of the hand pushes it.
+/// Checks that a sticking handle stays at rest although the spring of the hand pushes it.
 TEST(HandleMotion, DoesNotChatter) {
   HandleMotion motion = started(handle_of(0.3, kCoulomb), {kSpeed, 0, 0}, {0.1, 300.0, 6.0});
   bool stuck = false;
@@ -380,7 +380,7 @@ TEST(HandleMotion, KeepsItsEnergyBalanceToRounding) {
   }
 }
 
-/// The comparison uses path length and speed, which the energy balance does not use.
+/// Checks the dissipated energy against path length and speed, which the energy balance does not use.
 TEST(HandleMotion, DissipatesByItsFrictionAlone) {
   constexpr double b = 2.0;
   HandleMotion motion = started(handle_of(b, kCoulomb), {kSpeed, 0, 0});

@@ -14,7 +14,7 @@
 namespace hapbench::hands_test {
 namespace {
 
-/// Owns the numbers to which a HandView refers.
+/// Owns the states to which a HandView refers.
 struct Seen {
   HandleState handle;
   ToolPose tool;
@@ -40,8 +40,8 @@ TEST(ImpedanceHand, IsASpringAndADamperFromTargetToHandle) {
   EXPECT_EQ(hand.force(3.0, seen), Vec3(100 * 6 + 10 * 0, 0, 100 * 1 - 10 * 3));
 }
 
-/// Over ten minutes, the mean square of eight tones equals the sum of the mean squares of the tones to 1 %: beats are
-/// faster than one in ten seconds or contribute less than this.
+/// Checks the mean square over ten minutes. For eight tones it equals the sum of the mean squares of the tones to 1 %:
+/// beats are faster than one in ten seconds or contribute less than this.
 TEST(Tremor, HasItsStandardDeviationInItsBandAlone) {
   const Tremor tremor({{20e-6, 0.0, 5e-6}, 8.0, 12.0}, 3);
   constexpr double kStep = 0.005;
@@ -130,11 +130,12 @@ TEST(SmoothedSurface, EndsWithTheShell) {
   const PointShell shell(surface_points(Plane{0.004, 0.0001}), 0.0001);
   const SmoothedSurface surface(shell, kSmoothing);
   EXPECT_LT((surface.nearest({0.9, 0, 0.3}).position - Vec3(0.002, 0, 0)).norm(), 1e-15);
-  // Within the radius, the last points are still the neighbours of the plane.
+  // A position up to the smoothing radius beyond the border of the plane still has the plane's last points as
+  // neighbours.
   EXPECT_LT((surface.nearest({0.0024, 0, 0.0001}).position - Vec3(0.0024, 0, 0)).norm(), 1e-15);
 }
 
-/// A plane and paths over it.
+/// Fixture with a plane and paths over it.
 class DragOnPlane : public testing::Test {
  protected:
   std::shared_ptr<const SurfacePath> over(std::vector<Vec3> points) const {
@@ -201,7 +202,7 @@ TEST_F(DragOnPlane, PushesAlongTheNormalAndPullsWithinTheSurface) {
   // At t = 0.05 s the moving point is at x = -0.5 mm.
   const Vec3 expected(100.0 * -0.0001 + 10.0 * (0.01 - 0.003), 100.0 * -0.0002 + 10.0 * 0.001, -2.0 + 50.0 * 0.02);
   EXPECT_LT((hand.force(0.05, Seen{{x, v}, {}, {}}) - expected).norm(), 1e-12);
-  // When the moving point has reached the end of the path, it rests.
+  // When the moving point has reached the end of the path, the point rests.
   EXPECT_LT((hand.force(1.0, Seen{{{0.001, 0, 0.0005}, {0, 0, 0}}, {}, {}}) - Vec3(0, 0, -2)).norm(), 1e-12);
 }
 
@@ -212,7 +213,7 @@ TEST_F(DragOnPlane, AxisLeansFromTheNormalTowardsTheTravel) {
   };
   EXPECT_LT((axis(0.0, 0.0) - Vec3(0, 0, -1)).norm(), 1e-12);
   EXPECT_LT((axis(0.3, 0.0) - Vec3(-std::sin(0.3), 0, -std::cos(0.3))).norm(), 1e-12);
-  // A quarter turn about the normal, right-handed: to the left of the direction of travel.
+  // A quarter turn about the normal is right-handed: the axis leans to the left of the direction of travel.
   EXPECT_LT((axis(0.3, std::acos(0.0)) - Vec3(0, -std::sin(0.3), -std::cos(0.3))).norm(), 1e-12);
 }
 
@@ -317,8 +318,8 @@ TEST(TrackingHand, NoiseHasTheGivenDeviationAndBandwidth) {
     last = x;
   }
   const double memory = std::exp(-2.0 * std::numbers::pi * subject.noise_bandwidth * kStep);
-  // A sum of correlated samples is as accurate as a sum of n (1 - a^2) / (1 + a^2) independent samples. Five standard
-  // errors.
+  // A sum of correlated samples is as accurate as a sum of n (1 - a^2) / (1 + a^2) independent samples. Allow five
+  // standard errors.
   const double independent = kSamples * (1.0 - memory * memory) / (1.0 + memory * memory);
   EXPECT_NEAR(squares / kSamples / 0.25, 1.0, 5.0 * std::sqrt(2.0 / independent));
   // 1 - products / squares estimates 1 - a with relative error about sqrt(2 / (n (1 - a))).

@@ -24,7 +24,8 @@ SampledLoop light_loop() {
   return loop;
 }
 
-/// Returns the loop of an undamped handle of 1 kg with a period of 1 s: K is alpha = K T^2/m and B is beta = B T/m.
+/// Returns the loop of an undamped handle of 1 kg with a period of 1 s. The stiffness K then equals alpha = K T^2/m,
+/// and the damping B equals beta = B T/m.
 SampledLoop unit_loop(double delay, double beta) {
   SampledLoop loop;
   loop.device.handle_mass = loop.period = 1.0;
@@ -127,7 +128,8 @@ TEST(SampledLoop, HasNoCrossingBelowItsLimit) {
   }
 }
 
-/// A run of the device, without quantization and dry friction, on bilateral springs, follows the map sample by sample.
+/// Checks a run of the device on bilateral springs, without quantization and dry friction, against the map sample by
+/// sample.
 TEST(SampledLoop, IsTheMapOfTheDeviceWithFiltersOfAnyOrder) {
   for (const std::size_t order : {1u, 2u, 3u, 5u, 8u}) {
     for (const bool filters_position : {false, true}) {
@@ -153,8 +155,8 @@ TEST(SampledLoop, IsTheMapOfTheDeviceWithFiltersOfAnyOrder) {
       for (int k = 0; k < 300; ++k) {
         const HandleState& tool = device.sampled();
         scale = std::max(scale, std::abs(state[0]));
-        // Rounding of the closed form above, a few ulp of a / b^2, and of up to eight modes that are some ten times
-        // larger than the input.
+        // Allow the rounding of the closed form above, a few ulp of a / b^2, and of up to eight modes that are some ten
+        // times larger than the input.
         ASSERT_NEAR(device.handle().position.x(), state[0], 1e-9 * scale) << order << " " << k;
         // Before the first sample, the handle rests at zero. Therefore all modes of the filters in the map are zero,
         // too.
@@ -166,7 +168,8 @@ TEST(SampledLoop, IsTheMapOfTheDeviceWithFiltersOfAnyOrder) {
   }
 }
 
-/// The same comparison with a transmission and a hand, from a state displaced by 1 mm.
+/// Checks a run of the device with a transmission and a hand against the map sample by sample, from a state displaced
+/// by 1 mm.
 TEST(SampledLoop, IsTheMapOfTheDeviceWithATransmission) {
   for (const double delay : {0.0, 1.0, 1.75}) {
     for (const std::size_t order : {1u, 2u}) {
@@ -202,8 +205,8 @@ Mat3 some_rotation() {
   return Eigen::AngleAxisd(0.7, Vec3(1, -2, 0.5).normalized()).toRotationMatrix();
 }
 
-/// A wall along one direction, and a hand whose damping along this direction differs from its damping perpendicular to
-/// it, in a rotated frame.
+/// Checks a wall along one direction, in a rotated frame. The damping of the hand along this direction differs from its
+/// damping perpendicular to the direction.
 TEST(ContactLoop, OfAWallInAnyDirectionIsTheLoopOfOneAxis) {
   SampledLoop loop = light_loop();
   loop.device.viscous = 0.5;
@@ -216,7 +219,7 @@ TEST(ContactLoop, OfAWallInAnyDirectionIsTheLoopOfOneAxis) {
   const Mat3 along = n * n.transpose(), across = Mat3::Identity() - along;
   const auto stable = [&](double K) {
     LinearContact contact;
-    // Coupling in one direction only.
+    // By the second term, a displacement along another direction causes a force along n, but not conversely.
     contact.rendered.stiffness = K * along + 0.3 * K * n * some_rotation().col(0).transpose();
     contact.rendered.damping = 2.0 * along;
     contact.hand = {300.0 * across, 6.0 * across + 20.0 * along};
@@ -226,8 +229,8 @@ TEST(ContactLoop, OfAWallInAnyDirectionIsTheLoopOfOneAxis) {
   EXPECT_FALSE(stable(limit * (1.0 + 1e-6)));
 }
 
-/// The axes drive each other in both directions. The device itself, in three dimensions, decays just below the limit
-/// and grows just above it.
+/// Checks axes that drive each other in both directions. The device itself, in three dimensions, decays just below the
+/// limit and grows just above it.
 TEST(ContactLoop, OfCoupledAxesIsThatOfTheDevice) {
   SampledLoop loop = light_loop();
   loop.device.viscous = 1.0;
@@ -269,7 +272,7 @@ std::optional<double> limit(std::string_view name, const SampledLoop& loop) {
   return std::ranges::find(stiffness_limits(), name, &StiffnessLimit::name)->largest(loop);
 }
 
-/// A stiff transmission has no effect; a soft transmission resonates and lowers the limit.
+/// Checks that a stiff transmission has no effect, and that a soft transmission resonates and lowers the limit.
 TEST(SampledLoop, ATransmissionThatIsStiffIsNone) {
   SampledLoop loop = light_loop();
   loop.device.viscous = 2.0;
@@ -441,7 +444,7 @@ TEST(AdmittanceLoop, IsTheLinearMapOfTheSimulation) {
       for (const StepRecord& row : simulated(loop, position, velocity, 40)) {
         scale = std::max(scale, state.norm());
         const double dt = loop.tool.dt;
-        // Rounding of some forty steps of a state that need not decay.
+        // Allow the rounding of some forty steps of a state that need not decay.
         EXPECT_NEAR(row.tool.pose.position.x(), state[0], 1e-12 * scale) << row.step;
         EXPECT_NEAR(row.tool.velocity.x() * dt, state[1], 1e-12 * scale) << row.step;
         EXPECT_NEAR(row.handle.position.x(), state[4], 1e-12 * scale) << row.step;

@@ -79,15 +79,15 @@ double points_of(const Environment& environment) {
       environment);
 }
 
-/// Reads a scenario and runs its first steps, with an environment of at most about a tenth of the points. This takes a
-/// tenth of the time.
+/// Reads a scenario and runs its first steps. To save time, a field environment.spacing_m is multiplied by four, so
+/// that a surface has about a sixteenth of its points.
 void run_scenario_text(std::string_view text) {
   Json json = effective_scenario(read_scenario(parse_json(std::string(text)), kBundled).scenario, kBundled);
   if (Json& environment = json["environment"];
       environment.contains("spacing_m") && environment["spacing_m"].is_number())
     environment["spacing_m"] = 4.0 * environment["spacing_m"].get<double>();
   LoadedScenario loaded = read_scenario(json, kBundled);
-  // Larger environments are only slower.
+  // Skip larger environments, because they are slower and find no other errors.
   constexpr double kMaxSurfacePoints = 1e5;
   constexpr std::int64_t kMaxSteps = 20;
   const auto* tool = std::get_if<MeshToolFields>(&loaded.scenario.tool);
@@ -126,7 +126,7 @@ void read_trace(std::string_view text) {
   require(trace.max_contacts() <= trace.contacts.size(), "more contacts at a time than there are");
 }
 
-/// Checks that the rows of a finished table are accepted or rejected.
+/// Checks that the reader accepts or rejects the bytes as the rows of a finished table.
 void read_table(std::string_view text) {
   const fs::path folder = file_with("").parent_path(), name = file_with("").filename();
   const fs::path file = folder / (name.string() + ".csv"), part = folder / (name.string() + ".csv.part");
@@ -144,10 +144,10 @@ void read_device(std::string_view text) {
   device_of_file(file_with(text));
 }
 
-/// Makes a module table of a law from the bytes: its texts and numbers are the bytes. The law must be accepted or
-/// rejected.
+/// Creates the module table of a law from the bytes: they are its texts and numbers. The program must accept or reject
+/// the law.
 void read_module(std::string_view bytes) {
-  std::vector<std::string> texts;  // texts between zero bytes
+  std::vector<std::string> texts;  // texts between zero bytes, at least 8
   std::istringstream in{std::string(bytes)};
   for (std::string text; std::getline(in, text, '\0');) texts.push_back(text);
   texts.resize(std::max<std::size_t>(texts.size(), 8));
@@ -197,7 +197,7 @@ constexpr std::array kTargets = {
     Target{"trace", read_trace},
 };
 
-/// Returns the target that FUZZ_TARGET names.
+/// Returns the target that the environment variable FUZZ_TARGET names. Exits with status 2 if there is no such target.
 const Target& target() {
   const char* name = std::getenv("FUZZ_TARGET");
   for (const Target& t : kTargets) {
@@ -212,7 +212,7 @@ const Target& target() {
 }  // namespace
 }  // namespace hapbench::fuzz
 
-/// Ends the program if there is no target, before libFuzzer mistakes this for a crash.
+/// Exits if FUZZ_TARGET names no target, before libFuzzer could report this as a crash.
 extern "C" int LLVMFuzzerInitialize(int*, char***) {  // NOLINT: the name is libFuzzer's
   hapbench::fuzz::target();
   return 0;

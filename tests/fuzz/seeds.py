@@ -1,17 +1,17 @@
-"""Writes the seed inputs of a libFuzzer target: seeds.py TARGET FOLDER. Seeds are the bundled files and the files of
+"""Writes the seed inputs of a libFuzzer target: seeds.py TARGET FOLDER. Seeds are files in the folders scenarios and
 tests/data."""
 import json
 import sys
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-LARGEST = 20_000  # [bytes]; scripts/fuzz does not generate larger inputs
+LARGEST = 20_000  # largest size of a seed [bytes]; scripts/fuzz does not generate larger inputs
 PATTERNS = {"scenario": "*.json", "run": "*.json", "device": "*.json", "module": "module"}
 
 
 def without_prose(target, text):
-    """Returns a scene, or its device, in the smallest number of bytes, because mutations of blanks and descriptions
-    find no errors. Returns None for other files."""
+    """Returns a scene as JSON without blanks and descriptions, because mutations of them find no errors. For the target
+    "device", returns only the device of the scene. Returns None for other files."""
     scene = json.loads(text)
     if not isinstance(scene, dict) or not {"environment", "extends"} & scene.keys():
         return None
@@ -24,7 +24,7 @@ def without_prose(target, text):
 
 
 def tables(text):
-    """Yields the first rows of a table in the other notations that the readers accept."""
+    """Yields variants of the first rows of a table, in other notations that the readers accept."""
     lines = text.splitlines()[:5]
     rows = b"\n".join(lines) + b"\n"
     semicolons = rows.replace(b",", b";")

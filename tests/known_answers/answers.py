@@ -17,7 +17,7 @@ SCENES = {}
 
 @dataclass(frozen=True)
 class Within:
-    """A tolerance and the reason for it. The relative part refers to the largest known value of a series."""
+    """A tolerance with its reason. The relative tolerance is a fraction of the largest known value in a series."""
 
     why: str
     relative: float = 0.0

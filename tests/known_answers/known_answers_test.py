@@ -1,5 +1,5 @@
-"""Tests that every printed field has a known answer, and that the program prints it (tests/known_answers/README.md).
-The program lists its printed fields itself."""
+"""Tests that every field that the program prints has a known answer, and that the program prints this answer
+(tests/known_answers/README.md). The program itself lists its printed fields."""
 import json
 import re
 import unittest

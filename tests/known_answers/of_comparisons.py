@@ -1,4 +1,4 @@
-"""Known answers for the tables of compare, recomputed from the summaries of single runs."""
+"""Known answers for the tables of compare, recomputed from the summaries of separate runs."""
 import math
 from itertools import product
 

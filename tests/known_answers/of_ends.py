@@ -52,8 +52,8 @@ def ends(bench):
     }
     grips = {"type": "waypoints", "points": [[0, 0.1], [1.0, 0.1], [1.1, 9.0], [4, 9.0]]}
     scenes = [
-        # At 4 M / dt^2 = 1.6e6 N/m, the motion on an undamped spring is bounded below this stiffness and unbounded
-        # above it.
+        # The motion on an undamped spring is bounded for a stiffness below 4 M / dt^2 = 1.6e6 N/m, and unbounded above
+        # it.
         (
             "completes",
             dict(
@@ -106,7 +106,7 @@ def ends(bench):
             "completes",
             1000,
         ),
-        # 1 N on 0.1 kg for 0.5 s: 1.25 m away from a plane of 0.1 m.
+        # A force of 1 N moves 0.1 kg by 1.25 m in 0.5 s, away from a plane of 0.1 m.
         (
             "lost_contact",
             dict(
@@ -118,14 +118,14 @@ def ends(bench):
             "completes",
             1000,
         ),
-        # The depth of a ball's contact is at most its radius: K r = 2 N cannot hold 3 N.
+        # The depth of a contact is at most the radius r of the ball: the largest force K r = 2 N cannot balance 3 N.
         (
             "went_through",
             dict(pressed, hand={"type": "force", "z_N": -3.0}, rendering=highest),
             "completes",
             1000,
         ),
-        # Friction of 300 N s/m against a hand of 1 N/m: a time constant of 300 s, for a path of 4 s.
+        # Friction of 300 N s/m against a hand of 1 N/m has a time constant of 300 s, while the path takes 4 s.
         (
             "not_dragged",
             dict(
@@ -136,7 +136,7 @@ def ends(bench):
             "completes",
             8000,
         ),
-        # Friction increases from 20 to 1355 N s/m against 40 N/m: time constants of 0.5 and 34 s.
+        # Friction increases from 20 to 1355 N s/m. Against a hand of 40 N/m, the time constants are 0.5 and 34 s.
         (
             "stuck",
             dict(
@@ -430,8 +430,8 @@ def limit_of_spring(bench):
             EXACT,
             ("by the eigenvalues", [coarse[i] if word != coarse[i] else "" for i in at]),
         )
-    # A motion decays if it loses a tenth from quarter to quarter. The limit of this condition is below the linear
-    # limit.
+    # A motion decays if its amplitude decreases by at least a tenth from each quarter of the run to the next. The limit
+    # of this condition is below the linear limit.
     rests = lambda K: judged(K) in ("stable", "decaying")
     stable = [K for K, name in zip(values, classes) if name in ("stable", "decaying")]
     limit, beyond, strongest = (

@@ -238,7 +238,7 @@ def periodic_force(bench):
             },
         )
     )
-    # -z lags by 0.4 rad.
+    # The force is proportional to -z, which lags the reference by 0.4 rad.
     lag = Within(
         "a parabola through three rows of a cosine finds its top to (omega dt)^2 / 24 of a row",
         absolute=1e-6,

@@ -63,8 +63,8 @@ def limits_of_springs(bench):
             within,
             wrong,
         )
-    # |1 + z + z^2/2 + z^3/6 + z^4/24| = 1 at z = i 2 sqrt 2, and on the real axis at the root of
-    # z^3/24 + z^2/6 + z/2 + 1.
+    # Stability limit of rk4: the amplification |1 + z + z^2/2 + z^3/6 + z^4/24| is 1 at z = i 2 sqrt 2 without damping,
+    # and on the real axis at the root of z^3/24 + z^2/6 + z/2 + 1.
     rk4 = ("--set", "integrator.type=rk4")
     real = -np.roots([1 / 24, 1 / 6, 1 / 2, 1]).real[
         np.abs(np.roots([1 / 24, 1 / 6, 1 / 2, 1]).imag) < 1e-9

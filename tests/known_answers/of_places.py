@@ -25,7 +25,7 @@ def interpenetration(tip, tilt):
         np.array([0, 1.0, 0]),
     )
 
-    # Returns the depth of points on the side of the tool. Points inside the flat tip are never deepest.
+    # Depth of points on the side of the tool. Points inside the flat tip are never deeper than its edge.
     def depth(angle, up):
         turned = np.cos(angle)[..., None] * e1 + np.sin(angle)[..., None] * e2
         return depth_in_block(tip + r * turned - np.clip(up, 0, 0.01)[..., None] * axis)

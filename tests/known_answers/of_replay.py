@@ -25,7 +25,7 @@ NAMES = (
 
 
 def statuses():
-    """Returns the status of each call. The force has no ramp: it is either on or off."""
+    """Returns the status of each call by the rules of the renderer. The force has no ramp: it is either on or off."""
     found, below = [], 0
     for call in range(CALLS):
         if call == GAP:
@@ -59,13 +59,13 @@ def replay_of_a_log(bench):
     force = np.clip(spring, -LIMIT, LIMIT)
     status[np.abs(spring) > LIMIT] = CLAMPED
     time_ns = 1_000_000 * (calls + np.where(calls >= GAP, 20, 0))
-    # A zero force keeps the sign of its product: -K times 0 perpendicular to the spring, and 0 times the last force
-    # after a fall to zero.
+    # A zero force has the sign of its product: of -K times 0 perpendicular to the spring, or of 0 times the last force
+    # before the force turned off.
     recorded = force.copy()
     fallen = np.isin(status, (STALE, IS_FAULT))
     recorded[GAP] *= np.sign(force[GAP - 1])
     recorded[FAULT:REARM] *= np.sign(force[FAULT - 1])
-    recorded[10] += 0.25  # one recorded call has a different force
+    recorded[10] += 0.25  # one recorded call has a wrong force, which the replay must detect
     setup = {
         "version": 1,
         "scenario": "another",

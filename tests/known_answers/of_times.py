@@ -8,7 +8,7 @@ from physics import PLAIN, SPRING
 
 K, M, X, STEP, STEPS = 1000.0, 0.1, 1e-3, 1e-3, 64
 DEADLINE = 0.5e-3
-# A step takes more than ten nanoseconds and less than a millisecond [s].
+# Plausible bounds for the time of a step [s].
 FASTEST, SLOWEST = 1e-8, 1e-3
 
 

@@ -79,7 +79,7 @@ class Touches:
         self.kept = self.touched.copy()
         deeper = (
             self.d[:, 1] > self.d[:, 0]
-        )  # among parallel springs, the first is kept unless the second is deeper
+        )  # of parallel springs, the reduction keeps the first, or the second if it is deeper
         both = self.touched[:, 0] & self.touched[:, 1]
         self.kept[both & deeper, 0] = self.kept[both & ~deeper, 1] = False
         self.S = np.einsum("kn,ni,nj->kij", self.kept.astype(float), DIRECTIONS, DIRECTIONS)

@@ -21,11 +21,11 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE))
-mutants = importlib.import_module("try")  # a keyword of Python
+mutants = importlib.import_module("try")  # imported by name, because `try` is a keyword of Python
 
 REFERENCE = mutants.SOURCE / "results" / "reference"
 RECORD = REFERENCE / "controls.json"
-NOT_MEASURED = "not measured"  # a run diverged, so the rule had nothing to judge
+NOT_MEASURED = "not measured"  # verdict if a run diverged, so that the rule has no number to judge
 
 
 def read(file):
@@ -40,7 +40,8 @@ def program_of(build):
 
 
 def verdicts(program, ids):
-    """Verdict and number of each claim. If the command fails for several claims, judges them one by one."""
+    """Returns the verdict and the number of each claim by its identifier. If the command fails for several claims,
+    judges each half separately. A single claim for which the command fails is "not measured"."""
     with tempfile.TemporaryDirectory() as folder:
         done = subprocess.run(
             [program, "reproduce", "--only", ",".join(ids), "--out", folder, "--json"],
@@ -57,7 +58,8 @@ def verdicts(program, ids):
 
 
 def faults(control):
-    """The text with the fault by file. `file` of a control may name several files by a pattern."""
+    """Returns the text with the fault for each file of the control. The field `file` may be a pattern; the fault is
+    then put into every file that contains the text to replace."""
     files = sorted(mutants.SOURCE.glob(control["file"]))
     if "*" in control["file"]:
         files = [path for path in files if control["find"] in path.read_text(encoding="utf-8")]
@@ -71,7 +73,7 @@ def faults(control):
 
 
 def with_fault(control, work):
-    """What `work` returns while the files have the fault."""
+    """Puts the fault into its files, calls `work()`, restores the files, and returns the result of work()."""
     texts = faults(control)
     originals = {path: path.read_bytes() for path in texts}
     try:
@@ -84,7 +86,7 @@ def with_fault(control, work):
 
 
 def write(record):
-    """One line for each case, so that changes of the record can be read."""
+    """Writes the record, with one line for each case, so that a comparison of two versions shows the changed cases."""
     lines = [
         f'    {{"name": {json.dumps(one["name"])}, "meaning": {json.dumps(one["meaning"])}, "cases": [\n'
         + ",\n".join("      " + json.dumps(case, ensure_ascii=False) for case in one["cases"])
@@ -106,7 +108,7 @@ def judged(build, controls, claims):
             entry = {"name": control["name"], "cases": []}
             recorded.append(entry)
         entry["meaning"] = control["meaning"]
-        # A case is about the verdict and number that the ledger has now.
+        # Keeps only cases that were compared with the verdict and number that the ledger has now.
         now = {
             claim["id"]: [claim["verdict"], claim["number"]]
             for claim in read(REFERENCE / "claims.json")["claims"]

@@ -19,14 +19,15 @@ from pathlib import Path
 
 SOURCE = Path(__file__).resolve().parent.parent.parent
 FOLDERS = ("sim", "algorithms", "device_model", "results/observe")
-# GoogleTest suites have no dot in their names; tests that are scripts do. One of the scripts inspects the libraries,
-# which the counters change.
+# Selections of tests, as options of ctest. Names of GoogleTest suites have no dot; names of tests that are scripts do.
+# The test Library inspects the libraries, which the counters of coverage change, and is excluded.
 TESTS = (
     ["-L", "^fast$", "-E", "^Library[.]"],
     ["-L", "^slow$", "-E", "[.]"],
     ["-R", "^KnownAnswers[.]"],
 )
-MAX_FALL = 1.0  # largest allowed decrease [% of a folder's lines]
+# Largest allowed decrease of the executed fraction of a folder's lines [percentage points].
+MAX_FALL = 1.0
 
 
 def run_tests(build):
@@ -44,7 +45,8 @@ def run_tests(build):
 
 
 def lines_of(notes):
-    """Returns the lines of the source tree with code in an object file, as (file, number, True if it was executed)."""
+    """Returns the lines of the source tree that have code in an object file, as a set of (file, line number, True if
+    the line was executed). `notes`: the .gcno file of the object file."""
     report = json.loads(
         subprocess.run(
             ["gcov", "--json-format", "--stdout", notes],
@@ -64,7 +66,7 @@ def lines_of(notes):
 
 
 def counted(build):
-    """Returns the numbers of lines and of executed lines of each folder."""
+    """Yields (folder, number of lines with code, number of executed lines) for each folder."""
     libraries = sorted({folder.split("/")[0] for folder in FOLDERS})
     notes = [
         file

@@ -26,7 +26,7 @@ def output_of(*words):
 
 
 def make(build, regex):
-    """Builds the programs of the tests that the regular expression selects."""
+    """Builds the programs of the tests whose names match the regular expression."""
     tests = json.loads(
         output_of("ctest", "--test-dir", build, "--show-only=json-v1", "-R", regex)[1]
     )["tests"]
@@ -50,7 +50,8 @@ def make(build, regex):
 
 
 def failing(build, regex):
-    """Returns the first failing test among the selected tests; empty if all pass."""
+    """Runs the tests whose names match the regular expression, and returns the name of the first failing test; empty if
+    all pass."""
     status, output = output_of(
         "ctest", "--test-dir", build, "--stop-on-failure", "--no-tests=error", "-R", regex
     )
@@ -71,7 +72,8 @@ def mutated(mutant):
 
 
 def killer(mutant, build):
-    """Returns the name of a test that fails with the mutant; empty if none fails."""
+    """Puts the mutant into its file, builds its tests and runs them. Returns the name of a failing test; empty if none
+    fails. Restores the file."""
     path = SOURCE / mutant["file"]
     original, fault = path.read_bytes(), mutated(mutant)
     try:
@@ -83,7 +85,8 @@ def killer(mutant, build):
 
 
 def tried(build, names):
-    """Tries the mutants and returns the number of survivors."""
+    """Tries the mutants `names` (empty: all) and returns the number of surviving mutants. Without a `build`, only
+    checks the mutants."""
     mutants = json.loads((HERE / "mutants.json").read_text(encoding="utf-8"))
     if unknown := set(names) - {mutant["name"] for mutant in mutants}:
         raise RuntimeError(f"no mutant is called {', '.join(sorted(unknown))}")

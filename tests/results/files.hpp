@@ -59,8 +59,8 @@ class FileSizeLimit {
   void (*handler_before_)(int);
 };
 
-/// Sets an environment variable of this process and of programs that it starts, or unsets it without a value, while the
-/// object exists.
+/// While an object exists, an environment variable of this process and of programs that it starts has the given value,
+/// or is unset without a value. The destructor restores the previous value.
 class EnvironmentVariable {
  public:
   EnvironmentVariable(std::string name, const std::optional<std::string>& value);

@@ -6,12 +6,11 @@
 
 #include "results/observe/metric_observer.hpp"
 
-// Steps for observers in tests, and access to the metrics that observers report.
+// Step records for tests of observers, and access to the metrics that observers report.
 
 namespace hapbench::test {
 
-/// Returns the record of a step as the step loop passes it, at rest at the origin and without force. `contacts` must
-/// outlive it.
+/// Returns the record of a step with a tool at rest at the origin and no force. `contacts` must outlive the record.
 inline StepRecord row(std::uint64_t step, double time, const ContactBuffer& contacts) {
   StepRecord r;
   r.step = step;
@@ -39,7 +38,7 @@ inline ContactBuffer contacts_along(const std::vector<Vec3>& gradients) {
 
 namespace hapbench {
 
-/// Returns the metrics of an observer, with names without a section.
+/// Returns the metrics of an observer. Their names have no section.
 inline MetricList reported(const MetricObserver& observer) {
   MetricList list;
   Section section(list, "");

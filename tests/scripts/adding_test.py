@@ -1,10 +1,10 @@
-"""Tests the edits that the manuals require for an extension: no other edits are necessary.
+"""Tests that the edits that the manuals describe are sufficient for an extension.
 
   python3 tests/scripts/fixture.py tests/scripts/adding_test.py [--keep]
 
 Copies the source tree to a scratch folder and adds a law, a tool, an environment, a named file, a device field, a
 section of metrics, a column of trajectory.csv and a command. Then it builds the program (minutes) and tests that
-reader, schema, describe, list, results, sweep, help and completion know each of them. `--keep` keeps the folder
+reader, schema, describe, list, results, sweep, help and completion know each addition. `--keep` keeps the folder
 /tmp/hapbench_adding_….
 """
 import csv
@@ -71,7 +71,8 @@ class Adding(unittest.TestCase):
         self.folder.mkdir()
 
     def hapbench(self, *words, status=0):
-        """Returns standard output; for an expected error, standard error."""
+        """Runs the program and returns its standard output. If the expected `status` is not 0, returns its standard
+        error."""
         done = ran(self.program, *words, cwd=self.folder, env={**os.environ, "NO_COLOR": "1"})
         self.assertEqual(done.returncode, status, f"{words}\n{done.stdout}{done.stderr}")
         return done.stdout if status == 0 else done.stderr
@@ -80,7 +81,7 @@ class Adding(unittest.TestCase):
         (self.folder / "scene.json").write_text(json.dumps(SCENARIO | parts))
 
     def run_scene(self, *words, status=0):
-        """Runs the scenario into the folder out. Returns the summary and the effective scenario."""
+        """Runs the scenario into the folder out. Returns [summary, effective scenario]."""
         self.hapbench("run", "scene.json", *words, "--out", "out", "--quiet", status=status)
         return [
             json.loads((self.folder / "out" / name).read_text())

@@ -1,12 +1,12 @@
-"""The parts that adding_test.py adds to a copy of the source tree. Each part has the files that it may change, and its
-edits."""
+"""Parts that adding_test.py adds to a copy of the source tree. Each part has a largest number of files that it may
+change, and its edits."""
 import shutil
 
 from fixture import SOURCE
 
 
 class Tree:
-    """A copy of the current sources."""
+    """A copy of the current source tree."""
 
     def __init__(self, folder):
         self.folder = shutil.copytree(
@@ -17,7 +17,8 @@ class Tree:
         )
 
     def edit(self, anchor, new):
-        """Replaces the anchor, which must occur exactly once in the sources, by `new`. Returns the file's name."""
+        """Replaces the text `anchor` by `new`. The anchor must occur exactly once in the sources. Returns the name of
+        the file."""
         folders = [
             self.folder / name
             for name in ("sim", "algorithms", "device_model", "results", "scenarios")
@@ -45,7 +46,7 @@ def before(anchor, new):
     return Tree.edit, anchor, new + anchor
 
 
-# Required member of an environment; without it the code does not compile.
+# Function that every environment must have. Without it, the code does not compile.
 INSIDE = """
 static std::unique_ptr<const Solid> make_solid(const RidgeEnvironment& ridge) {
   return make_solid(surface_points(ridge));

@@ -1,4 +1,4 @@
-"""hapbench.audit on a battery of simulated contacts of known stiffness, damping and delay."""
+"""Tests hapbench.audit() with simulated contacts of known stiffness, damping and delay."""
 import json
 import os
 import unittest
@@ -13,23 +13,25 @@ from hapbench import audit  # noqa: E402  (finds the program in the environment)
 T = 1e-3  # sampling period [s]
 # Mass of the handle [kg], stiffness [N/m] and damping [N s/m] of the hand.
 MASS, HAND, HAND_DAMPING = 0.12, 250.0, 3.5
-# Intervals of exact models only contain rounding: positions have six decimals, forces nine digits.
+# Relative width of intervals for exact models, which contain only rounding: positions have six decimals, forces nine
+# digits.
 ROUNDING = 1e-4
 
 
 def presses(t):
-    """Returns the target of a hand: no contact first, then three presses. Each press begins between two rows."""
+    """Returns the target positions of a hand at the times t [m]: free at first, then three presses. Each press begins
+    between two rows."""
     return np.where((t > 0.3) & (t % 1.2 < 0.8), -8e-3, 4e-3)
 
 
 def decay(t):
-    """Returns the target of a hand that presses once and then stays."""
+    """Returns the target positions of a hand that presses once and then stays [m]."""
     return np.where(t > 0.3, -8e-3, 4e-3)
 
 
 def simulated(stiffness, damping, delay, target=presses, friction=0.0, slide=0.0, tremor=0.0):
-    """Returns times, positions (x, z) and forces (x, z) of a handle at a wall, integrated with ten steps per period.
-    The engine uses the true velocity of `delay` rows earlier."""
+    """Returns (times, positions (x, z), forces (x, z)) of a handle at a wall, integrated with ten steps per row. The
+    engine uses the true position and velocity `delay` rows earlier."""
     rng, rows, parts = np.random.default_rng(1), 3000, 10
     at, speed, shake = np.array([0.0, 4e-3]), np.zeros(2), 0.0
     positions, speeds, forces = np.zeros((rows, 2)), np.zeros((rows, 2)), np.zeros((rows, 2))
@@ -67,7 +69,8 @@ class Battery(unittest.TestCase):
         self.assertTrue(low - slack <= truth <= high + slack, (message, interval, truth))
 
     def determined(self, log, stiffness, damping, delay):
-        """Asserts that the intervals contain the true values, and that the values are accurate to 2 % of K."""
+        """Asserts that the intervals contain the true values, and that the values are accurate to 2 % of the
+        stiffness."""
         spring = audit(log)["stiffness"]
         name = (stiffness, damping, delay)
         self.assertIsNotNone(spring, name)
@@ -79,7 +82,8 @@ class Battery(unittest.TestCase):
         return spring
 
     def test_presses_of_one_axis(self):
-        """The end of the log cuts off the last contact; the other contacts are complete presses."""
+        """Checks several walls on one axis. The end of the log cuts off the last contact; all other contacts are
+        complete presses."""
         for truth in ((600.0, 2.0, 2), (600.0, 0.0, 0), (1500.0, 1.0, 1), (4000.0, 2.0, 2)):
             self.determined(one_axis(*truth), *truth)
 
@@ -95,7 +99,7 @@ class Battery(unittest.TestCase):
         self.assertAlmostEqual(abs(spring["direction"][2]), 1.0, delta=1e-3)
 
     def test_no_number_without_motion(self):
-        """An undisturbed decay fits any delay, so the log does not determine the delay."""
+        """Checks that no delay is reported for an undisturbed decay, which fits any delay."""
         t, position, force = simulated(600.0, 2.0, 2, target=decay)
         keep = t > 0.45
         log = {"t": t[keep], "position": position[keep, 1], "force": force[keep, 1]}
@@ -108,7 +112,8 @@ class Battery(unittest.TestCase):
         self.holds(spring["stiffness_interval"], 600.0, "decay")
 
     def test_a_loop_slower_than_the_log(self):
-        """The limit is computed at the rate at which position and force change."""
+        """Checks a log in which position and force change only in every fourth row. The limit must be computed at the
+        rate of the changes."""
         log = one_axis(600.0, 2.0, 0)
         found = audit({name: np.repeat(values, 4) for name, values in log.items() if name != "t"}
                       | {"t": 0.25 * T * np.arange(4 * len(log["t"]))}, "touch")  # fmt: skip

@@ -1,4 +1,4 @@
-"""`hapbench audit` and hapbench.audit on logs with known answers, and on runs of hapbench."""
+"""Tests `hapbench audit` and hapbench.audit() on logs with known answers, and on runs of hapbench."""
 import json
 import math
 import os
@@ -12,13 +12,14 @@ os.environ.setdefault("HAPBENCH_PROGRAM", str(PROGRAM))
 from hapbench import InputError, audit  # noqa: E402  (finds the program in the environment)
 
 T = 0.001  # sampling period of the logs [s]
-# Least squares of exact data: rounding of the normal equations, and 1e-6, which is added to every interval.
+# Relative error of least squares on exact data: rounding of the normal equations, and 1e-6, which is added to every
+# interval.
 EXACT = 1e-5
 
 
 def pressed(cycles, amplitude=1e-3, per_cycle=100, depth=3e-3):
-    """Returns positions of a tool that lands within 50 rows and then moves up and down `cycles` times inside the
-    surface z < 0."""
+    """Returns positions [m] of a tool that lands within 50 rows and then moves up and down `cycles` times inside the
+    surface z < 0. `depth`: mean depth. `amplitude`: amplitude of the motion."""
     landing = np.concatenate([np.full(100, 1e-3), np.linspace(1e-3, -depth, 50, endpoint=False)])
     phase = 2.0 * np.pi / per_cycle * np.arange(cycles * per_cycle + 1)
     return np.concatenate([landing, -depth - amplitude * np.sin(phase)])
@@ -48,7 +49,8 @@ def csv_text(columns):
 
 
 def wall(z, stiffness, damping=0.0):
-    """Returns the force of a one-sided spring and damper, with the velocity from position differences."""
+    """Returns the force of a one-sided spring and damper at z = 0. The velocity is a backward difference of the
+    positions."""
     speed = np.diff(z, prepend=z[0]) / T
     return np.where(z < 0.0, -stiffness * z - damping * speed, 0.0)
 
@@ -59,8 +61,8 @@ def rules_of(found):
 
 class KnownAnswers(unittest.TestCase):
     def test_sampled_spring_with_delay(self):
-        """With held forces, f_k = −K x_(k−d) on x = A sin(k φ) does the work K A² N sin((d + ½) φ) sin(φ/2) per cycle
-        of N rows."""
+        """Compares the work with a closed form. With held forces, f_k = −K x_(k−d) on x = A sin(k φ) does the work K A²
+        N sin((d + ½) φ) sin(φ/2) per cycle of N rows."""
         stiffness, amplitude, per_cycle = 1200.0, 1e-3, 100
         for delay in (0, 1, 3):
             found = []
@@ -80,12 +82,13 @@ class KnownAnswers(unittest.TestCase):
                 * math.sin(angle / 2.0)
             )
             work = (found[1]["energy"]["work_J"] - found[0]["energy"]["work_J"]) / 20.0
-            # Sums of 3000 products of about 4 N and 0.1 mm, each with a relative rounding error of 1e-16.
+            # The work is a sum of 3000 products of about 4 N and 0.1 mm, each with a relative rounding error of 1e-16.
             self.assertAlmostEqual(work, per, delta=1e-12)
 
     def test_limit_and_frequency_in_closed_form(self):
-        """For an undamped handle at a wall with K, B: K T²/m < 2 β (2 − β)/(2 + β), and at the limit cos θ = 1 − κ/4 −
-        β/2."""
+        """Compares limit and frequency with a closed form. For an undamped handle of mass m at a wall with K and B, let
+        κ = K T²/m and β = B T/m. The loop is stable for κ < 2 β (2 − β)/(2 + β), and its frequency at the limit is θ/T
+        with cos θ = 1 − κ/4 − β/2."""
         mass, damping = 0.1, 5.0
         beta = damping * T / mass
         limit = 2.0 * beta * (2.0 - beta) / (2.0 + beta) * mass / T**2
@@ -103,25 +106,25 @@ class KnownAnswers(unittest.TestCase):
                 continue
             kappa = limit * T**2 / mass
             frequency = math.acos(1.0 - kappa / 4.0 - beta / 2.0) / (2.0 * math.pi * T)
-            # At 1.001 times the limit, the squared frequency is at most 1.001 times as large.
+            # At 1.001 times the limit, the squared frequency is at most 1.001 times the squared frequency at the limit.
             self.assertAlmostEqual(found["expected_frequency_Hz"] / frequency, 1.0, delta=1e-3)
         answer = hapbench(
             "limit", "wall_on_handle", "--device", device, "--json", "--out", scratch / "limit",
             "--set", f"time.step_s={T}", "--set", f"rendering.damping_N_s_per_m={damping}",
         )  # fmt: skip
         row = json.loads(answer)["limits"][0]
-        # This loop is linear, so either limit is valid.
+        # This loop is linear, so that the theoretical limit and the linear limit are equal; one of them may be missing.
         same = row["theoretical_limit"] or row["linear_limit"]
         self.assertAlmostEqual(found["linear_limit_N_per_m"] / same, 1.0, delta=2 * EXACT)
 
     def test_passive_spring_and_damper(self):
-        """If B > K T / 2, a held spring and damper creates no energy. Without damping it creates energy, while the work
-        along the path is zero."""
+        """Checks that a held spring and damper with B > K T / 2 creates no energy. Without damping, the held force
+        creates energy, although the work along the path is zero."""
         rng = np.random.default_rng(1)
         z = pressed(20) + 2e-4 * np.cumsum(rng.normal(size=len(pressed(20)))) / 100.0
         stiffness = 1000.0
         damped = audit(table(z, wall(z, stiffness, 1.0)))["energy"]
-        # A contact that begins between rows adds at most K d²/2, with the displacement d of 80 um per row at touch.
+        # A contact that begins between two rows adds at most K d²/2, with the displacement d per row at touch (80 um).
         touch = 0.5 * stiffness * 1e-4**2
         self.assertLessEqual(damped["net_created_J"], damped["net_created_error_J"] + touch)
         bare = audit(table(z, wall(z, stiffness)))["energy"]
@@ -129,8 +132,7 @@ class KnownAnswers(unittest.TestCase):
         self.assertLessEqual(bare["net_created_path_J"], bare["net_created_error_J"] + touch)
 
     def test_quantised_position(self):
-        """Encoder quantisation widens the confidence intervals and the error bounds of the mechanical work; both still
-        contain the true values."""
+        """Checks that intervals and error bounds contain the true values if an encoder quantises the position."""
         rng = np.random.default_rng(2)
         for step in (1e-5, 5e-5):
             z = (
@@ -146,7 +148,7 @@ class KnownAnswers(unittest.TestCase):
             true_work = float(np.sum(force[:-1] * np.diff(z)))
             energy = found["energy"]
             self.assertLessEqual(abs(energy["work_J"] - true_work), energy["work_error_J"])
-            # The bound is small enough to be useful: below the energy stored in one cycle.
+            # The bound must be useful: smaller than the energy stored in one cycle.
             self.assertLess(energy["work_error_J"], 20.0 * 1500.0 * 3e-3 * 1e-3)
 
     def test_position_that_moves_by_few_counts(self):
@@ -159,7 +161,7 @@ class KnownAnswers(unittest.TestCase):
         )
 
     def test_dry_friction(self):
-        """Dry friction c dissipates 4 A c per cycle of amplitude A."""
+        """Checks that dry friction c dissipates 4 A c per cycle of the amplitude A."""
         stiffness, friction, amplitude = 800.0, 0.4, 1e-3
 
         def log(cycles):
@@ -172,13 +174,14 @@ class KnownAnswers(unittest.TestCase):
         self.assertAlmostEqual(spring["stiffness_N_per_m"] / stiffness, 1.0, delta=0.01)
         self.assertAlmostEqual(spring["dry_friction_N"] / friction, 1.0, delta=0.01)
         lost = (found["energy"]["work_path_J"] - shorter["energy"]["work_path_J"]) / 10.0
-        # Twice per cycle, at the reversal, the sign is wrong for half a step: A (1 − cos φ) each.
+        # Twice per cycle, where the motion reverses, the sign is wrong for half a step. This changes the work by A (1 −
+        # cos φ) c each time.
         self.assertAlmostEqual(lost / (-4.0 * amplitude * friction), 1.0, delta=0.005)
         self.assertNotIn("energy", rules_of(found))
 
     def test_buzz_of_a_device_with_delay(self):
-        """A handle of 0.08 kg with a delay of 2 samples, at 2.3 times its stability limit, vibrates near the frequency
-        of the linear theory."""
+        """Checks that a handle of 0.08 kg with a delay of 2 samples vibrates near the frequency of the linear theory.
+        The stiffness is 2.3 times the stability limit."""
         mass, viscous, delay = 0.08, 1.0, 2
         scratch = scratch_folder(self)
         device = scratch / "late.json"
@@ -192,7 +195,7 @@ class KnownAnswers(unittest.TestCase):
                 }
             )
         )
-        # Limit approximated by the formula of Gil and Hulin.
+        # The limit is approximated by the formula of Gil and Hulin.
         stiffness = 2.3 * viscous / (T * (0.5 + delay))
         log = handle_at_wall(mass, viscous, delay, stiffness)
         found = audit(log, device)
@@ -201,9 +204,9 @@ class KnownAnswers(unittest.TestCase):
         )
         self.assertAlmostEqual(
             found["device"]["ratio"], 2.3, delta=0.14 * 2.3
-        )  # accuracy of the formula
+        )  # relative accuracy of the formula
         expected, seen = found["device"]["expected_frequency_Hz"], found["buzz"][0]["frequency_Hz"]
-        # The wall only pushes: a growing oscillation loses contact and then has a longer period.
+        # The wall only pushes. A growing oscillation therefore loses contact, and its period then becomes longer.
         self.assertTrue(0.6 * expected < seen < 1.1 * expected, (expected, seen))
         finding = rules_of(found)["edge"]
         self.assertIn(f"expect a buzz near {expected:.0f} Hz", finding["says"])
@@ -235,8 +238,8 @@ class Clocks(unittest.TestCase):
         rng = np.random.default_rng(3)
         jittered = log | {"t": log["t"] + 1e-4 * rng.uniform(-0.5, 0.5, len(z))}
         clock = audit(jittered)["clock"]
-        # Differences of two uniform errors of width w have the standard deviation w/√6, estimated from 2000 differences
-        # with an error of 3 %.
+        # A difference of two uniform errors of width w has the standard deviation w/√6. The estimate from 2000
+        # differences has an error of 3 %.
         self.assertAlmostEqual(clock["jitter_s"] / (1e-4 / math.sqrt(6.0)), 1.0, delta=0.1)
         kept = np.ones(len(z), bool)
         kept[[500, 900, 901]] = False
@@ -258,7 +261,8 @@ class Clocks(unittest.TestCase):
 
 class Formats(unittest.TestCase):
     def test_other_engine(self):
-        """A log with nanoseconds since 1970, millimetres, a quaternion, and the force of the tool on the object."""
+        """Checks a log with nanoseconds since 1970, millimetres, a quaternion, and the force of the tool on the
+        object."""
         z = pressed(20)
         force = wall(z, 1000.0, 1.0)
         start = 1_700_000_000_000_000_000
@@ -319,7 +323,7 @@ class Formats(unittest.TestCase):
             self.assertEqual("in other units" in warned, is_reported, (factor, warned))
 
     def test_the_reason_is_of_the_contact_that_moves_furthest(self):
-        # A touch of a few counts comes first; a force with the wrong sign follows in both contacts.
+        # The first contact moves by only a few counts. In both contacts, the force has the wrong sign.
         short, far = -4e-5 * np.hanning(40), -2e-3 * np.hanning(400)
         z = np.concatenate([np.full(60, 1e-4), short, np.full(60, 1e-4), far, np.full(60, 1e-4)])
         z = 2e-5 * np.round(z / 2e-5)
@@ -363,8 +367,8 @@ class Formats(unittest.TestCase):
 
 class OwnRuns(unittest.TestCase):
     def test_numbers_are_those_of_the_summary(self):
-        """Compares audit with the summary for an ideal device, for a handle with a device, and for a run with several
-        landings."""
+        """Compares audit with the summary of a run: for an ideal device, for a handle on a device, and for a run with
+        several landings."""
         scratch = scratch_folder(self)
         for scene in ("device_at_wall", "tap_wall", "impedance_at_wall"):
             run = scratch / scene
@@ -390,7 +394,7 @@ class OwnRuns(unittest.TestCase):
         if stated is None or value is None:
             self.assertEqual(value, stated, (scene, name))
             return
-        # Sums in another order round differently; the histogram of steps states its error.
+        # Sums in another order round differently. The summary states the error of metrics from a histogram.
         within = 1e-9 * abs(stated) + summary["tolerances"].get(metric, 0.0) + 1e-12
         self.assertAlmostEqual(value, stated, delta=within, msg=(scene, name))
 

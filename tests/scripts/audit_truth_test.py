@@ -1,4 +1,5 @@
-"""hapbench.audit states nothing false: jitter, noise, short slides, rests, rigid and averaged contacts."""
+"""Tests that hapbench.audit() reports nothing false. The logs have jitter, noise, short slides, rests, and rigid or
+averaged contacts."""
 import os
 import unittest
 from unittest import mock
@@ -14,13 +15,15 @@ T = 1e-3  # interval of the rows [s]
 
 
 def smooth(share):
-    """From 0 to 1 without a jump of the acceleration."""
+    """Returns a transition from 0 to 1 without a jump of the acceleration. `share`: time as a fraction of the
+    transition."""
     share = np.clip(share, 0.0, 1.0)
     return 10 * share**3 - 15 * share**4 + 6 * share**5
 
 
 def presses(t, count, seconds, depth=3e-3, rise=0.05, every=None):
-    """Positions of presses into the surface z < 0, to different depths."""
+    """Returns positions [m] of `count` presses into the surface z < 0, to different depths. Durations of a press
+    (`seconds`), of its rise and between the starts of two presses (`every`) are in s."""
     z = np.full(len(t), 1e-3)
     for i in range(count):
         start = 0.2 + i * (every or seconds + 0.2)
@@ -50,7 +53,8 @@ def rules_of(found):
 
 class Clocks(unittest.TestCase):
     def test_jitter_is_no_missing_row(self):
-        """Stamps that are off by up to 0.3 intervals, and intervals that are: steps of 0.4 to 1.6 intervals."""
+        """Checks that jitter is not counted as missing rows. The time stamps have errors of up to 0.3 intervals, or
+        each interval has such an error. Steps are then between 0.4 and 1.6 intervals."""
         rng, rows = np.random.default_rng(1), 4000
         kept = np.ones(rows, bool)
         kept[[700, 1500, 1501, 2900]] = False
@@ -68,7 +72,7 @@ class Clocks(unittest.TestCase):
                 self.assertAlmostEqual(found["rate_Hz"] / rate, 1.0, delta=2e-3, msg=name)
 
     def test_held_values_of_a_log_that_lost_rows(self):
-        """Each value is in five rows, of which 1 % are lost."""
+        """Checks a log in which each value is repeated in five rows, after 1 % of the rows are lost."""
         rng, rows = np.random.default_rng(7), 3000
         t = T * np.arange(rows)
         z = np.repeat(presses(t, 2, 1.0)[::5] + tremor(t)[::5], 5)
@@ -80,7 +84,8 @@ class Clocks(unittest.TestCase):
         self.assertAlmostEqual(clock["rows_per_force"], 5.0, delta=0.05)
 
     def test_times_without_order_have_no_missing_rows(self):
-        """Errors of half an interval, as of sorted random times: no row can be counted."""
+        """Checks that no row counts as missing if the time stamps have errors of half an interval, as sorted random
+        times do."""
         rng = np.random.default_rng(2)
         t = np.sort(T * (np.arange(3000) + 0.49 * rng.uniform(-1.0, 1.0, 3000)))
         z = presses(t, 2, 0.8)
@@ -96,8 +101,9 @@ class Springs(unittest.TestCase):
         self.assertTrue(round(first) <= delay <= round(last), (first, last))
 
     def test_averaged_contacts_are_no_delay(self):
-        """The mean over the points in contact falls whenever a point is added: no spring and damper explains this, and
-        each contact leaves the same residuals."""
+        """Checks that no delay is reported for averaged contacts. The mean force over the points in contact falls
+        whenever a point is added. No spring and damper explains this, and all contacts have the same residuals.
+        """
         t = 2e-3 * np.arange(2000)
         z = presses(t, 12, 0.12, depth=1.5e-3, every=0.3)
         depths = -z[:, None] - np.linspace(0.0, 4e-4, 5)
@@ -108,7 +114,8 @@ class Springs(unittest.TestCase):
             self.assertEqual(found["stiffness"]["delay_interval_s"][0], 0.0)
 
     def test_coarse_positions_do_not_exclude_the_truth(self):
-        """Rounding makes the damping of the true delay look negative; its interval says how much."""
+        """Checks that the intervals contain the true values for coarse positions. Rounding makes the damping at the
+        true delay look negative, within its interval."""
         rng = np.random.default_rng(3)
         t = T * np.arange(9000)
         z = presses(t, 40, 0.1, rise=0.04, every=0.2) + tremor(t)
@@ -127,7 +134,8 @@ class Springs(unittest.TestCase):
                 self.assertLessEqual(spring_of["delay_interval_s"][1], 0.5 * one["rows"] * T)
 
     def test_lost_rows_are_no_shorter_delay(self):
-        """A delay counts the rows that the log lost, and no velocity is a difference over them."""
+        """Checks a log from which rows were removed. A delay must include the missing rows, and no velocity may be a
+        difference across them."""
         rng = np.random.default_rng(6)
         t = T * np.arange(3000)
         z = presses(t, 2, 1.0) + tremor(t)
@@ -141,8 +149,8 @@ class Springs(unittest.TestCase):
             self.assertTrue(low <= 1.2 <= high, (low, high))
 
     def test_short_slides_with_friction(self):
-        """Each contact slides along its own straight line, so that it does not tell friction from a tilted normal; all
-        contacts do."""
+        """Checks short contacts that each slide along a straight line. One contact does not distinguish friction from a
+        tilted normal; all contacts together do."""
         t = 4e-3 * np.arange(400)
         z = presses(t, 5, 0.12, rise=0.06, every=0.28) + tremor(t, 5e-5)
         force = spring(z, 1000.0, 0.3, 1, 4e-3)
@@ -152,18 +160,20 @@ class Springs(unittest.TestCase):
         coordinates = {"x": along[0], "y": along[1], "z": z}
         found = audit({"t": t} | coordinates | {"fx": sideways[0], "fy": sideways[1], "fz": force})
         self.holds(found, 1000.0, 1)
-        # Friction of 0.4 tilts the force by 22 degrees.
+        # Friction with a coefficient of 0.4 tilts the force by 22 degrees.
         self.assertGreater(abs(found["stiffness"]["direction"][2]), np.cos(np.radians(1.0)))
 
     def test_impulses_have_no_stiffness(self):
-        """A rigid contact stops the tool within a row; the correction of its depth is no spring."""
+        """Checks that no stiffness is reported for a rigid contact, which stops the tool within one row. The correction
+        of the depth is not a spring."""
         for correction, restitution in ((0.2, 0.0), (0.2, 0.4), (0.1, 0.2)):
             found = audit(impulses(correction, restitution))
             self.assertIsNone(found["stiffness"], (correction, restitution))
             self.assertTrue(any(one.startswith("stiffness") for one in found["missing"]))
 
     def test_each_model_is_fitted_once(self):
-        """The fits of as_good() are those of the numbers, and widened() leaves them as they are."""
+        """Checks that no fit is computed twice: the fits of as_good() are used again, and widened() does not modify
+        them."""
         from hapbench_audit import models
 
         t = T * np.arange(2000)
@@ -181,7 +191,8 @@ class Springs(unittest.TestCase):
 
 
 def impulses(correction, restitution, mass=0.1):
-    """Log of a tool that a hand presses against a rigid surface: the impulse of a row stops it."""
+    """Returns the log of a tool that a hand presses against a rigid surface. An impulse within one row stops the tool.
+    `correction`: fraction of the depth that is removed per row."""
     t = T * np.arange(6000)
     target = presses(t, 7, 0.6, every=0.8) + tremor(t)
     z, v, positions, forces = 1e-3, 0.0, [], []
@@ -200,7 +211,8 @@ def impulses(correction, restitution, mass=0.1):
 
 class Diagnosis(unittest.TestCase):
     def test_a_rest_is_no_saturation(self):
-        """The force of a tool that rests is constant; a force that a limit cuts is constant while the tool moves."""
+        """Checks that a resting tool is not reported as saturated, and that a limited force is. The force of a resting
+        tool is constant; a limited force is constant while the tool moves."""
         t = T * np.arange(4000)
         z = presses(t, 3, 0.9)
         self.assertNotIn("saturated", rules_of(audit(log_of(t, z, spring(z, 900.0)))))
@@ -229,7 +241,8 @@ class Diagnosis(unittest.TestCase):
         self.assertIn("chatter", rules_of(audit(log_of(t, z, force))))
 
     def test_energy_of_a_delay_that_the_log_does_not_determine(self):
-        """Contacts of 12 rows have no stiffness: the advice may not say that an internal state creates the energy."""
+        """Checks the advice for contacts of 12 rows, which have no stiffness. It must name the delay as a possible
+        cause of the created energy."""
         t = 1e-2 * np.arange(1200)
         z = presses(t, 40, 0.12, depth=4e-3, rise=0.06, every=0.28)
         energy = rules_of(audit(log_of(t, z, spring(z, 800.0, delay=2))))["energy"]
@@ -243,7 +256,8 @@ class Diagnosis(unittest.TestCase):
         self.assertIn("mm in one row", pop["try"])
 
     def test_encoder_steps_matter_to_a_rough_force_only(self):
-        """A device's encoder says nothing about the log of another."""
+        """Checks that the rule `encoder` is not applied if the log does not show encoder steps. The encoder of the
+        device that the user names may differ from the encoder of the log."""
         t = T * np.arange(3000)
         z = presses(t, 2, 1.0) + tremor(t, 1e-5)
         found = audit(log_of(t, z, spring(z, 300.0, 4.0)), device="touch")
@@ -252,7 +266,8 @@ class Diagnosis(unittest.TestCase):
 
 class Oscillations(unittest.TestCase):
     def test_amplitude_at_uneven_times(self):
-        """Lines between uneven times would make an oscillation at a quarter of the rate smaller, by a fifth."""
+        """Checks the amplitude of an oscillation at a quarter of the sampling rate in a log with irregular times.
+        Linear interpolation between the times would reduce it by a fifth."""
         rng = np.random.default_rng(5)
         steps = T * (1.0 + 0.3 * rng.uniform(-1.0, 1.0, 3000))
         t = np.cumsum(steps)
@@ -261,7 +276,7 @@ class Oscillations(unittest.TestCase):
         force = np.where(force > 0.0, force + 0.3 * np.sin(2.0 * np.pi * 240.0 * t), 0.0)
         strongest = audit(log_of(t, z, force))["buzz"][0]
         self.assertAlmostEqual(strongest["frequency_Hz"], 240.0, delta=0.5)
-        # Noise of the rest and the window's scalloping at a padding of 4: less than 2 %.
+        # Errors below 2 %: noise of the remaining force, and scalloping of the window with a padding of 4.
         self.assertAlmostEqual(strongest["amplitude_N"], 0.3, delta=6e-3)
 
     def test_a_press_is_no_oscillation(self):

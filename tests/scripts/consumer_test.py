@@ -1,5 +1,5 @@
-"""Tests hapbench as a library: another project uses the installed library, or includes the source folder, and
-elementary functions are hapbench's own. Arguments: the program, cmake, nm, the build tree."""
+"""Tests hapbench as a library. Another project uses the installed library, or includes the source folder. The library
+must not take elementary functions from the C library. Arguments: the program, cmake, nm, the build tree."""
 import json
 import re
 import shutil
@@ -13,7 +13,7 @@ from fixture import ENVIRONMENT, PROGRAM, SOURCE, must, ran, scratch_folder
 CMAKE, NM, BUILD = sys.argv[2:5]
 CONSUMER = SOURCE / "tests" / "consumer"
 SCENARIO = "peg_in_hole_2d_mean"
-# Removes the flags of the test's caller, which CMake would read from the environment.
+# Environment without the compiler flags of the test's caller, which CMake would use.
 BARE = {
     key: value
     for key, value in ENVIRONMENT.items()
@@ -25,7 +25,7 @@ C_FUNCTIONS = re.compile(
     r"c(?:abs|arg|exp|log|pow|sqrt))[fl]?$",
     re.M,
 )
-# OpenMesh uses a cosine in the virtual functions of its mesh for feature edges, which hapbench does not call.
+# OpenMesh uses the cosine in virtual functions for feature edges. hapbench does not call these functions.
 OPENMESH = {
     ("libhapbench_sim_mesh", "cos"),
     ("libhapbench_scenarios_input", "cos"),
@@ -34,7 +34,7 @@ OPENMESH = {
 
 
 def ascii_pyramid():
-    """Returns a closed pyramid on a square of 4 mm, 3 mm high, as STL."""
+    """Returns an STL file of a closed pyramid, 3 mm high, on a square of 4 mm."""
     a, b, c, d, top = (
         (-2e-3, -2e-3, 0),
         (2e-3, -2e-3, 0),
@@ -80,7 +80,8 @@ class Consumer(unittest.TestCase):
         self.assertEqual(state_hash, json.loads((out / "summary.json").read_text())["state_hash"])
 
     def test_an_installed_renderer_renders_in_a_loop_of_another_project(self):
-        """A program in C that finds the library by CMake and by pkg-config; the log is replayed bit for bit."""
+        """Tests a program in C that finds the library by CMake and by pkg-config. hapbench must replay its log bit for
+        bit."""
         project = CONSUMER / "loop"
         build = self.folder / "loop"
         must(CMAKE, "-G", "Ninja", "-S", project, "-B", build, f"-DCMAKE_PREFIX_PATH={self.prefix}")
@@ -93,7 +94,7 @@ class Consumer(unittest.TestCase):
         }
         self.assertTrue(all(name.startswith("hapbench_renderer_") for name in exported), exported)
         self.assertEqual(len(exported), 8, exported)
-        # The molar of drag_molar, and a pyramid written by this test.
+        # Renders the molar of the scene drag_molar, and a pyramid.
         pyramid = self.folder / "pyramid.stl"
         pyramid.write_text(ascii_pyramid())
         pyramid_scene = self.folder / "own.json"
@@ -202,8 +203,8 @@ class Consumer(unittest.TestCase):
             self.assertNotIn(word, command)
 
     def test_it_computes_elementary_functions_itself(self):
-        """Elementary functions must not come from the C library, because their last digits differ between versions.
-        Calls by Eigen or the standard library are also detected."""
+        """Checks that no library calls an elementary function of the C library, because the last digits differ between
+        versions. Calls by Eigen and by the standard library are also detected."""
         archives = sorted(
             p for p in Path(BUILD).rglob("libhapbench_*.a") if "test_support" not in p.name
         )

@@ -33,9 +33,9 @@ TUTORIALS = SOURCE / "scenarios" / "library" / "tutorials"
 MANUALS = [Manual(file) for file in manuals()]
 COMMANDS = [command for manual in MANUALS for command in manual.commands()]
 started = partial(ran, LC_ALL="C.UTF-8")
-# No option of the program is similar, so that the message suggests no other option.
+# An unknown option that resembles no real option, so that the error message suggests none.
 UNKNOWN = "--zzzz"
-# These commands take minutes and are only parsed.
+# Commands that take minutes. Their options are only parsed.
 LONG = {"reproduce", "stress"}
 FEW_STEPS = ["--set", 'time={"step_s": 0.0005, "steps": 40}']
 SHORTER = {
@@ -57,7 +57,7 @@ def text_of(name):
 
 
 def prepare(folder):
-    """Writes the files that the manuals describe as files of the reader."""
+    """Writes into the folder the files that the manuals assume the reader to have."""
     for name, source in (
         ("my.stl", "tests/data/seeds/cube_text.stl"),
         ("log.txt", "scenarios/library/examples/data/wipe.hapi.txt"),
@@ -66,9 +66,9 @@ def prepare(folder):
         ("loop.csv", "tests/data/loop.csv"),
     ):
         shutil.copy(SOURCE / source, folder / name)
-    # A straight stroke of 20 samples in microseconds and millimetres, with a force and quaternions.
+    # Recording of a straight stroke of 20 samples, in microseconds and millimetres, with a force and quaternions.
     stroke = "".join(f"{10000 * i},1,0,0,{i / 20},0,0,0,0,0,1\n" for i in range(20))
-    # A mass of 0.1 kg that a force of 1 N moves at 1 Hz, with a resolution of 10 um.
+    # Log of a mass of 0.1 kg that a force of 1 N moves at 1 Hz. Positions have a resolution of 10 um.
     turns = [math.cos(math.tau * i / 100) for i in range(200)]
     log = "".join(
         f"{i / 100},{turn},{round(2.533e4 * (1 - turn)) * 1e-5}\n" for i, turn in enumerate(turns)
@@ -109,8 +109,8 @@ def prepare(folder):
 
 
 def shortened(command, folder):
-    """Returns a command's words with shorter runs. Patterns are replaced by the files that they match, in the source
-    tree or in the folder."""
+    """Returns the words of a command, with options that make its runs shorter. A word with "*" is replaced by the files
+    that match it, in the source tree or in the folder."""
     given = list(command.words[1:])
     if (
         given[0] == "plot" and "--from" in given
@@ -125,7 +125,7 @@ def shortened(command, folder):
     ):
         shorter = [*shorter, "--algorithms", "shaped_stiffness"]  # for studies over all laws
     if "--errors" in given:
-        # The errors use half of this spacing.
+        # --errors also runs at half of this spacing.
         shorter = [*shorter, "--set", "environment.spacing_m=4e-4"]
     if "--resolution" in given:
         shorter = [word for word in shorter if word not in ("--resolution", "0.5")]
@@ -154,7 +154,8 @@ class Commands(unittest.TestCase):
         prepare(prepared)
         for manual in MANUALS:
             if manual.file.is_relative_to(RECORD) or manual.file.is_relative_to(TUTORIALS):
-                # Records that take minutes; tutorials_test.py runs these commands completely.
+                # Skips two kinds of manuals: records, whose commands take minutes, and tutorials, whose commands
+                # tutorials_test.py runs.
                 continue
             folder = shutil.copytree(prepared, scratch_folder(self), dirs_exist_ok=True)
             for command in manual.commands():
@@ -236,7 +237,9 @@ class Generated(unittest.TestCase):
                 )
 
     def test_controls_and_pairs_are_about_the_verdicts_on_record(self):
-        """A wrong law or a pair of assumptions says nothing about a rule or a number that has changed since."""
+        """Checks that the verdicts in controls.json and pairs.json were compared with the current verdicts and numbers
+        of the ledger. A wrong law or a pair of assumptions says nothing about a verdict that has changed since.
+        """
         ledger = {claim["id"]: claim for claim in record("claims")["claims"]}
         faults = json.loads((SOURCE / "tests/mutants/controls.json").read_text(encoding="utf-8"))
         controls = record("controls")["controls"]
@@ -289,7 +292,7 @@ class Generated(unittest.TestCase):
 
 class Examples(unittest.TestCase):
     def test_the_force_on_a_sphere_by_python_is_that_of_the_sphere(self):
-        """The force on a sphere is K times the depth, along the line between the centres."""
+        """Checks that the force on a sphere is K times the depth, along the line between the centres."""
         folder = scratch_folder(self)
         must(
             sys.executable,
@@ -304,5 +307,5 @@ class Examples(unittest.TestCase):
         distance = np.linalg.norm(position, axis=1, keepdims=True)
         known = 20000 * np.maximum(0, 0.0025 - distance) * position / distance
         self.assertGreater(np.count_nonzero(known[:, 2]), 500)
-        # A few rounding errors of 2.5 mm, times K.
+        # The tolerance is a few rounding errors of 2.5 mm, times K.
         self.assertLess(np.abs(force - known).max(), 1e-13)

@@ -1,4 +1,4 @@
-"""Checks of a figure from the contents of its axes, and of its size on the sheet."""
+"""Checks a figure by the contents of its axes and by its size on the sheet."""
 import itertools
 
 import numpy as np
@@ -6,12 +6,13 @@ import numpy as np
 from hapbench_style import fix_layout
 
 SMALLEST, LARGEST = 7, 9  # smallest and largest font size [points]
-# Tolerance for texts that leave the figure or overlap another text [pixels]; 100 pixels are an inch.
+# Largest overlap of two texts, or of a text with the border of the figure [pixels]; 100 pixels are an inch.
 SLACK = 2.0
 
 
 def texts_of(figure):
-    """Returns the visible, non-empty texts of the figure and its parts: titles, labels, and tick labels within view."""
+    """Returns the visible, non-empty texts of the figure and of its subfigures: titles, labels, and the tick labels
+    within view."""
     found = []
     for part in (figure, *figure.subfigs):
         found += [*part.texts, *(text for legend in part.legends for text in legend.get_texts())]
@@ -34,7 +35,7 @@ def texts_of(figure):
 
 
 def legend_labels(figure):
-    """Returns the entries of the legends of the figure, its parts and its axes."""
+    """Returns the labels in all legends of the figure, of its subfigures and of its axes."""
     parts = [figure, *figure.subfigs, *figure.axes]
     legends = [one for part in parts for one in getattr(part, "legends", [])]
     legends += [ax.get_legend() for ax in figure.axes if ax.get_legend()]
@@ -42,13 +43,13 @@ def legend_labels(figure):
 
 
 def curves_of(ax, marker):
-    """Returns the points of the curves with a marker."""
+    """Returns the points of each curve that is drawn with this marker."""
     return [line.get_xydata() for line in ax.lines if line.get_marker() == marker]
 
 
 def assert_fits(test, figure, sheet):
-    """Asserts that the figure has the size of the sheet, fonts of 7 to 9 pt, no text outside of the figure or over
-    another text, no legend over axes, and a unit on every numeric axis."""
+    """Asserts that the figure has the size of the sheet and fonts of 7 to 9 pt. No text may leave the figure or overlap
+    another text, no legend may overlap axes, and every numeric axis must have a unit."""
     fix_layout(figure)
     test.assertAlmostEqual(figure.get_figwidth(), sheet.width)
     if sheet.height:
@@ -82,7 +83,7 @@ def assert_fits(test, figure, sheet):
 
 
 def has_numbers(along):
-    """Returns True unless the tick labels are texts."""
+    """Returns True if the tick labels of an axis are numbers."""
     labels = [tick.get_text().strip() for tick in along.get_ticklabels()]
     return not any(
         any(letter.isalpha() for letter in label.replace("mathdefault", "")) for label in labels

@@ -1,4 +1,4 @@
-"""scripts/figures on newly computed results."""
+"""Tests scripts/figures on newly computed results."""
 import json
 import os
 import re
@@ -11,14 +11,15 @@ from unittest import mock
 
 from fixture import PROGRAM, SOURCE, in_process, must, ran, scratch_folder
 
-# In scripts/python, which the fixture adds to the path.
+# The package is in scripts/python, which the fixture adds to the path.
 from hapbench_figures import __main__ as command
 
 SVG = "{http://www.w3.org/2000/svg}"
 REFERENCE = SOURCE / "results" / "reference"
 RECORD = REFERENCE / "figures"
 LARGEST = 65_000  # largest size of a stored figure of the thesis [bytes]
-# Short runs of the same scenarios, because the test is about drawing. Their outcomes need not be the expected outcomes.
+# Scenarios and settings that make their runs short, because the test is about drawing. The outcomes of the runs need
+# not be the expected outcomes.
 RUNS = (
     ("task[13]*", ["time.duration_s=1", "record.every=8"]),
     ("task2*", ["time.duration_s=7", "record.every=8"]),  # includes a tap beyond 2 N
@@ -33,8 +34,8 @@ RUNS = (
         ["hand.trials=1", "hand.task.time_limit_s=2", "hand.task.targets_per_place=1"],
     ),
 )
-# These figures together use every drawing function: subsampled marks, shaded areas, arrows, rasterised marks, limits.
-# The command draws them in every format; the other figures are drawn as SVG only, which takes a third of the time.
+# Figures that together use every drawing function: subsampled marks, shaded areas, arrows, rasterised marks, limits.
+# The command draws them in every format. All other figures are drawn only as SVG, which takes a third of the time.
 DRAWN_BY_COMMAND = "A.5,C.3,D.7,stability-z_width"
 hapbench = partial(must, PROGRAM, statuses=(0, 3))
 figures = partial(ran, SOURCE / "scripts" / "figures")
@@ -45,8 +46,8 @@ def make_results(directory):
     for pattern, overrides in RUNS:
         scenarios = sorted((SOURCE / "scenarios" / "library" / "thesis").glob(f"{pattern}.json"))
         assert scenarios, pattern
-        # hapbench makes a subdirectory for each scenario only if it runs several scenarios. For a single scenario, this
-        # line names the subdirectory.
+        # hapbench creates a subdirectory for each scenario only if it runs several scenarios. For a single scenario,
+        # the path here includes the subdirectory.
         out = directory / "thesis" / (scenarios[0].stem if len(scenarios) == 1 else "")
         hapbench("run", *scenarios, *(f"--set={text}" for text in overrides), "--out", out)
     name = "corner_continuous_normal_projection"
@@ -81,7 +82,7 @@ def make_results(directory):
         hapbench(verb, study, *words, "--out", directory / study)
     make_accuracy(directory / "accuracy")
     shutil.copy(REFERENCE / "claims.json", directory)
-    # The load of the loop is drawn if step times were measured.
+    # With this file, the load of the loop is drawn.
     loop = directory / "step_latency" / "task2_rotate_signed_distance"
     loop.mkdir(parents=True)
     (loop / "timing.json").write_text(
@@ -90,8 +91,8 @@ def make_results(directory):
 
 
 def make_accuracy(directory):
-    """Writes results in the form of hapbench_accuracy, whose runs would take longer than all other tests. Each setting
-    takes twice the time and has half the error of the previous setting, except the last."""
+    """Writes results in the form of hapbench_accuracy, whose runs would take longer than all other tests. Along a
+    series of settings, the time doubles and the error halves with each setting, except the last."""
     directory.mkdir()
     columns = (
         "error_rms_m",
@@ -145,7 +146,7 @@ class Figures(unittest.TestCase):
         cls.directory = scratch_folder(cls)
         cls.results, cls.drawn = cls.directory / "results", cls.directory / "figures"
         make_results(cls.results)
-        # The program finds the knees.
+        # The figures call the program to find knees.
         program = mock.patch.dict(os.environ, {"HAPBENCH_PROGRAM": str(PROGRAM)})
         program.start()
         cls.addClassCleanup(program.stop)
@@ -209,7 +210,7 @@ class Figures(unittest.TestCase):
                     ),
                     known,
                 )
-                # Empty axes have about ten paths and no text besides the numbers. Dots of one colour are one path.
+                # Empty axes have about ten paths and only numbers as text. All dots of one colour are one path.
                 self.assertGreater(sum(1 for _ in root.iter(f"{SVG}path")), 12)
                 self.assertRegex(
                     " ".join(root.itertext()),

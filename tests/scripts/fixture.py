@@ -29,8 +29,8 @@ sys.path.insert(0, str(SOURCE / "scripts" / "python"))
 
 
 def ran(*words, cwd=None, env=ENVIRONMENT, **environment):
-    """Runs a command and returns the finished process with its output, without progress lines, which depend on time.
-    `environment`: variables in addition to `env`."""
+    """Runs a command and returns the finished process. Progress lines, which depend on time, are removed from its
+    standard error. `environment`: variables in addition to `env`."""
     done = subprocess.run(
         [*map(str, words)],
         cwd=cwd,
@@ -49,7 +49,7 @@ def without_progress(text):
 
 
 def must(*words, statuses=(0,), **options):
-    """Returns the standard output of a command, which must end with one of the statuses."""
+    """Runs a command and returns its standard output. Its exit status must be one of `statuses`."""
     done = ran(*words, **options)
     assert (
         done.returncode in statuses
@@ -58,7 +58,8 @@ def must(*words, statuses=(0,), **options):
 
 
 def hapbench(*words, expected=0):
-    """Returns the standard output of the program; if a status other than 0 is expected, its standard error."""
+    """Runs the program and returns its standard output. If the `expected` exit status is not 0, returns its standard
+    error."""
     done = ran(PROGRAM, *words, LC_ALL="C")
     assert done.returncode == expected, (words, done.returncode, done.stderr)
     return done.stderr if expected else done.stdout
@@ -77,7 +78,7 @@ def in_process(command, *words, **environment):
 
 
 def assert_whole(test, page):
-    """Asserts that a page refers to no other file, and that each of its links has exactly one target in the page."""
+    """Asserts that a page refers to no other file, and that each link within the page has exactly one target."""
     for reference in re.findall(r'(?:src|href)="([^"]*)"', page):
         test.assertRegex(reference, r"^(#|data:)")
     names = re.findall(r'\bid="([^"]+)"', page)
@@ -86,8 +87,8 @@ def assert_whole(test, page):
 
 
 def scratch_folder(of):
-    """Returns a folder that is deleted after a test, a class of tests (`of` is the class) or a module (`of` is
-    unittest)."""
+    """Returns a new folder. It is deleted after a test (`of` is the test), after the tests of a class (`of` is the
+    class), or after a module (`of` is unittest)."""
     scratch = tempfile.TemporaryDirectory(prefix="hapbench-test-")
     add = {unittest: unittest.addModuleCleanup}.get(of) or (
         of.addClassCleanup if isinstance(of, type) else of.addCleanup

@@ -1,4 +1,5 @@
-"""Commands that write the same files into one folder at the same time: one succeeds, the others are refused."""
+"""Tests commands that write the same files into one folder at the same time: one command succeeds, and the others are
+refused."""
 import fcntl
 import os
 import struct
@@ -9,7 +10,8 @@ from pathlib import Path
 
 from fixture import ENVIRONMENT, PROGRAM
 
-# Arguments of each command on a small scene, the name of its lock, and a file of its results. OUT is the folder.
+# For each command: its arguments on a small scene, the name of its lock, and a file of its results. OUT stands for the
+# output folder.
 COMMANDS = {
     "run": (["run", "poke_plane", "--out", "OUT"], "run", "summary.json"),
     "compare": (
@@ -102,7 +104,7 @@ class Folders(unittest.TestCase):
             for attempt in range(3):
                 folder = self.root / f"race_{name}_{attempt}"
                 ends = self.ends_of([self.start(name, folder) for _ in range(3)])
-                # Short commands may run one after the other; then several succeed.
+                # Short commands may happen to run one after the other. In that case several succeed.
                 self.assertIn(0, [status for status, _ in ends], (name, ends))
                 for status, text in ends:
                     self.assertTrue(status == 0 or self.refused(text, folder), (name, text))
@@ -160,7 +162,9 @@ class Folders(unittest.TestCase):
         self.assertEqual(self.ends_of([comparison])[0][0], 0)
 
     def test_beside_reproduce_only_its_own_runs_are_refused(self):
-        """scripts/reproduce runs studies into folders beside the folders of reproduce."""
+        """Checks that a run into another folder beside those of a running `reproduce` succeeds, and that a run into one
+        of its folders is refused. scripts/reproduce writes studies beside the folders of `reproduce`.
+        """
         folder = self.root / "both"
         reproduce = subprocess.Popen(
             [str(PROGRAM), "reproduce", "--jobs", "1", "--out", folder],

@@ -1,5 +1,5 @@
-"""A headless Chromium for tests, and the requirements for every page. HAPBENCH_CHROMIUM names the browser; chromedriver
-is in the path (scripts/setup --browser)."""
+"""Starts a headless Chromium for tests, and checks requirements that hold for every page. HAPBENCH_CHROMIUM names the
+browser. chromedriver must be in PATH (scripts/setup --browser installs it)."""
 import json
 import os
 import time
@@ -38,7 +38,7 @@ PALE = """(() => {
 
 
 def started(program):
-    """Starts a browser without network access."""
+    """Returns a browser without network access. `program`: file of the browser."""
     options = webdriver.ChromeOptions()
     options.binary_location = program
     # The sandbox does not start for root, and the page is trusted.
@@ -59,11 +59,11 @@ def started(program):
 
 
 class Page(unittest.TestCase):
-    """Tests of one page, opened from its file without network access."""
+    """Base class of the tests of one page, which is opened as a file without network access."""
 
     @classmethod
     def show(cls, file):
-        """Opens the file for the tests of a module; called by setUpModule."""
+        """Opens the file of the page for all tests of a module. setUpModule calls this function."""
         cls.url, cls.driver = file.as_uri(), started(os.environ["HAPBENCH_CHROMIUM"])
         unittest.addModuleCleanup(cls.driver.quit)
 
@@ -77,7 +77,7 @@ class Page(unittest.TestCase):
         self.assertEqual(self.complaints(), [])
 
     def call(self, method, **parameters):
-        """Calls a method of the DevTools protocol."""
+        """Calls a method of the browser's DevTools protocol."""
         return self.driver.execute_cdp_cmd(method, parameters)
 
     def open(self, hash_=""):
@@ -96,11 +96,11 @@ class Page(unittest.TestCase):
             time.sleep(0.05)
 
     def js(self, expression):
-        """Evaluates an expression and returns its value; awaits a promise."""
+        """Evaluates a JavaScript expression and returns its value; awaits a promise."""
         return self.driver.execute_script(f"return ({expression})")
 
     def complaints(self):
-        """Returns the messages since the last call: console and browser messages except console.log, uncaught
+        """Returns the messages since the last call: messages of console and browser except console.log, uncaught
         exceptions, and requests for other files."""
         # Ignores console.log (INFO, like console.info) and browser messages of the lowest level.
         found = [
@@ -143,7 +143,7 @@ class Page(unittest.TestCase):
         )
 
     def click(self, selector):
-        """Clicks with the mouse, because browsers allow sound only after a click."""
+        """Clicks an element with the mouse; browsers allow sound only after a click."""
         x, y = self.centre(selector)
         for kind in ("mousePressed", "mouseReleased"):
             self.mouse(kind, x, y, button="left", clickCount=1)
@@ -155,7 +155,8 @@ class Page(unittest.TestCase):
         )
 
     def check_every_page(self):
-        """The page fits on a telephone, every control has a name, and every text is legible in both themes."""
+        """Checks that the page fits on a telephone, that every control has a name, and that every text is legible in
+        both themes."""
         self.assertEqual(self.js(UNNAMED), [])
         for dark in (True, False):
             self.dark(dark)

@@ -1,5 +1,5 @@
-"""Synthetic logs of identifications, and a check of the reported parameters. As a script it is a test: the study of 200
-logs, whose table is in device_model/FIT_METHOD.md."""
+"""Creates synthetic logs for tests of the identification, and checks the parameters that it reports. As a script, this
+file runs the study of 200 logs whose table is in device_model/FIT_METHOD.md."""
 import os
 import sys
 
@@ -17,7 +17,7 @@ PARAMETERS = NAMES[:5]
 
 
 def synthetic(seed):
-    """Returns (log, true values of NAMES, description)."""
+    """Returns (log, true values in the order of NAMES, description of the log) for a seed."""
     random = np.random.default_rng(seed)
     kind = list(KINDS)[seed % 3]
     rate, duration = random.choice([500.0, 1000.0, 2000.0, 4000.0]), float(
@@ -52,8 +52,9 @@ def synthetic(seed):
 
 
 def judged(seed):
-    """Judges the fit of a log. Returns for each parameter True, False, or None if the fit does not report it, the ratio
-    of the residual to the residual of the model with true parameters, and the time [s]."""
+    """Fits the log of a seed. Returns for each parameter True if its interval contains the true value, otherwise False;
+    None if the fit does not report the parameter. Also returns the rms residual divided by the rms residual of the true
+    parameters, and the processor time [s]."""
     log, truth, what = synthetic(seed)
     begun = sum(os.times()[:3])
     try:
@@ -86,7 +87,8 @@ def judged(seed):
 
 
 def table(ones):
-    """Returns the rows of a Markdown table: fraction of correct reported values by kind of signal, and in total."""
+    """Returns the lines of a Markdown table by kind of signal and in total. For each parameter it has the fraction of
+    the reported intervals that contain the true value. `ones`: results of judged()."""
     rows = [
         "| logs | m | b | c | delay | offset | refused | not told | largest residual / at the "
         "truth | CPU, mean, largest |",

@@ -1,4 +1,4 @@
-"""`hapbench import device` on logs of an independent simulator."""
+"""Tests `hapbench import device` on logs of an independent simulator."""
 import json
 import unittest
 from functools import partial
@@ -24,9 +24,9 @@ HANDLE = (M, B, C, DELAY_S, 0.0, 0.0)
 
 
 def played(time, force, finer, spring=0.0, stribeck=(0.0, 1.0)):
-    """Returns positions at `time` from small steps with the mean speed of each step; dry friction stops the handle
-    within a step. `stribeck`: relative increase of dry friction at rest, and the speed up to which friction is
-    increased [m/s]."""
+    """Returns positions at `time`, integrated in small steps with the mean speed of each step. Dry friction stops the
+    handle within a step. `finer`: number of small steps per sample. `stribeck`: (relative increase of dry friction at
+    rest, speed up to which friction is increased [m/s])."""
     x = v = 0.0
     trajectory = [x]
     arrivals = time + DELAY_S
@@ -78,7 +78,7 @@ class Logs(unittest.TestCase):
         return error
 
     def assert_holds(self, result):
-        # The mean interval of a clock with jitter is not 1 ms.
+        # The mean interval of a clock with jitter differs from 1 ms.
         for name, true in {**TRUE, "delay_samples": DELAY_S / result["step_s"]}.items():
             low, high = result[name]["interval"]
             self.assertTrue(low <= true <= high, f"{name}: {true} in {low} ... {high}")
@@ -112,7 +112,7 @@ class Identify(Logs):
         )
         self.assertTrue((self.root / "device.svg").read_text().startswith("<?xml"))
         self.assertEqual(run("validate", self.root / "device.json").returncode, 0)
-        # A scene with another step converts the delay, which is in seconds, to its own samples.
+        # The delay of the device is in seconds, so that a scene with another step can convert it to its own samples.
         self.assertAlmostEqual(
             device["delay_s"], 1e-3 * result["delay_samples"]["value"], delta=1e-8
         )
@@ -166,7 +166,7 @@ class Identify(Logs):
             time % 0.5 < 0.1,
             1.0,
             0.0
-            # The force pushes in one direction, so that friction and a constant force cannot be distinguished.
+            # The force pushes in one direction only, so that friction cannot be distinguished from a constant force.
         )
         result, warned = self.identify(
             self.log(
@@ -251,12 +251,12 @@ class Identify(Logs):
                 self.log(position * trajectory, time * self.time, force * self.force)
             )
             self.assertIn(f"it is a handle of 0.12 kg: --scale {scale}", output)
-        # The advice keeps the given scale.
+        # The advice must include the scale that the user has given.
         output = self.refused(
             self.log(1e3 * trajectory, 1e3 * self.time), "--scale", "position=1e-3"
         )
         self.assertIn("--scale position=0.001,time=0.001", output)
-        # A handle with a plausible mass is accepted with a warning.
+        # A handle with a plausible mass is accepted, but with a warning.
         _, warned = self.identify(self.log(trajectory, force=self.force / 9.80665e-3))
         self.assertIn("In s, gf, m it is a handle of 0.12 kg: --scale force=0.00980665", warned)
 
@@ -328,7 +328,7 @@ class Identify(Logs):
 
 
 class Doubt(Logs):
-    """Logs that do not, or only approximately, follow the model."""
+    """Tests logs that follow the model only approximately or not at all."""
 
     def setUp(self):
         self.random = np.random.default_rng(5)
@@ -402,7 +402,7 @@ class Design(unittest.TestCase):
                 time, values = design(kind, force, travel, 1000.0, 3.0, mass)
                 self.assertLessEqual(np.abs(values).max(), force * (1 + 1e-12), kind)
                 self.assertGreater(np.abs(values).max(), 0.1 * force, kind)
-                # A free mass under held forces by the trapezoidal rule, which is exact in this case.
+                # Free mass under held forces by the trapezoidal rule, which is exact for held forces.
                 speed = np.concatenate([[0.0], np.cumsum(values[:-1])]) * 1e-3 / mass
                 position = np.concatenate([[0.0], np.cumsum(0.5 * (speed[1:] + speed[:-1]))]) * 1e-3
                 self.assertLessEqual(np.ptp(position), travel * (1 + 1e-9), kind)
@@ -415,7 +415,7 @@ class Design(unittest.TestCase):
             for mass, force, travel in ((0.06, 3.0, 0.03), (0.1, 2.0, 0.08), (0.2, 1.0, 0.1)):
                 with self.subTest(kind=kind, mass=mass):
                     time, values = design(kind, force, travel, 1000.0, 4.0, mass)
-                    # Semi-implicit steps of 0.1 ms for all frictions at once, with a delay of two samples.
+                    # Integrates semi-implicit steps of 0.1 ms for all frictions at once, with a delay of two samples.
                     x, v, low, high = np.zeros((4, len(dry)))
                     grip = 1e-4 * dry * np.abs(values).max() / mass
                     for push in np.repeat(np.concatenate([[0.0, 0.0], values[:-2]]), 10).tolist():
@@ -423,7 +423,7 @@ class Design(unittest.TestCase):
                         v = np.sign(free) * np.maximum(np.abs(free) - grip, 0.0)
                         x = x + 1e-4 * v
                         low, high = np.minimum(low, x), np.maximum(high, x)
-                    # Steps of 0.1 ms overestimate the travel by up to 0.5 % of a stroke.
+                    # Steps of 0.1 ms overestimate the travel by up to 0.5 % of the travel.
                     self.assertLessEqual(high.max() - low.min(), 1.005 * travel)
 
     def test_travel_that_limits_the_force_is_reported(self):

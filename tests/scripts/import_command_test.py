@@ -1,4 +1,4 @@
-"""The command `import stroke`: files, pipes, presets, Ctrl-C and output."""
+"""Tests the command `import stroke`: files, pipes, presets, Ctrl-C and output."""
 import json
 import os
 import shlex
@@ -26,7 +26,8 @@ class Command(Given):
             "new", "stroke", "--from", self.root / "stroke.csv", "--out", self.root / "stroke.json"
         )
         hapbench("validate", self.root / "stroke.json")
-        # With a shift of a millimetre, the edge of the tool is deeper than its half width: went_through.
+        # With a shift of a millimetre, the edge of the tool is deeper in the surface than half of its width. The
+        # outcome is then went_through.
         done = json.loads(
             hapbench(
                 "run",
@@ -147,14 +148,15 @@ class Command(Given):
                 stderr=subprocess.PIPE,
                 env=ENVIRONMENT,
                 text=True,
-                # As started from a terminal, which does not ignore Ctrl-C.
+                # Restores the default action of SIGINT, as for a process that a terminal starts.
                 preexec_fn=lambda: signals.signal(signals.SIGINT, signals.SIG_DFL),
             ) as process:
                 time.sleep(seconds)
                 is_over = process.poll() is not None
                 process.send_signal(signals.SIGINT)
                 errors = process.communicate()[1]
-                # A shell reports both statuses as 130; right after the start, no handler is installed.
+                # A shell reports either status as 130. Directly after the start, the handler of Ctrl-C is not yet
+                # installed, and the signal itself ends the process.
                 self.assertIn(process.returncode, (130, -signals.SIGINT), errors)
                 self.assertNotIn("Traceback", errors)
                 self.assertLessEqual(errors.count("\n"), 1, errors)

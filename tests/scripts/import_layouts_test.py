@@ -1,4 +1,4 @@
-"""Recordings of other programs: columns, texts, units, clocks and held rows."""
+"""Tests `import stroke` with recordings of other programs: columns, texts, units, clocks and held rows."""
 from datetime import datetime, timedelta
 from types import SimpleNamespace
 
@@ -11,8 +11,8 @@ from hapbench_identify.log import read_log
 
 
 class Layouts(Given):
-    """Recordings of other programs are read with their intended meaning; unclear recordings are refused or cause a
-    note."""
+    """Tests that recordings of other programs are read with their intended meaning. Unclear recordings must be refused
+    or cause a note."""
 
     TIME = 0.002 * np.arange(100)
     POSITIONS = moved(TIME)
@@ -30,7 +30,8 @@ class Layouts(Given):
         return "\n".join(found["warnings"]), found
 
     def assert_tip(self, data, columns, warned="", **options):
-        """Asserts that the tool points in the true direction."""
+        """Asserts that the imported tool points in the true direction, and that the warnings contain the text
+        `warned`."""
         stroke, found = self.report(data, f"time=t,position=x,{columns}", **options)
         down = [0, 0, -1]
         np.testing.assert_allclose(stroke.turn.apply(down), self.TURNS.apply(down), atol=1e-6)
@@ -98,7 +99,7 @@ class Layouts(Given):
         self.assert_tip(first, "orientation=qx")
         self.assert_tip(last, "qw=qw,qx=qx,qy=qy,qz=qz")
         self.assert_tip(last, "orientation=5", orientation="quat_xyzw")
-        # An order that contradicts the names of the columns.
+        # The option orientation contradicts the order in the names of the columns.
         contradicted = "was read by the names of its columns (qx, qy, qz, qw)"
         self.assert_tip(last, "orientation=qx", contradicted, orientation="quat_wxyz")
         self.assertIn(
@@ -111,7 +112,7 @@ class Layouts(Given):
             "their names say otherwise",
             self.report(last, "time=t,position=x,qw=qx,qx=qy,qy=qz,qz=qw")[1]["warnings"][0],
         )
-        # Columns that do not form an orientation.
+        # The columns do not form an orientation.
         for columns in ("orientation=qx", "qw=qw,qx=qx,qy=qy,qz=qz"):
             self.assertIn(
                 "is not used: --orientation none takes no columns",
@@ -201,7 +202,8 @@ class Layouts(Given):
             warned, _ = self.assert_positions(data, columns)
             self.assertIn(warning, warned)
             self.assertEqual(bool(warning), bool(warned), warned)
-        # Groups and components of which neither names a column alone are joined.
+        # The header has two lines: groups and components. The names of columns join both lines, because neither line
+        # names every column differently.
         named = "Tip,Tip,Tip,Hand,Hand,Hand\nx,y,z,x,y,z\n"
         data = (
             "Time,"
@@ -211,12 +213,12 @@ class Layouts(Given):
         warned, found = self.assert_positions(data, "time=Time,position=Tip")
         self.assertIn('join them, as in "Hand.z"', warned)
         self.assertEqual(self.columns(found, "position"), [2, 3, 4])
-        # Units that are not known are asked for.
+        # For an unknown unit, the message requests the option --scale.
         self.assertIn(
             'the unit "counts" is unknown: --scale position=...',
             self.refusal("t,x,y,z\ns,counts,counts,counts\n" + rows, "time=t,position=x"),
         )
-        # Below a header are numbers, or it is one line.
+        # A header of several lines needs numbers below it. Otherwise only the first line is a header.
         self.assertIn(
             'line 2: column 1 t: got "a"; allowed: a finite number',
             self.refusal("t,x,y,z\na,b,c,d\ne,f,g,h\n", "time=t,position=x"),
@@ -515,7 +517,8 @@ class Layouts(Given):
             self.assertAlmostEqual(found["rate_Hz"], 1000 / rows, delta=1e-6)
             np.testing.assert_allclose(stroke.position, moved(time[::rows]), atol=1e-9)
             self.assertIn(f"each pose is repeated in {rows} rows", found["warnings"][0])
-        # The rates are not multiples of each other, one row seems too fast, and the tool rests for some time.
+        # The rate of the log is not a multiple of the rate of the measurement. One row alone would seem too fast, and
+        # the tool rests for some time.
         held = np.floor(60 * time) / 60
         _, found = self.report(table("t,x,y,z", time, 40 * moved(held)), "time=t,position=x")
         self.assertAlmostEqual(found["rows_per_held_sample"], 1000 / 60, delta=0.1)
@@ -527,14 +530,14 @@ class Layouts(Given):
             table("t,x,y,z", time, moved(held)), "time=t,position=x", set="held_rows=keep"
         )
         self.assertEqual(len(kept.time), 1200)
-        # A clock with jitter: samples of 3, 4 and 5 rows.
+        # A clock with jitter: samples are repeated in 3, 4 or 5 rows.
         lengths = np.random.default_rng(7).choice([3, 4, 5], 300, p=[0.2, 0.6, 0.2])
         held = time[np.repeat(np.cumsum(lengths) - lengths, lengths)[:1200].clip(max=1199)]
         _, found = self.report(
             table("t,x,y,z", time[: len(held)], moved(held)), "time=t,position=x"
         )
         self.assertAlmostEqual(found["rows_per_held_sample"], 4.0, delta=0.1)
-        # Coarse numbers, and a constant speed in steps, are not held samples.
+        # Neither coarse positions nor a constant speed in encoder steps are held samples.
         for positions in (np.round(moved(time), 4), np.round(np.outer(time, [0.0025, 0, 0]), 5)):
             _, found = self.report(table("t,x,y,z", time, positions), "time=t,position=x")
             self.assertEqual((found["rows_per_held_sample"], found["samples"]), (1, 1200))

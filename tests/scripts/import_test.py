@@ -1,4 +1,4 @@
-"""`hapbench import stroke` against numpy and scipy."""
+"""Tests `hapbench import stroke` against numpy and scipy."""
 import json
 import math
 import random
@@ -45,7 +45,7 @@ class Recordings(Given):
             self.assertAlmostEqual(
                 report["smoothing"]["position_rms_m"], np.sqrt(np.mean(moved**2)), delta=1e-13
             )
-            # The components, with consistent sign, are smoothed and normalised again.
+            # The reference smooths the components of quaternions with consistent sign, and normalises them again.
             quaternions = Slerp(time, turns)(np.minimum(grid, time[-1])).as_quat()
             signs = np.cumprod(
                 np.sign(np.concatenate([[1], np.sum(quaternions[1:] * quaternions[:-1], axis=1)]))
@@ -88,7 +88,7 @@ class Recordings(Given):
             "in other units? (--scale time=1e-06)",
         )
         self.assertEqual(self.refusal(even, scale="time=1e-6"), "")
-        # An interval of four times the median is not a gap, but it is longer than allowed.
+        # An interval of four median intervals is not a gap by its ratio, but it is longer than max_gap.
         slow = "0,0,0,0\n0.2,0.001,0,0\n0.4,0.002,0,0\n1.2,0.003,0,0\n"
         self.assertEqual(
             self.refusal(slow),
@@ -97,7 +97,7 @@ class Recordings(Given):
         self.assertEqual(self.report(slow, max_gap=0.8)[1]["gaps"], 0)
 
     def test_the_mean_direction_of_the_tip_shows_a_wrong_order(self):
-        # Two rotations about x, by 0.2 +- 0.1 rad, with w first.
+        # Two orientations: rotations about x by 0.1 and 0.3 rad, with w first.
         rows = "".join(
             f"{0.01 * i},0,0,0,{math.cos(a / 2)!s},{math.sin(a / 2)!s},0,0\n"
             for i, a in enumerate((0.1, 0.3))

@@ -1,5 +1,5 @@
-"""LaTeX compiles the tables of --table latex. Needs LaTeX with booktabs and siunitx (scripts/setup --check), so it is
-no test of ctest: scripts/check latex runs it."""
+"""Tests that LaTeX compiles the tables of --table latex. Needs LaTeX with booktabs and siunitx (scripts/setup --check).
+Because of this requirement, scripts/check latex runs this test, and ctest does not."""
 import re
 import unittest
 

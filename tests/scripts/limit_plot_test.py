@@ -1,4 +1,4 @@
-"""`hapbench plot` of limits, of a tuning and of a convergence study."""
+"""Tests `hapbench plot` of limits, of a tuning and of a convergence study."""
 import csv
 
 import numpy as np
@@ -23,7 +23,7 @@ OVER = "rendering.damping_N_s_per_m"
 
 
 def rewrite(file, change):
-    """Changes each row of a table."""
+    """Calls change(row) for each row of a table and writes the table again."""
     rows = read_records(file)
     for row in rows:
         change(row)
@@ -62,7 +62,7 @@ class Limits(Given):
             0.1,
         )
         self.assert_plot_shows(limit, "simulated limit", "stiffness K [N/m]", "mean")
-        # Without a linear limit, its closed form is not drawn.
+        # If the loop has no theoretical limit, the closed formulas for stability are not drawn.
         rubbed = made(
             "rubbed",
             "limit",
@@ -109,8 +109,8 @@ class Limits(Given):
         self.assertIn("nothing to draw: no level has an error above 0", plotted(folder, expected=2))
 
     def test_the_program_finds_knees(self):
-        """In logarithms to base 10, the points are (0, 0), (1, -3), (2, -3.5), (3, -4): the second point is farthest
-        below the chord."""
+        """Checks that the program finds the knee of a front. In logarithms to base 10, the points are (0, 0), (1, -3),
+        (2, -3.5), (3, -4): the second point is farthest below the chord between the ends."""
         bent = hapbench("plot", "--knee", "1:1", "1000:1e-4", "10:1e-3", "100:3.2e-4")
         self.assertEqual(bent, "2\n")
         self.assertEqual(
@@ -190,7 +190,7 @@ class Limits(Given):
         )
 
     def over_field(self):
-        """Computes limits of a user's device and of a preset over the damping."""
+        """Computes limits on a user's device and on a preset, over the damping. Returns the folder."""
         own = self.root / "mine.json"
         own.write_text('{"type": "impedance", "handle_mass_kg": 0.1, "viscous_N_s_per_m": 0.5}')
         return made(
@@ -241,7 +241,8 @@ class Limits(Given):
                 device,
             )
         colours = {to_hex(line.get_color()) for line in ax.lines if line.get_marker() == "s"}
-        self.assertEqual(len(colours), 2)  # one colour for each device, shared by its variants
+        # Variants of a device have the same colour, so that there are two colours.
+        self.assertEqual(len(colours), 2)
         (published,) = [
             line
             for line in ax.lines
@@ -264,7 +265,7 @@ class Limits(Given):
         figure = draw_study(folder, SHEETS["double"])
         self.assertIn(BEYOND_LABEL, legend_labels(figure))
         self.assertNotIn("simulated limit", legend_labels(figure))
-        # Variants share the marks of their device. The marks of two devices are in separate rows.
+        # The marks of a device and of its variants are one line. The marks of two devices are in separate rows.
         (ax,) = figure.axes
         marks = [line for line in ax.lines if line.get_marker() == "^"]
         devices = list(dict.fromkeys(device_of(row) for row in rows))
@@ -301,7 +302,8 @@ class Limits(Given):
         plt.close(figure)
 
     def test_a_field_of_texts_is_an_axis(self):
-        """Limits with a device and without; the values have the order of the table."""
+        """Checks limits over a field of texts, with and without devices. The texts on the axis have the order of the
+        table."""
         folder = self.over_field()
         names = {}
 

@@ -1,4 +1,5 @@
-"""Tests the live page in a real Chromium: the program computes the same results for the same motion of the hand."""
+"""Tests the live page in a real Chromium. For the same motion of the hand, page and program must compute the same
+results."""
 import json
 import re
 import time
@@ -19,7 +20,7 @@ def setUpModule():
     page = folder / "live.html"
     made = ran(SOURCE / "scripts" / "live" / "make", "--out", page)
     if "could not" in made.stderr:
-        # Packages that are not available on this machine.
+        # A package is not available on this machine.
         raise unittest.SkipTest(made.stderr.strip())
     assert made.returncode == 0, made.stderr
     Live.show(page)
@@ -45,13 +46,14 @@ class Live(Page):
         )
 
     def assert_program_agrees(self, view=0, **files):
-        """Asserts that the program computes the same state hash for the recorded motion."""
+        """Asserts that the program computes the state hash of the page for the motion that the page recorded."""
         kept = self.js(f"live.kept({view})")
         file = folder / f"{kept['name']}.json"
         file.write_text(json.dumps(kept["scenario"]), encoding="utf-8")
         for name, content in files.items():
             (folder / name.replace("__", ".")).write_text(content, encoding="utf-8")
-        # By default, a tool that went through the surface is an unexpected outcome.
+        # A tool that went through the surface ends the run with status 3, because this outcome is not expected by
+        # default.
         [run] = json.loads(
             must(PROGRAM, "run", file, "--json", "--out", folder / "runs", statuses=(0, 3))
         )
@@ -139,7 +141,7 @@ class Live(Page):
             self.choose(menu, "shaped_stiffness" if "select" in menu else "0")
 
     def test_every_bundled_scene_is_the_program_s(self):
-        """A thousand rows of each bundled scene: WebAssembly must compute the same bits as other machines."""
+        """Checks a thousand rows of each bundled scene. WebAssembly must compute the same bits as the program."""
         short = "time.steps=1000"
         names = {}
         scenarios = SOURCE / "scenarios" / "library"
@@ -164,7 +166,7 @@ class Live(Page):
                 statuses=(0, 3),
             )
         )
-        # A scene with several trials has several runs.
+        # A scene with several trials has several runs and is skipped.
         single = {
             name: run["state_hash"]
             for name, run in zip(names, runs, strict=True)

@@ -1,5 +1,5 @@
-"""Recomputes every metric of twelve runs from the files of the run, with numpy and the definitions of `hapbench
-describe metrics` only."""
+"""Recomputes every metric of twelve runs with numpy from the files of the run. It uses only the definitions that
+`hapbench describe metrics` prints."""
 import csv
 import json
 import math
@@ -8,7 +8,7 @@ import unittest
 import numpy as np
 from fixture import hapbench, scratch_folder
 
-# Scenes, and settings in addition to RECORDED.
+# Scenes, each with settings in addition to RECORDED.
 ALL, TORQUE, INSIDE = "record.contacts=true", "record.torque=true", "record.inside=true"
 ENERGY = "record.energy=true"
 RECORDED = ("record.every=1", "record.trajectory=true", "expect={}", ALL, ENERGY, TORQUE)
@@ -50,7 +50,7 @@ def norms(vectors_):
 
 
 def flat(value, name=""):
-    """Returns the metrics of summary.json by name."""
+    """Yields (name, value) of each metric in summary.json."""
     if isinstance(value, dict):
         for key, part in value.items():
             yield from flat(part, f"{name}.{key}" if name else key)
@@ -62,8 +62,8 @@ def flat(value, name=""):
 
 
 class HighPass:
-    """Fourth-order Butterworth high-pass at 30 Hz, by the bilinear transform with prewarped cutoff. The damping of its
-    two sections is the damping of the two pairs of poles."""
+    """Fourth-order Butterworth high-pass at 30 Hz, by the bilinear transform with prewarped cutoff. It has two
+    second-order sections, one for each pair of poles."""
 
     def __init__(self, dt):
         k = math.tan(math.pi * 30.0 * dt)
@@ -75,7 +75,7 @@ class HighPass:
             )
 
     def start(self, x):
-        """Sets the steady state of the constant input x."""
+        """Sets the state of the filter to the steady state for the constant input x."""
         self.inputs = [[x, x], [0.0 * x, 0.0 * x]]
         self.outputs = [[0.0 * x, 0.0 * x], [0.0 * x, 0.0 * x]]
 
@@ -88,8 +88,8 @@ class HighPass:
 
 
 def high_passed(signal, dt):
-    """Returns the high-passed signal, in steady state at the first sample; None if the sampling rate is too low for the
-    filter."""
+    """Returns the high-passed signal, with the filter in the steady state of the first sample. Returns None if the
+    sampling rate is too low for the filter."""
     if 1.0 / dt <= 60.0:
         return None
     high_pass = HighPass(dt)
@@ -98,7 +98,7 @@ def high_passed(signal, dt):
 
 
 class Recomputed:
-    """The metrics of a run, recomputed from its files."""
+    """Metrics of one run, recomputed from its files. `known`: value by name of the metric."""
 
     def __init__(self, folder):
         self.folder, self.known = folder, {}
@@ -129,7 +129,7 @@ class Recomputed:
                 part(table(folder / name))
 
     def phases(self):
-        """Rows of landings and of settled contact."""
+        """Finds the rows of landings and of settled contact."""
         rule = self.scenario["metrics"]
         rows, away = round(rule["settling_s"] / self.dt), math.inf
         self.landing, self.restarts = np.zeros(len(self.t), bool), np.zeros(len(self.t), bool)
@@ -328,7 +328,8 @@ class Recomputed:
         self.lag(m, f)
 
     def lag(self, first, second):
-        """Compares shifts by whole steps. The metric's tolerance includes the effect of another sample spacing."""
+        """Computes the lag by comparing shifts by whole steps. The tolerance of the printed metric covers the effect of
+        the sample spacing."""
         max_shift = round(0.1 / self.dt)
         scores = []
         for shift in range(-max_shift, max_shift + 1):
@@ -423,10 +424,10 @@ class Metrics(unittest.TestCase):
         if name == "force_step_p99_N":
             allowed += BIN * abs(known)
         if name.startswith(("energy", "passivity")):
-            # Differences of energies that are summed in another order.
+            # Energies are sums that the program adds in another order.
             allowed += 1e-9 * found.energy_scale
         if name == "passivity.time_of_min_s":
-            # Among equal minima, rounding decides.
+            # If several minima are equal, rounding decides which one the program reports.
             k = round(value / found.dt)
             self.assertAlmostEqual(found.held[k], found.held.min(), delta=1e-9 * found.energy_scale)
             return

@@ -1,4 +1,4 @@
-"""The pages of `hapbench report`."""
+"""Tests the pages of `hapbench report`."""
 import functools
 import html
 import json

@@ -1,5 +1,6 @@
-"""Both pages (runs of a user, and the thesis) in a real headless Chromium. Each fits, is legible in both themes and
-writes no message to the console; its replay, tables and figures respond to input."""
+"""Tests two pages in a headless Chromium: the page about a user's runs, and the page about the thesis. Each page must
+fit, be legible in both themes and write no message to the console. Its replay, tables and figures must respond to
+input."""
 import unittest
 from io import BytesIO
 
@@ -56,7 +57,7 @@ class EveryPage:
                 self.assertLessEqual(self.js("document.documentElement.scrollWidth"), width)
                 for part in self.PARTS:
                     self.js(f"document.getElementById('{part}').scrollIntoView()")
-                    # Text alone has tens of shades of grey.
+                    # A picture with only text has tens of shades of grey.
                     colours = Image.open(BytesIO(self.driver.get_screenshot_as_png())).getcolors(
                         20
                     )  # None means that there are more colours
@@ -101,10 +102,11 @@ class OfThesis(EveryPage, Page):
     PARTS = ("summary", "ledger", "replay", "figures")
 
     def test_the_points_in_the_tool_are_the_recorded_ones(self):
-        """Compares, over rows of all recordings, the smallest and largest possible number of points that the page finds
-        in the tool with the recorded number. Positions are rounded to half a quantisation step and the pose to single
-        precision, so only points within three steps of the surface may change sides. A scene with more points than the
-        page draws may have more points in the tool."""
+        """Compares the recorded number of points in the tool with the points that the page finds in the tool, in some
+        rows of all recordings. The page rounds positions to half a quantisation step, and the pose to single precision.
+        Only points within three quantisation steps of the tool's surface are uncertain; they give a smallest and a
+        largest number. If the page draws only a part of the points, the recorded number may exceed the largest number.
+        """
         for scene in range(2):
             self.choose("#replay-scene", scene)
             self.assertEqual(

@@ -1,5 +1,5 @@
-"""Tests the modules used by `hapbench plot`, `hapbench report` and the figures, and the plot styles of the algorithms:
-each algorithm has a different style, legible on a light and on a dark background. Needs numpy."""
+"""Tests the modules that `hapbench plot`, `hapbench report` and the figures use, and the looks of the algorithms: each
+algorithm has a different look that is legible on a light and on a dark background. Needs numpy."""
 import json
 import re
 import shutil
@@ -39,8 +39,8 @@ from hapbench_report.recording import (
 
 
 def drawn(command, *words, expected=0):
-    """Returns the output of `hapbench plot` or `report`, called in this process, which has loaded matplotlib; standard
-    error if input is refused."""
+    """Calls `hapbench plot` or `report` in this process, which has loaded matplotlib. Returns the standard output, or
+    the standard error if input is refused."""
     status, output, error = in_process(pictures, command, *words, HAPBENCH_PROGRAM=str(PROGRAM))
     assert status == expected, (words, status, error)
     return error if expected == 2 else output
@@ -50,12 +50,12 @@ plotted = partial(drawn, "plot")
 
 
 def make_root():
-    """Creates the folder of a module; called by setUpModule."""
+    """Creates the folder for the results of a test module; setUpModule calls this function."""
     Given.root = scratch_folder(unittest)
 
 
 def make_runs():
-    """Computes short runs, a comparison and a sweep once for a module; called by setUpModule."""
+    """Computes short runs, a comparison and a sweep once for a test module; setUpModule calls this function."""
     make_root()
     made(
         "mesh",
@@ -90,7 +90,7 @@ def make_runs():
 
 
 def made(name, *words):
-    """Runs the program with these arguments and returns the folder with its output."""
+    """Runs the program with these arguments. Returns the folder `name` with its output."""
     hapbench(*words, "--out", Given.root / name, "--quiet")
     return Given.root / name
 
@@ -106,7 +106,7 @@ class Given(unittest.TestCase):
         self.assert_shows(folder / "plot.svg", *texts)
 
     def copy(self, name):
-        """Returns a copy of a run that the test may damage."""
+        """Returns the folder of a copy of a run, which the test may modify."""
         directory = Path(tempfile.mkdtemp(dir=self.root)) / name
         shutil.copytree(self.root / name, directory)
         return directory
@@ -170,7 +170,8 @@ class Reduction(unittest.TestCase):
 
 class Equal(Given):
     def test_equal_curves_take_turns(self):
-        """Stripes of n coinciding lines together cover the line without overlap; other lines keep their style."""
+        """Checks that the stripes of n coinciding lines together cover the line without overlap. A line without
+        coinciding lines keeps its style."""
         a, b = np.arange(9.0), np.ones(9)
         self.assertEqual(style.equal_curves([(a, b), (a, a), (a, b)]), [(0, 2), (0, 1), (1, 2)])
         turns = [style.striped("-", index, 3) for index in range(3)]
@@ -214,7 +215,8 @@ class Equal(Given):
 
 class Moments(unittest.TestCase):
     def test_a_landing_is_what_follows_a_first_touch(self):
-        # Contact from 1 to 3 s, a gap of 0.2 s, contact from 3.2 s on; free from 5 to 7 s, then contact again.
+        # Contact from 1 to 3 s and from 3.2 to 5 s, free from 5 to 7 s, then contact again. The gap of 0.2 s is shorter
+        # than the settling time, so that no landing follows it.
         t = np.arange(100) / 10
         touching = ((1 <= t) & (t < 3) | (3.2 <= t) & (t < 5) | (t >= 7)).astype(int)
         # A gap shorter than the settling time does not cause a landing.
@@ -230,8 +232,8 @@ class Moments(unittest.TestCase):
         settled = np.arange(502) > 1
         low, high = settled_range([(settled, force, force)])
         self.assertTrue(0.7 < low < 0.9 and 1.1 < high < 1.3)
-        # The whole range is shown if the peak is not far above the settled range, without settled contact, and if the
-        # run bounces to the end.
+        # The whole range is shown in three cases: the peak is not far above the settled range, there is no settled
+        # contact, or the run bounces to the end.
         self.assertIsNone(settled_range([(settled, np.minimum(force, 3), np.minimum(force, 3))]))
         self.assertIsNone(settled_range([(settled & False, force, force)]))
         hammering = np.where(settled & (np.arange(502) % 2 > 0), 10.0, force)
@@ -243,11 +245,11 @@ class Moments(unittest.TestCase):
 
 
 class ModelErrors(unittest.TestCase):
-    """Picture of laws against a reference force."""
+    """Tests the picture of laws that are compared with a reference force."""
 
     def drawn(self, displacement, failed=()):
-        """Returns the panels of two laws with these displacements [m], as texts of the table. The laws that `failed`
-        have no errors."""
+        """Returns the panels for two laws with these displacements [m], given as texts of the table. The laws in
+        `failed` have no errors."""
         laws = ("mean", "proxy")
         errors = [
             {
@@ -305,7 +307,7 @@ class Shapes(unittest.TestCase):
                 **{f"f{a}_N": square * d for a, d in zip("xyz", direction)},
             }
         )
-        # A square wave of 100 Hz has little power below 30 Hz: its rms of 1 changes by a few per cent.
+        # A square wave of 100 Hz has little power below 30 Hz. The high-pass changes its rms of 1 by a few per cent.
         self.assertAlmostEqual(packed["rms"], 1, delta=0.05)
 
     def test_the_tool_is_a_cylinder_or_as_in_the_summary(self):
@@ -351,7 +353,7 @@ class Looks(unittest.TestCase):
 
     def test_an_algorithm_without_an_entry_has_a_look_by_its_name(self):
         looks = [hapbench_looks.look(f"law_{i}") for i in range(200)]
-        # Another process gives the same result: nothing depends on the order of calls or on the hash seed.
+        # Another process must give the same result, which must not depend on the order of calls or on the hash seed.
         output = must(
             sys.executable,
             "-c",
@@ -387,9 +389,9 @@ class Looks(unittest.TestCase):
                     )  # required contrast of text, WCAG 2.1, level AA
 
     def test_colours_are_distinguishable_with_every_kind_of_colour_vision(self):
-        """Simulated by the method of Machado, Oliveira and Fernandes (IEEE TVCG 15, 2009, severity 1). A CIEDE2000
-        difference of 1 is just noticeable side by side; 6 is clearly visible between lines of a figure.
-        """
+        """Checks the colours as simulated by the method of Machado, Oliveira and Fernandes (IEEE TVCG 15, 2009,
+        severity 1). A CIEDE2000 difference of 1 is just noticeable side by side; 6 is clearly visible between lines of
+        a figure."""
         algorithms, series = hapbench_looks.ALGORITHMS.values(), hapbench_looks.SERIES
         for among, smallest in ((algorithms, 6.0), (series, 12.0)):
             for ground in ("colour", "dark"):
@@ -404,9 +406,9 @@ class Looks(unittest.TestCase):
             self.assertEqual(len(set(found)), len(found), part)
 
     def test_own_laws_are_distinguishable_from_the_others_of_a_picture(self):
-        """In a picture of two user laws and six other laws, all colours differ by at least 5 in CIEDE2000. This
-        corresponds to MIN_DISTANCE, which is a difference in OKLab. If the colours depended on the names alone, many
-        user laws would look alike."""
+        """Checks that all colours in a picture of two user laws and six other laws differ by at least 5 in CIEDE2000,
+        which corresponds to MIN_DISTANCE in OKLab. If the colours depended only on the names, many user laws would look
+        alike."""
         others = ("mean", "shaped_stiffness", "summation", "proxy", "least_squares", "tandpasta")
         too_close = 0
         for first in range(12):
@@ -421,7 +423,7 @@ class Looks(unittest.TestCase):
         hapbench_looks.distinguish(())
 
     def test_the_titles_of_metrics_have_the_words_of_the_tables(self):
-        """The headings are in scenarios/program/run_table.hpp."""
+        """Compares TITLES with the headings in scenarios/program/run_table.hpp."""
         source = (SOURCE / "scenarios/program/run_table.hpp").read_text(encoding="utf-8")
         source = source[source.index("kRunHeadings[]") : source.index("};", source.index("kRunH"))]
         headings = re.findall(r'\{"([^"]*)", "(\w+)"', source)
@@ -433,8 +435,9 @@ class Looks(unittest.TestCase):
             self.assertEqual(of.rstrip("]"), unit, metric)
 
     def test_the_simulation_sees_what_is_known(self):
-        """Simulated colour blindness of any type leaves a grey unchanged. Deuteranopia reduces the CIEDE2000 difference
-        between a red and an olive to less than half of the difference in usual vision."""
+        """Checks that simulated colour blindness of any type leaves a grey unchanged. Deuteranopia must reduce the
+        CIEDE2000 difference between a red and an olive to less than half of the difference in usual vision.
+        """
         for matrix in hapbench_looks.VISIONS.values():
             # The published matrices have six digits.
             np.testing.assert_allclose(simulated(["#808080"], matrix), 128 / 255, atol=1e-5)
@@ -446,7 +449,8 @@ class Looks(unittest.TestCase):
 
 
 def closest(looks):
-    """Returns the smallest CIEDE2000 difference of the colours, over all grounds and types of vision."""
+    """Returns the smallest CIEDE2000 difference between the colours of `looks`, over both backgrounds and all types of
+    vision."""
     smallest = np.inf
     for ground in ("colour", "dark"):
         for matrix in hapbench_looks.VISIONS.values():
@@ -457,7 +461,7 @@ def closest(looks):
 
 
 def simulated(colours, matrix):
-    """Returns the simulated sRGB values, with a row for each colour."""
+    """Returns the simulated sRGB values of colours for one type of vision, with a row for each colour."""
     rgb = np.array([[int(colour[i : i + 2], 16) / 255 for i in (1, 3, 5)] for colour in colours])
     linear = np.where(rgb <= 0.04045, rgb / 12.92, ((rgb + 0.055) / 1.055) ** 2.4)
     seen = np.clip(linear @ matrix.T, 0, 1)

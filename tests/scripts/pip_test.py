@@ -33,7 +33,7 @@ class Pip(unittest.TestCase):
             tree,
             "the tree stays clean",
         )
-        # An environment in which program, package and files must work from the installation alone.
+        # Environment in which program, package and files are found only in the installation.
         clean = {
             name: value
             for name, value in os.environ.items()
@@ -72,7 +72,7 @@ class Pip(unittest.TestCase):
         self.assertFalse([file for file in after if "hapbench" in file])
 
     def test_prints_how_long_it_takes_before_it_compiles(self):
-        """The test replaces cmake by a command that stops at once."""
+        """Checks that the build prints its expected duration before it calls cmake. A dummy cmake fails at once."""
         root = scratch_folder(self)
         (root / "bin").mkdir()
         (root / "bin/cmake").write_text("#!/bin/sh\necho cmake called >&2\nexit 1\n")

@@ -1,4 +1,4 @@
-"""`hapbench plot` of runs: over time and in space."""
+"""Tests `hapbench plot` of runs: quantities over time, and the scene in a section."""
 import json
 import os
 import shutil
@@ -92,7 +92,7 @@ class Plot(Given):
         self.assertEqual(labels(runs), ["mean, 0/springs", "mean, 1/springs"])
 
     def variants(self, *changes, pattern="{}/springs"):
-        """Returns copies of a run whose scenarios have other values."""
+        """Returns the folders of copies of a run. Each element of `changes` modifies the scenario of one copy."""
         folder = Path(tempfile.mkdtemp(dir=self.root))
         for i, change in enumerate(changes):
             shutil.copytree(self.root / "springs", folder / pattern.format(i))
@@ -180,8 +180,8 @@ class Plot(Given):
         plt.close(figure)
 
     def test_distinct_scenes_have_panels_of_their_own(self):
-        """Two scenes have separate panels. A scene that is moved far away also has a separate panel; a scene that is
-        moved a little does not."""
+        """Checks that two scenes have separate panels. A copy of a scene that is moved far away has a separate panel,
+        too; a copy that is moved a little does not."""
         runs = given_runs([self.root / "mesh", self.root / "springs"])
         figure = draw_runs(runs, [], True, ALWAYS)
         self.assertEqual(
@@ -201,10 +201,11 @@ class Plot(Given):
             self.assertEqual(len(figure.axes), panels, away)
             plt.close(figure)
 
-    # The program provides the surface.
+    # The program computes the surface for the picture.
     @mock.patch.dict(os.environ, {"HAPBENCH_PROGRAM": str(PROGRAM)})
     def test_an_open_scan_is_a_surface_and_no_solid(self):
-        """A molar without one of its triangles is an open surface."""
+        """Checks that a molar without one of its triangles is drawn as an open surface, and the complete molar as a
+        solid."""
         closed = SOURCE / "scenarios/library/examples/data/molar.obj"
         lines = closed.read_text().splitlines(keepends=True)
         last = max(i for i, line in enumerate(lines) if line.startswith("f "))

@@ -1,4 +1,4 @@
-"""Tables that the program prints in the formats of --table, for the tests of these formats."""
+"""Runs commands that print tables, for the tests of the formats of --table."""
 import json
 import unittest
 from functools import cache
@@ -12,7 +12,7 @@ SHORT = ("--set", "time.steps=300", "--set", "expect={}")
 
 
 def make_scene():
-    """Makes the scratch folder with the scene of a name that every format must escape."""
+    """Creates the scratch folder with a scene whose name has characters that every format must escape."""
     global ROOT
     ROOT = scratch_folder(unittest)
     scene = {"extends": "tap_wall", "name": NASTY, "time": {"steps": 300}, "expect": {}}

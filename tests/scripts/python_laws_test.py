@@ -1,4 +1,4 @@
-"""Force laws in Python, and modules beside them. Arguments: the arguments of python_test.py."""
+"""Tests force laws written in Python, and plugin modules beside them. Arguments: see python_test.py."""
 import json
 import threading
 import traceback
@@ -39,7 +39,8 @@ class Laws(Scratch):
 
         own = hapbench.run(PEG, {**SHORT, "rendering.algorithm": "test_force"})
         built_in = hapbench.run(PEG, {**SHORT, "rendering.algorithm": "summation"})
-        # Sums in another order: the first row differs by the rounding of at most some 30 terms.
+        # The program adds the same terms in another order: the first row differs by the rounding of at most some 30
+        # terms.
         np.testing.assert_allclose(
             own.trajectory.fx_N[0], built_in.trajectory.fx_N[0], rtol=1e-13, atol=1e-10
         )
@@ -178,7 +179,7 @@ class Laws(Scratch):
             else:
                 self.fail("no error")
         self.assertFalse((self.root / "out" / "test_raises" / "summary.json").exists())
-        # The failed law has no effect on later runs.
+        # A failed law must have no effect on later runs.
         self.assertEqual(hapbench.run(PEG, SHORT).outcome, "completes")
 
     def test_answers_that_are_no_force(self):
@@ -228,15 +229,15 @@ def even(depths):
 
 
 class TheEndOfTheInterpreter(Scratch):
-    """A thread that waits for the interpreter while the interpreter shuts down would abort the process."""
+    """Tests threads that wait for the interpreter while it shuts down. A waiting thread would abort the process."""
 
     def script(self, text):
         done = python("-c", LAW_OF_A_SCRIPT + text)
         self.assertEqual((done.returncode, done.stderr), (0, ""))
 
     def test_finds_threads_that_have_just_ended(self):
-        # The main thread holds the interpreter from the comparison to its end, so that many of 16 threads still wait
-        # when the interpreter shuts down. Without the fix, three scripts in four were aborted.
+        # The main thread holds the interpreter from the comparison to the end of the script, so that many of 16 threads
+        # still wait when the interpreter shuts down. Before this was corrected, three of four scripts were aborted.
         words = [
             "compare",
             WEDGE,

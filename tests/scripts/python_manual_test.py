@@ -67,7 +67,7 @@ def setUpModule():
 
 
 def blocks_of(manual):
-    """Returns the indented blocks without their indentation."""
+    """Returns the indented blocks of code in a manual, without their indentation."""
     return [
         re.sub(r"^    ", "", block, flags=re.M)
         for block in re.findall(
@@ -104,7 +104,7 @@ class Manual(unittest.TestCase):
         words = ("--strict", "--follow-imports=silent", "--python-executable", sys.executable)
         done = ran(mypy, *words, "typed.py", env=env)
         self.assertEqual(done.returncode, 0, done.stdout)
-        # The type checker finds an error, because the names have types.
+        # The type checker must report errors in a wrong script, because the package has types.
         Path("wrong.py").write_text(
             TYPED + "hapbench.runs('x')\nhapbench.run(3)\nlargest(report)\nrun.metrics.x\n",
             encoding="utf-8",

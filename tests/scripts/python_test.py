@@ -1,5 +1,5 @@
-"""Runs, studies and results with the Python package and its compiled module. Arguments: the program, the folder of the
-built package."""
+"""Tests runs, studies and results with the Python package and its compiled module. Arguments: the program, the folder
+of the built package."""
 import json
 import os
 import re
@@ -31,7 +31,7 @@ from hapbench.columns import read_columns  # noqa: E402
 
 PEG = "peg_in_hole_2d_shaped_stiffness"
 WEDGE = "wedge_stiffness"  # a scene with a free hand, so that --jitter may shift it
-# Short runs with contact from the first step on.
+# Settings of short runs with contact in every step from the first on.
 SHORT = {"time.steps": 300, "expect": "{}"}
 EVERYTHING = {
     "record.contacts": True,
@@ -60,7 +60,7 @@ class Scratch(unittest.TestCase):
 
 
 def without_diagnosis(run):
-    """Returns the summary without the fields that only the command adds."""
+    """Returns the summary of a run without the fields that only the command `run` adds."""
     return {key: value for key, value in run.summary.items() if key != "diagnosis"}
 
 
@@ -80,7 +80,7 @@ class Runs(Scratch):
             for column, values in written.items():
                 found = table[column]
                 self.assertEqual(found.dtype, np.float64)
-                # Equal bits, except that NaN has several bit patterns.
+                # Values must have equal bits, except NaN, which has several bit patterns.
                 np.testing.assert_array_equal(np.isnan(found), np.isnan(values), f"{name} {column}")
                 known = ~np.isnan(values)
                 np.testing.assert_array_equal(
@@ -131,7 +131,7 @@ class Runs(Scratch):
             run.energy
         with self.assertRaisesRegex(AttributeError, "tables: .*trajectory"):
             run.nothing
-        # The effective scenario gives the same run.
+        # A run of the effective scenario must equal the run.
         self.assertEqual(hapbench.run(run.scenario).state_hash, run.state_hash)
 
     def test_files_that_a_dict_names(self):
@@ -253,7 +253,7 @@ class Studies(Scratch):
         self.assertIn("and columns ", left)
         alone = hapbench.run(PEG, {**SHORT, "rendering.algorithm": "mean"})
         mean = report.runs["mean"]
-        del report  # the folder of the report exists as long as the run
+        del report  # the folder of a report must exist as long as one of its runs
         self.assertEqual(mean.state_hash, alone.state_hash)
         self.assertEqual(mean.trajectory.rows, 300)
         self.assertIn("and 280 more rows", str(mean.trajectory))
@@ -309,7 +309,7 @@ class Loop(Scratch):
         replay = json.loads(program("run", *words, "--json", "--out", str(self.root / "out")))
         self.assertEqual((replay["calls"], replay["equal_calls"]), (300, 300))
         self.assertGreater(replay["loop_force_max_N"], 0.01)
-        # A scenario in memory, a fault, and rejected input.
+        # Covers a scenario in memory, a fault of the renderer, and rejected input.
         renderer = hapbench.Renderer(wall, max_force_N=5)
         self.assertEqual(renderer.step(1, (float("nan"), 0, 0))["status"], "FAULT")
         self.assertIn("not finite", renderer.fault)
@@ -395,8 +395,8 @@ class Program(Scratch):
         self.assertEqual(comma, point)
 
     def test_ctrl_c_in_a_script(self):
-        """Ctrl-C ends the script within 0.2 s, also during a call of a slow law. The fastest of three attempts counts,
-        because the machine may be busy."""
+        """Checks that Ctrl-C ends a script within 0.2 s, even during a call of a slow law. The fastest of three
+        attempts counts, because the machine may be busy."""
         code = (
             "import hapbench, os, signal, threading, time\n"
             "@hapbench.force_law('slow')\n"

@@ -1,4 +1,4 @@
-"""Comparisons with seeds: their ranking, the picture of the ranking, and the page of many runs."""
+"""Tests comparisons with seeds: their ranking, the picture of the ranking, and the page of many runs."""
 import functools
 import json
 import re
@@ -72,20 +72,22 @@ class Rankings(WithRuns):
                 value = getattr(found, name)
                 self.assertEqual(value is None, row[name] == "", row)
                 if value is not None:
-                    # Sums of four numbers in another order.
+                    # The program adds the four numbers in another order.
                     self.assertAlmostEqual(
                         value, float(row[name]), delta=1e-14 + 1e-12 * abs(value)
                     )
 
     def test_outcomes_that_fail_are_those_of_the_program(self):
-        """The table in results/summary/outcome.cpp marks these outcomes with true."""
+        """Checks FAILURES against the table in results/summary/outcome.cpp, which marks outcomes that are failures with
+        true."""
         source = (SOURCE / "results/summary/outcome.cpp").read_text(encoding="utf-8")
         entries = re.findall(r'\{"(\w+)",\s*(?:"[^"]*"\s*)+(,\s*true)?(?:,[^}]*)?\}', source)
         self.assertGreater(len(entries), len(FAILURES))
         self.assertEqual({name for name, fails in entries if fails}, set(FAILURES))
 
     def test_numbers_within_their_errors_are_not_ranked(self):
-        """Values of 1 to 3, first with errors of 5 each, then with errors of 0.1."""
+        """Ranks three laws with the values 1, 2 and 3. With errors of 5 no law has a rank; with errors of 0.1 all laws
+        have ranks."""
 
         class Run:
             scenario, outcome, path = {}, "completes", ""
@@ -123,7 +125,8 @@ class Rankings(WithRuns):
             self.assertEqual(known_number(value, tolerance), shown)
 
     def test_an_axis_of_bounds_alone_reaches_the_largest(self):
-        """Also beside a law whose runs all failed, which has no number."""
+        """Checks a panel of laws with only bounds: the axis extends to the largest bound. A law whose runs all failed
+        has no number."""
 
         class Run:
             scenario, path = {}, ""
@@ -183,7 +186,7 @@ class Picture(WithRuns):
                 np.testing.assert_allclose(
                     sorted(singles), sorted(factor * v for v in of.values.values()), rtol=1e-12
                 )
-                # Segments of the error bars: mean - spread to mean + spread.
+                # Segments of the error bars reach from mean - spread to mean + spread.
                 spans = [
                     segment[:, 0]
                     for lines in ax.collections
@@ -302,7 +305,7 @@ class Page(WithRuns):
         self.assertLess(len(page), 3e6)
 
     def test_what_many_runs_warn_of_stands_once(self):
-        """Warnings that differ only in their numbers are one entry with the number of runs."""
+        """Checks that warnings that differ only in their numbers share one entry, which states the number of runs."""
         folder = self.copy("many")
         for i, file in enumerate(sorted(folder.rglob("summary.json"))):
             summary = json.loads(file.read_text()) | {

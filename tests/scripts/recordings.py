@@ -1,4 +1,5 @@
-"""Recordings for the tests of `import stroke`, and functions that import them with the package."""
+"""Recordings for the tests of `import stroke`, and functions that import them with the Python package of the
+command."""
 import json
 import struct
 import unittest
@@ -18,7 +19,8 @@ from hapbench_import.stroke import import_stroke
 DATA = SOURCE / "scenarios" / "library" / "examples" / "data"
 PRESETS = SOURCE / "scenarios" / "library" / "presets"
 LOG = DATA / "wipe.hapi.txt"
-Y_UP = np.array([[1, 0, 0], [0, 0, -1], [0, 1, 0]], float)  # x, -z, y
+# Rotation of a recording with y up: its x, -z and y are the scenario's x, y and z.
+Y_UP = np.array([[1, 0, 0], [0, 0, -1], [0, 1, 0]], float)
 run = partial(ran, PROGRAM)
 STRAIGHT = "0,0,0,0\n0.01,0.001,0,0\n0.02,0.002,0,0\n0.03,0.003,0,0\n"
 
@@ -40,8 +42,8 @@ class Given(unittest.TestCase):
         return str(self.root / name)
 
     def report(self, data, columns="time=1,position=2", **options):
-        """Returns the stroke of a recording with these contents and the import report, computed by the package of the
-        command."""
+        """Imports a recording with the contents `data`, with the Python package of the command. Returns (stroke,
+        report)."""
         words = [self.write(data)] + (["--columns", columns] if columns else [])
         for name, value in options.items():
             if name in ("floats", "force_by_tool", "max_gap", "max_speed", "shift", "tip_axis"):
@@ -56,7 +58,7 @@ class Given(unittest.TestCase):
         return self.report(data, columns, **options)[0]
 
     def refusal(self, data, columns="time=1,position=2", **options):
-        """Returns the error message without the folder; empty if the recording is accepted."""
+        """Returns the error message for a recording, without the folder; empty if the recording is accepted."""
         try:
             self.report(data, columns, **options)
             return ""
@@ -64,7 +66,7 @@ class Given(unittest.TestCase):
             return "\n".join(faults.lines).replace(f"{self.root}/", "")
 
     def imported(self, *words):
-        """Runs the command on the log. Returns report, columns and rows of the stroke."""
+        """Runs the command on the example log. Returns report, columns and rows of the stroke."""
         file = self.root / "stroke.csv"
         report = json.loads(
             hapbench("import", "stroke", LOG, "--preset", "hapi", "--out", file, "--json", *words)
@@ -73,7 +75,7 @@ class Given(unittest.TestCase):
 
 
 def moved(time):
-    """Returns positions of a tip [m] at the times [s]."""
+    """Returns positions of a moving tip [m] at the times [s]."""
     angle = 6.0 * time
     return np.column_stack(
         [0.004 * np.sin(angle), 0.0025 * (1 - np.cos(angle)), 0.0008 - 0.0002 * np.sin(angle)]

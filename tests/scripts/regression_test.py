@@ -1,4 +1,4 @@
-"""The output of `hapbench report --tolerance` about two results."""
+"""Tests the output of `hapbench report --tolerance` for two results."""
 import math
 
 import numpy as np

@@ -1,4 +1,5 @@
-"""`hapbench plot` of logs of a haptic loop, its options, and runs that would flatten all other runs."""
+"""Tests `hapbench plot` of logs of a haptic loop, the options of its pictures, and curves whose peaks would flatten all
+other curves."""
 import re
 import shutil
 
@@ -18,7 +19,8 @@ LOG = SOURCE / "tests/data/loop.csv"
 
 class Replays(Given):
     def other(self):
-        """Returns a folder of a replay whose last call has another force and which lacks the third-last call."""
+        """Returns a folder of a replay. Its last call has another force than the log, and its third-last call is
+        missing."""
         folder = self.root / "replay"
         folder.mkdir(exist_ok=True)
         about, names, *rows = LOG.read_text(encoding="utf-8").splitlines()
@@ -76,7 +78,7 @@ class Replays(Given):
             file = self.root / "a.png"
             plotted(folder, "--width", "single", "--out", file, *words)
             sizes.append(int.from_bytes(file.read_bytes()[16:20], "big"))
-        # 89 mm at 300 and at 150 pixels per inch, truncated to whole pixels.
+        # Width of a picture of 89 mm at 300 and at 150 pixels per inch, truncated to whole pixels.
         self.assertEqual(sizes, [1051, 525])
         plotted(folder, "--out", self.root / "a.pdf")
         found = set(
@@ -87,7 +89,8 @@ class Replays(Given):
 
 class Thrown(Given):
     def test_the_axis_belongs_to_the_other_runs(self):
-        """Peaks, True for failed runs, and the expected largest peak that the axis shows."""
+        """Checks largest_shown() for several cases: peaks of the runs, True for each failed run, and the expected
+        largest peak that determines the axis."""
         fine = [False] * 4
         for peaks, failed, largest in (
             ([3, 5, 45, 14000], fine, 45),

@@ -1,4 +1,4 @@
-"""scripts/report, without a browser, on results newly computed by the built program."""
+"""Tests scripts/report without a browser, on results that the built program computes."""
 import base64
 import json
 import re
@@ -20,10 +20,10 @@ SVG = '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 90 60"><path d="M5 5
 
 
 def make_results(directory):
-    """Computes short runs and the recordings of the replay."""
+    """Computes short runs for the report, and the recordings of its replay."""
     for scenario in SCENARIOS:
         hapbench("run", scenario, "--quiet", "--out", directory / "thesis" / scenario)
-    # Every third algorithm and a quarter of the long scene: the page shows the available runs.
+    # Every third algorithm and a quarter of the duration of the long scene. The page shows the runs that exist.
     few = [
         (scenario, ("time.duration_s=1.5",) if further else (), algorithms[::3])
         for scenario, further, algorithms in command.REPLAYED
@@ -152,7 +152,7 @@ class Page(WithResults):
         for id_, expected in (("C0", {"figure-f0"}), ("C1", {"figure-f1"}), ("C2", {"figure-f1"})):
             self.assertEqual(links(f'id="claim-{id_}"', "</tr>"), expected | {f"claim-{id_}"}, id_)
         self.assertEqual(links('id="figure-f1"', "</figure>"), {"claim-C1", "claim-C2"})
-        # The summary links to the claims that are not confirmed; findings of this project are counted separately.
+        # The summary links to the claims that are not confirmed. Findings of this project are in a separate table.
         self.assertEqual(links("do not confirm", "</ul>"), {"claim-C2", "claim-C3"})
         self.assertIn("claim-C5", links('id="findings-table"', "</table>"))
         self.assertNotIn("claim-C5", links('id="ledger-table"', "</table>"))
@@ -201,7 +201,7 @@ class Page(WithResults):
                 )
                 self.assertEqual((len(steps), len(scales)), (len(flat), len(CONTACT_COLUMNS)))
                 for i, (step, value) in enumerate(zip(steps, flat)):
-                    # Half a quantisation step, and the rounding of the division.
+                    # The tolerance is half a quantisation step, plus the rounding of the division.
                     self.assertLessEqual(
                         abs(step * scales[i % len(scales)] - value),
                         0.5001 * scales[i % len(scales)],
@@ -221,8 +221,8 @@ class Page(WithResults):
                             dict(zip(MEASURED_COLUMNS, row))[name]
                             for name in ("ratio_min", "ratio_max")
                         )
-                        # Two sums of n products in different orders have n rounding errors each, of sums below the
-                        # largest ratio.
+                        # The two sums of n products are added in different orders. Each has at most n rounding errors
+                        # of partial sums below the largest ratio.
                         tolerance = 2 * (len(contacts) + 10) * 2.0**-53 * max(1.0, largest)
                         self.assertAlmostEqual(min(ratios), smallest, delta=tolerance)
                         self.assertAlmostEqual(max(ratios), largest, delta=tolerance)

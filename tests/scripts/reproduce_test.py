@@ -1,5 +1,5 @@
-"""The order in which scripts/reproduce runs its parts, with a dummy program in place of hapbench, and the sets that
-scripts/assumption_sets.py draws."""
+"""Tests the order in which scripts/reproduce runs its parts, with a dummy program in place of hapbench. Also tests the
+sets that scripts/assumption_sets.py draws."""
 import csv
 import json
 import math
@@ -71,7 +71,8 @@ class Reproduce(unittest.TestCase):
         )  # two parts at a time
 
     def test_a_figure_after_what_it_needs(self):
-        """Figures that need a scene of the thesis, and studies; the dummy program writes the requested files."""
+        """Checks that scripts/reproduce first computes the results that a figure needs: scenes of the thesis, and
+        studies. A dummy program writes the result files."""
         out = "results/out/reproduce"
         needs = {
             "2": "thesis/wedge/trajectory.csv",
@@ -109,7 +110,7 @@ class Reproduce(unittest.TestCase):
             (self.root / "asked").read_text().splitlines(),
             2 * [f"{out} --out {out}/figures --only {','.join(needs)}"],
         )
-        # A missing input that no part creates is reported and ends the attempts.
+        # An input that no part creates is reported, and scripts/reproduce stops.
         self.put(
             "scripts/figures",
             '#!/bin/sh\necho "figures: skipped 2 (no nowhere/x.csv)" >&2\nexit 1\n',
@@ -130,7 +131,7 @@ class Reproduce(unittest.TestCase):
         self.assertIn(
             "drawn: results/out/reproduce --out results/out/reproduce/figures --only A.2,2\n", out
         )
-        # A claim that names no figure.
+        # The claim T4 names no figure, so that none is drawn.
         self.assertNotIn("drawn", self.run_with(NOTHING, "--only", "T4")[1])
 
     def test_a_signal_ends_its_parts(self):
@@ -147,7 +148,7 @@ class Reproduce(unittest.TestCase):
             self.assertIsNone(process.poll())
             time.sleep(0.02)
         process.send_signal(signal.SIGTERM)
-        # Its pipes are closed once the parts have ended.
+        # Waits until the parts have ended, which closes their pipes.
         process.communicate()
         self.assertEqual(process.returncode, 143)
 

@@ -1,6 +1,6 @@
-"""Compares the force of a 6-DOF device (six_dof.csv) with an independent minimiser that uses scipy's NNLS and shares no
-code with hapbench. It recomputes the signed distances of the shell's points to the drill and the energies of the
-springs."""
+"""Compares the force of a 6-DOF device (six_dof.csv) with an independent minimiser, which uses scipy's NNLS and shares
+no code with hapbench. The minimiser recomputes the signed distances between the points of the shell and the drill, and
+the energies of the springs."""
 import csv
 import json
 import unittest
@@ -12,13 +12,13 @@ from scipy.spatial.transform import Rotation
 from fixture import PROGRAM, must, scratch_folder
 
 RADIUS, LENGTH = 0.5e-3, 0.01  # radius and length of the drill [m]
-NEAR = 0.1e-3  # only points within this distance [m] can be in contact
+NEAR = 0.1e-3  # largest distance from the drill [m] at which a point can be in contact
 DOWN = np.array([0.0, 0.0, -1.0])  # axis of the drill in its own frame
 MM = 1e-3
 PASSES, LONGEST = 300, 0.02  # iterations of the search, and largest step [mm, rad]
-# Spread of the starting values around the known pose [mm, rad].
+# Standard deviations of the starting values around the known pose [mm, rad].
 START = np.repeat([1e-4, 1e-5], [3, 6])
-# Springs of hand and coupling. The grip is beside the force point, so that the force also rotates the handle.
+# Springs of hand and coupling. The grip is not at the force point, so that the force also rotates the handle.
 SPRINGS = {
     "hand_stiffness_N_per_m": 500,
     "hand_rotational_stiffness_N_m_per_rad": 0.2,
@@ -37,8 +37,8 @@ def shortest_turn(a, b):
 
 
 def distances(points, tip, turn):
-    """Returns the signed distance of each point to a drill with a flat tip, and the drill's normal at the closest
-    point."""
+    """Returns (signed distance of each point to a drill with a flat tip [m], normal of the drill at its closest
+    point)."""
     axis = turn.apply(DOWN)
     q = points - tip
     s = q @ axis
@@ -57,8 +57,8 @@ def distances(points, tip, turn):
 
 
 class Problem:
-    """Tool and handle near a start pose. x = (displacement of the tool's force point, rotation of the tool, rotation of
-    the handle), in mm and in rad times mm."""
+    """Energy and contacts of tool and handle near a start pose. The unknowns x are the displacement of the tool's force
+    point [mm], the rotation of the tool and the rotation of the handle [rad times mm]."""
 
     def __init__(self, points, stiffness, tip, axis, intent_tip, intent_axis, handle_turn):
         self.points = points
@@ -82,7 +82,7 @@ class Problem:
         return self.stiffness * (position + SPRINGS["grip_m"] * handle.apply(DOWN) - self.grip)
 
     def energy(self, x):
-        """Returns the energy [uJ]."""
+        """Returns the energy of the springs at x [uJ]."""
         _, tool, handle = self.poses(x)
         twist = (handle.inv() * tool).as_rotvec()
         yielded = (self.wanted.inv() * handle).as_rotvec()
@@ -93,18 +93,18 @@ class Problem:
         )
 
     def gaps(self, x):
-        """Returns the gaps [mm]."""
+        """Returns the distance between the tool and each point at x [mm]."""
         position, tool, _ = self.poses(x)
         tip = position + SPRINGS["force_point_m"] * tool.apply(DOWN)
         return distances(self.points, tip, tool)[0] / MM
 
     def solution(self, random):
-        """Solves by sequential quadratic programs. scipy's NNLS solves each (Lawson and Hanson's least distance
-        programming)."""
+        """Returns the pose x of least energy without penetration, by sequential quadratic programs. scipy's NNLS solves
+        each program (least distance programming of Lawson and Hanson)."""
 
         def derivative(function, x, h=1e-5):
-            """Central differences: a step of 1e-5 (mm or rad) has an error of 1e-10 of the third derivative and 1e-11
-            of rounding."""
+            """Returns the derivative by central differences. A step of 1e-5 (mm or rad) has an error of 1e-10 times the
+            third derivative, and 1e-11 of rounding."""
             step = h * np.eye(9)
             return np.stack([(function(x + d) - function(x - d)) / (2 * h) for d in step], axis=-1)
 

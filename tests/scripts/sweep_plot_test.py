@@ -1,4 +1,4 @@
-"""`hapbench plot` of sweeps."""
+"""Tests `hapbench plot` of sweeps."""
 import json
 import os
 from unittest import mock
@@ -46,7 +46,8 @@ class Sweeps(Given):
         )
 
     def test_what_matters_in_a_sample(self):
-        """The first force of a spring's oscillation depends on the start only."""
+        """Checks the influence of fields on the first force of an oscillating spring, which depends only on the
+        start."""
         folder = made(
             "sampled",
             "sweep",
@@ -73,10 +74,10 @@ class Sweeps(Given):
         some = plotted(folder, "--metric", "force_max_N", "--where", "rendering.mass_kg<0.15")
         self.assertIn(" over 20 runs", " ".join(some.split()))
 
-    # The program evaluates the conditions.
+    # The program evaluates the conditions of --where.
     @mock.patch.dict(os.environ, {"HAPBENCH_PROGRAM": str(PROGRAM)})
     def test_conditions_are_those_of_sweep(self):
-        """The conditions select the same rows as sweep and cause the same error messages."""
+        """Checks that --where selects the same rows as in `sweep`, with the same error messages."""
         folder = made(
             "conditions",
             "sweep",
@@ -120,9 +121,9 @@ class Sweeps(Given):
         )
 
     def test_first_order_indices_of_a_function_that_is_known(self):
-        """Ishigami's function, whose third variable acts only together with the first. The last variable is varied
-        logarithmically, and a list of texts adds to the function. Analytic variances: Sobol and Levitan 1999.
-        """
+        """Compares Sobol indices with the analytic values of Ishigami's function (Sobol and Levitan 1999). Its third
+        variable has an effect only together with the first. The last variable is varied logarithmically, and a list of
+        texts adds to the function."""
         random, n, pi = np.random.default_rng(7), 1000, np.pi
         x = random.uniform(-pi, pi, (3, n))
         texts = [["low", "middle", "high"][i] for i in random.integers(0, 3, n)]
@@ -142,16 +143,16 @@ class Sweeps(Given):
         ]
         for (column, coordinate), variance in zip(columns, own):
             found = sensitivity(column, coordinate, y)
-            # Six cosines miss 0.1 % of sin(x). For independent points, the jackknife's standard error is close to the
-            # true error.
+            # The fit with six cosines misses 0.1 % of sin(x). For independent points, the standard error by the
+            # jackknife is close to the true error.
             self.assertLess(abs(found.first_order - variance / total), 3 * found.error + 1e-3)
             self.assertLess(found.error, 0.035)
         self.assertIsNone(sensitivity(texts[:10], None, y[:10]))
         self.assertIsNone(sensitivity(x[0], columns[0][1], np.ones(n)))
 
     def test_outliers_do_not_hide_a_field(self):
-        """A metric falls as 1 / K over three decades; another field has no influence. The values of three runs are a
-        million times larger."""
+        """Checks the indices of a metric that falls as 1 / K over three decades, while another field has no influence.
+        The values of three runs are a million times too large."""
         random, n = np.random.default_rng(11), 200
         field, idle = random.uniform(0, 1, n), random.uniform(0, 1, n)
         y = 10 ** (-3 * field) * random.lognormal(0, 0.2, n)
@@ -159,8 +160,8 @@ class Sweeps(Given):
         decides, other = sensitivity(field, field, y), sensitivity(idle, idle, y)
         self.assertLess(decides.rank, -0.93)
         self.assertLess(decides.first_order, 0.2)
-        # Variance of the logarithm: (3 ln 10)^2 / 12 = 3.98 by the field, 0.04 by noise, 3/200 (6 ln 10)^2 = 2.86 by
-        # the outliers. Without outliers, the fraction of the field would be 0.99.
+        # Variance of the logarithm: (3 ln 10)^2 / 12 = 3.98 by the field, 0.04 by noise, and 3/200 (6 ln 10)^2 = 2.86
+        # by the outliers. Without outliers, the index of the field would be 0.99.
         self.assertGreater(
             decides.of_logarithm, 3.98 / (3.98 + 0.04 + 2.86) - 2 * decides.error_of_logarithm
         )
@@ -176,7 +177,7 @@ class Sweeps(Given):
         ):
             found = sensitivity(coordinate, coordinate, y)
             self.assertEqual(found.of_logarithm is not None, exists, y[-1])
-        # y is an exponential function of the field: its logarithm is linear.
+        # y is an exponential function of the field, so that its logarithm is linear in the field.
         found = sensitivity(coordinate, coordinate, np.exp(12 * coordinate))
         self.assertGreater(found.of_logarithm, 0.998)
         self.assertLess(found.first_order, found.of_logarithm - 0.05)

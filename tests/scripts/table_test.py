@@ -1,4 +1,5 @@
-"""The option --table of the program: tables as Markdown, LaTeX and CSV. latex_test.py compiles the tables in LaTeX."""
+"""Tests the option --table of the program: tables as Markdown, LaTeX and CSV. latex_test.py compiles the LaTeX
+tables."""
 import csv
 import io
 import re
@@ -10,7 +11,7 @@ from printed_tables import COMMANDS, LAWS, NASTY, printed
 
 
 def markdown_rows(text):
-    """Returns the cells of a Markdown table, without the separator line."""
+    """Returns the cells of a Markdown table by row, without the separator line."""
     lines = [line for line in text.splitlines() if line.startswith("|")]
     rows = [[c.strip() for c in re.split(r"(?<!\\)\|", line)[1:-1]] for line in lines]
     return rows[:1] + rows[2:]

@@ -1,5 +1,6 @@
-"""Runs the blocks of code of every tutorial in order, in a folder that looks like a clone. Every number in a sentence
-of the tutorial must be shown or printed by a block. Arguments: the program, the folder of the built Python package."""
+"""Runs the blocks of code of every tutorial in order, in a folder with the contents of a clone. Every number in a
+sentence of the tutorial must occur in a block or in its output. Arguments: the program, the folder of the built Python
+package."""
 import json
 import re
 import sys
@@ -31,7 +32,8 @@ for number, (language, code) in enumerate(json.loads(sys.argv[1]), 1):
 
 
 def played(text, folder):
-    """Returns the output of the blocks of the text. A block that fails ends the run, with its error message."""
+    """Runs the blocks of code in a text and returns their output. Stops at the first block that fails, with its error
+    message."""
     clone = folder / "hapbench"
     clone.mkdir()
     for name in (
@@ -58,7 +60,8 @@ def played(text, folder):
 
 
 def unproven_numbers(text, printed):
-    """Returns the numbers in sentences that no block shows or prints."""
+    """Returns the numbers in the sentences of a text that occur neither in a block nor in its output. `printed`: output
+    of the blocks."""
     shown = CHECKS.sub("", text)
     known = set(NUMBER.findall(printed)) | {
         number for _, code in CODE.findall(shown) for number in NUMBER.findall(code)

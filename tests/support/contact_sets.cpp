@@ -30,7 +30,7 @@ std::size_t random_size(Random& random, std::size_t largest) {
 }
 
 Mat3 random_rotation(Random& random) {
-  // A normalised Gaussian quaternion is uniform; four directions on the sphere S^3 need two pairs of Box-Muller.
+  // A normalised Gaussian quaternion is uniform on the sphere S^3. Two pairs of Box-Muller give its four components.
   const double a = std::sqrt(-2.0 * std::log(1.0 - random.uniform()));
   const double b = std::sqrt(-2.0 * std::log(1.0 - random.uniform()));
   const Vec3 p = random.direction_in_plane();
@@ -100,7 +100,7 @@ Gradients nearly_opposite(Random& random, std::size_t n) {
   return fill(n, [&] { return sign_of(random, tilted(random, u, small_angle(random))); });
 }
 
-/// Angles of all magnitudes in a single set.
+/// Returns gradients that differ from one direction by angles of all magnitudes from 1e-12 to 1 rad.
 Gradients graded(Random& random, std::size_t n) {
   const Vec3 u = random.direction();
   return fill(n, [&] { return tilted(random, u, small_angle(random)); });
@@ -120,7 +120,7 @@ Gradients duplicated(Random& random, std::size_t n) {
   return fill(n, [&] { return few[random.below(few.size())]; });
 }
 
-/// Many copies of one gradient together with a few other gradients.
+/// Returns many copies of one gradient together with a few other gradients.
 Gradients lopsided(Random& random, std::size_t n) {
   const Vec3 u = random.direction();
   return fill(n, [&] { return random.uniform() < 0.99 ? u : random.direction(); });
@@ -143,14 +143,14 @@ Gradients clusters(Random& random, std::size_t n) {
   return fill(n, [&] { return tilted(random, centres[random.below(centres.size())], spread); });
 }
 
-/// Clusters that contain angles of all magnitudes.
+/// Returns clusters of gradients, with angles of all magnitudes within each cluster.
 Gradients graded_clusters(Random& random, std::size_t n) {
   const Gradients centres = uniform(random, 2 + random.below(8));
   return fill(n, [&] { return tilted(random, centres[random.below(centres.size())], small_angle(random)); });
 }
 
-/// A ring around an axis, like the wall of a hole. Without the regularisation epsilon, infinitely many weights
-/// would be optimal.
+/// Returns a ring of gradients around an axis, like the wall of a hole. Without the regularisation epsilon, infinitely
+/// many weights would be optimal.
 Gradients cone(Random& random, std::size_t n) {
   const Mat3 frame = random_rotation(random);
   const double z = random.uniform(-1.0, 1.0);
@@ -158,7 +158,7 @@ Gradients cone(Random& random, std::size_t n) {
               [&] { return Vec3(frame * (std::sqrt(1.0 - z * z) * random.direction_in_plane() + z * Vec3::UnitZ())); });
 }
 
-/// An orthonormal frame and other gradients. At the optimum for epsilon = 0, every ratio is 1, and so every
+/// Returns an orthonormal frame and other gradients. At the optimum for epsilon = 0, every ratio is 1, and so every
 /// contact is on the boundary between active and inactive.
 Gradients orthonormal_and_more(Random& random, std::size_t n) {
   const Mat3 frame = random_rotation(random);
@@ -169,7 +169,8 @@ Gradients orthonormal_and_more(Random& random, std::size_t n) {
   });
 }
 
-/// Nearly orthogonal pairs: couplings of 1e-24 … 1 between springs that are otherwise independent.
+/// Returns nearly orthogonal pairs of gradients, with couplings of 1e-24 … 1 between springs that are otherwise
+/// independent.
 Gradients nearly_orthogonal(Random& random, std::size_t n) {
   const Mat3 frame = random_rotation(random);
   const double angle = small_angle(random);
@@ -177,7 +178,8 @@ Gradients nearly_orthogonal(Random& random, std::size_t n) {
       n, [&] { return tilted(random, sign_of(random, frame.col(static_cast<Eigen::Index>(random.below(3)))), angle); });
 }
 
-/// Two faces of a wedge that is almost closed or almost flat, planar.
+/// Returns the gradients of two planar faces whose normals differ by 2e-12 to 2 rad. The second face has a small
+/// fraction of the gradients.
 Gradients wedge(Random& random, std::size_t n) {
   const double angle = small_angle(random);
   const double share = small_angle(random);
@@ -187,7 +189,7 @@ Gradients wedge(Random& random, std::size_t n) {
   });
 }
 
-/// A set from one of the distributions above, combined with a set from another.
+/// Returns a set from one of the distributions above, combined with a set from another distribution.
 Gradients mixture(Random& random, std::size_t n) {
   constexpr Gradients (*draws[])(Random&, std::size_t) = {
       uniform,          planar,          parallel, opposite,   axis_aligned,

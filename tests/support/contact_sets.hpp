@@ -23,7 +23,7 @@ std::size_t random_size(Random& random, std::size_t largest);
 /// Returns a uniformly distributed rotation.
 Mat3 random_rotation(Random& random);
 
-/// A random distribution of n unit gradients that is difficult for force laws in a particular respect.
+/// A difficult distribution of random unit gradients for tests of force laws; `draw` returns n gradients.
 struct GradientDistribution {
   const char* name;
   bool planar;  ///< true if every gradient lies in the plane z = 0

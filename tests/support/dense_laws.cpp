@@ -28,7 +28,7 @@ Eigen::VectorXd shaped_weights(const Eigen::MatrixXd& A, int m) {
 
 ShapingOptimality shaping_optimality(const ContactBuffer& contacts, double eps) {
   using Real = long double;
-  // xx, yy, zz, xy, xz, yz of S.
+  // Entries xx, yy, zz, xy, xz, yz of S.
   Real S[6] = {};
   Real c_squared = 0.0L;
   ShapingOptimality result;

@@ -18,11 +18,11 @@ struct Dense {
   Eigen::Index n() const { return d.size(); }
   /// A_ij = <u_i, u_j>^2, the n x n matrix of thesis Eq. 3 and 4.
   Eigen::MatrixXd A() const { return (U.transpose() * U).array().square(); }
-  /// Sum of c_i u_i u_i^T for the weights c.
+  /// Returns the sum of c_i u_i u_i^T for the weights c.
   Mat3 S(const Eigen::VectorXd& c) const { return U * c.asDiagonal() * U.transpose(); }
-  /// Spring force -K sum c_i d_i u_i.
+  /// Returns the spring force -K sum c_i d_i u_i.
   Vec3 spring(double K, const Eigen::VectorXd& c) const { return -K * (U * (c.cwiseProduct(d))); }
-  /// Sum of |c_i| |d_i|: the scale of rounding errors of the spring force, in units of K.
+  /// Returns the sum of |c_i| |d_i|: the scale of rounding errors of the spring force, in units of K.
   double magnitude(const Eigen::VectorXd& c) const { return c.cwiseAbs().dot(d.cwiseAbs()); }
 };
 

@@ -12,8 +12,8 @@
 /// Fake parts of a simulation, so that a test of the simulation loop depends on no other code.
 namespace hapbench::test {
 
-/// An environment with a constant number of contacts at the tool's position; 0 for an environment that is never
-/// touched.
+/// An environment that has a constant number of contacts, all at the tool's position. With 0 contacts, the tool never
+/// touches it.
 class FakeSource final : public ContactSource {
  public:
   explicit FakeSource(std::size_t contacts = 0) : contacts_(contacts) {}

@@ -60,7 +60,7 @@ TriangleSoup sphere(double radius, int levels) {
   for (const double sign : {1.0, -1.0}) {
     for (int axis = 0; axis < 3; ++axis) soup.vertices.push_back(sign * Vec3::Unit(axis));
   }
-  // One triangle in each octant; an odd number of negative axes reverses its orientation.
+  // Each octant has one triangle. An odd number of negative axes reverses the triangle's orientation.
   for (std::uint32_t octant = 0; octant < 8; ++octant) {
     const std::uint32_t x = 3 * (octant & 1), y = 1 + 3 * (octant >> 1 & 1), z = 2 + 3 * (octant >> 2 & 1);
     const bool odd = ((octant ^ octant >> 1 ^ octant >> 2) & 1) != 0;

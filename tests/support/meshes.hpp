@@ -23,8 +23,7 @@ TriangleSoup sphere(double radius, int levels);
 /// into two triangles. Vertices with equal positions are not merged; the code under test must weld them.
 TriangleSoup sheet(int n, int m, const std::function<Vec3(int, int)>& position);
 TriangleSoup torus(int n, int m);
-/// One-sided surfaces: a band with half a twist, and a tube that joins its other end inside out and passes
-/// through itself.
+/// Return one-sided surfaces: a band with half a twist, and a Klein bottle, a closed tube that passes through itself.
 TriangleSoup moebius_band(int n);
 TriangleSoup klein_bottle(int n, int m);
 

@@ -54,7 +54,7 @@ class SearchPair {
   std::uint64_t contacts_ = 0;
 };
 
-/// Sums over the poses of all walks.
+/// Totals over the poses of all walks of a test: poses, contacts found and neighbour lists built.
 struct WalkTotals {
   std::uint64_t poses = 0, contacts = 0, lists_rebuilt = 0;
 };

@@ -126,15 +126,15 @@ Setting single_spring() {
 Setting parallel_springs() {
   return springs(std::vector<Vec3>(5, kOblique), kDeep * kOblique, false);
 }
-// Three orthogonal springs with equal compression: S_sum = I, sum u = (1, 1, 1).
+// Returns three orthogonal springs with equal compression: S_sum = I, sum u = (1, 1, 1).
 Setting corner_springs() {
   return springs({Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ()}, Vec3::Constant(kDeep), false);
 }
-// One spring pushes and the other pulls: depths d and -d along the gradients x and -x.
+// Returns two opposite springs, of which one pushes and the other pulls: depths d and -d along the gradients x and -x.
 Setting opposite_springs() {
   return springs({Vec3::UnitX(), -Vec3::UnitX()}, kDeep * Vec3::UnitX(), true);
 }
-// Two faces at an angle of 120 degrees, with the tool pressed symmetrically between them: both depths are d/2
+// Returns two faces at an angle of 120 degrees, with the tool pressed symmetrically between them: both depths are d/2
 // and <u_1, u_2> = -1/2. Each spring contributes half of its depth along the exit direction.
 Setting wedge_springs() {
   const double s = std::sqrt(0.75);
@@ -202,7 +202,7 @@ Answer no_force() {
 /// rotated.
 constexpr double kSpacing = 0.00013;
 
-// A flat tool pressed into the plane, in the middle of the grid. By symmetry, the force is normal to the plane.
+// Returns a flat tool pressed into the plane, in the middle of the grid. By symmetry, the force is normal to the plane.
 Setting pressed_plane() {
   Setting setting;
   setting.points = surface_points(Plane{20 * kSpacing, kSpacing});
@@ -222,11 +222,11 @@ Setting slot(double x) {
   setting.pose.position = {x, 0.0, -0.0047};
   return setting;
 }
-// A tool that is wider than the slot, in the middle of the slot: both faces push equally.
+// Returns a tool that is wider than the slot, in the middle of the slot. Both faces push equally.
 Setting centred_slot() {
   return slot(0.0);
 }
-// The tool touches only the right face.
+// Returns a tool in the slot that touches only the right face.
 Setting one_sided_slot() {
   return slot(0.000217);
 }
@@ -234,7 +234,7 @@ Answer one_sided_slot_answer() {
   return {-Vec3::UnitX()};
 }
 
-/// The 2-D peg of thesis A.1. `y` is the height of the tip centre [m].
+/// Returns the 2-D peg of thesis A.1. `y` is the height of the tip centre [m].
 Setting peg(double tilt, double diameter, double y) {
   Setting setting;
   setting.tool = {diameter / 2, 0.005, Tip::round};
@@ -243,7 +243,7 @@ Setting peg(double tilt, double diameter, double y) {
   setting.pose = {{0.0, y, 0.0}, {-std::sin(tilt), -std::cos(tilt), 0.0}};
   return setting;
 }
-// Wall points at the height of the tip centre touch the hemispherical tip.
+// Returns a peg whose hemispherical tip is touched by the wall points at the height of the tip centre.
 Setting peg_start() {
   return peg(0.1, 0.001, -0.004);
 }
@@ -255,11 +255,11 @@ Answer in_plane() {
   answer.only_in_plane = true;
   return answer;
 }
-// Upright peg that fits exactly: it touches both walls with depth zero.
+// Returns an upright peg that fits exactly: it touches both walls with depth zero.
 Setting upright_peg() {
   return peg(0.0, 0.001, -0.004);
 }
-// A thinner peg pressed against the bottom. By symmetry, the force points straight up.
+// Returns a thinner peg that is pressed against the bottom. By symmetry, the force points straight up.
 Setting pressed_peg() {
   return peg(0.0, 0.00083, -0.0047);
 }

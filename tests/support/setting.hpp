@@ -77,8 +77,8 @@ struct Answer {
   bool may_vanish = false;
   /// True for a planar scene in which it is only known that the force lies in the plane z = 0.
   bool only_in_plane = false;
-  /// Exact spring force divided by K along `direction` [m], by name of the law. The force of other laws is only
-  /// bounded.
+  /// Exact values of the spring force along `direction` divided by K [m], by name of the law. For other laws, the force
+  /// is only bounded.
   std::map<std::string_view, double> spring_over_K = {};
 };
 

@@ -13,8 +13,8 @@ namespace {
 
 using Real = long double;
 
-/// The closed polygon of a profile and the axis, with coordinates s along the axis and rho from the axis.
-/// Inside is determined by the even-odd rule.
+/// Closed polygon of a profile and the axis, with the coordinates s along the axis and rho, the distance from the axis.
+/// The even-odd rule determines which points are inside.
 struct Section {
   std::vector<ProfilePoint> corners;  ///< from the axis at the shank's end to the axis at the tip
   Real ball;                          ///< radius of a round tip; 0 for a flat tip
@@ -130,7 +130,7 @@ DefinedTool bur(Random& random, double unit) {
 }
 
 Cylinder cylinder(Random& random, double unit, Tip tip) {
-  // Not shorter than its radius; Revolved explains shorter tools.
+  // The length is at least the radius, because Revolved and Cylinder may differ for shorter tools with a round tip.
   const double radius = thickness(random, unit);
   return {radius, radius + unit * random.uniform(0.2, 10.0), tip};
 }

@@ -1,13 +1,13 @@
-"""Linear loops of hand, device and contact, computed with numpy from the description of the devices in the manual. The
-functions return the matrix that maps the state from one sample to the next, and random devices. This file shares no
-code with hapbench."""
+"""Linear loops of hand, device and contact, as matrices that map the state from one sample to the next. Also creates
+random devices and hands. The loops are computed with numpy from the description of the devices in the manual. This file
+shares no code with hapbench."""
 import numpy as np
 from scipy import signal
 from scipy.linalg import expm
 
 
 def map_of(step, n):
-    """Returns the matrix of the linear function `step` of n numbers."""
+    """Returns the matrix of a linear function `step` that maps n numbers to n numbers."""
     return np.column_stack([step(unit) for unit in np.eye(n)])
 
 
@@ -26,8 +26,9 @@ def held(rate, inputs, t):
 
 
 class LowPass:
-    """Butterworth low-pass of a sampled input. The input of a sample is constant over the period T [s] before this
-    sample. `given`: the fields cutoff_Hz and order of a scenario, or None for no filter."""
+    """Butterworth low-pass of a sampled input. The input at a sample is constant over the period T [s] before this
+    sample. `given`: dict with the fields cutoff_Hz and order of a scenario, or None for no filter.
+    """
 
     def __init__(self, given, T):
         if given is None:
@@ -48,8 +49,8 @@ class LowPass:
 
 
 def sampled_hand(hand, across=True):
-    """Returns stiffness [N/m] and damping [N s/m] of a hand whose force is sampled and held over a step; 0 for other
-    hands. The direction is the normal of the surface, or the surface itself if `across` is false.
+    """Returns stiffness [N/m] and damping [N s/m] of a hand whose force is sampled and held over a step; (0, 0) for any
+    other hand. `across`: true for the direction normal to the surface, false for a direction along the surface.
     """
     if hand["type"] == "impedance":
         return hand["stiffness_N_per_m"], hand["damping_N_s_per_m"]
@@ -61,8 +62,7 @@ def sampled_hand(hand, across=True):
 
 
 def damping_of(scene, K=None):
-    """Returns the damping of the rendering [N s/m] at the stiffness K [N/m]. The default is the stiffness of the
-    scene."""
+    """Returns the damping of the rendering [N s/m] at the stiffness K [N/m]. K = None: the stiffness of the scene."""
     r = scene["rendering"]
     if "damping_N_s_per_m" in r:
         return r["damping_N_s_per_m"]
@@ -71,9 +71,9 @@ def damping_of(scene, K=None):
 
 
 def impedance_map(scene, K, B=None, across=True):
-    """Returns the matrix of an impedance device at a wall of stiffness K [N/m] and damping B [N s/m]. Between samples,
-    the handle, or motors and handle, follow the exact solution. The force of the wall depends on the measured
-    position."""
+    """Returns the matrix of one sample of an impedance device at a wall of stiffness K [N/m] and damping B [N s/m].
+    Between samples, the handle (or motors and handle) follows the exact solution. The force of the wall depends on the
+    measured position."""
     T, device = scene["time"]["step_s"], scene["device"]
     B = damping_of(scene) if B is None else B
     hand = scene["hand"]
@@ -129,9 +129,9 @@ def leapfrog(x, v, f, M, dt):
 
 
 def admittance_map(scene, K, B=None, across=True):
-    """Returns the matrix of an admittance device at a wall of stiffness K [N/m] and damping B [N s/m]. A step moves the
-    virtual mass, then computes the force of the servo on the carriage, then moves carriage and handle by the implicit
-    midpoint rule."""
+    """Returns the matrix of one step of an admittance device at a wall of stiffness K [N/m] and damping B [N s/m]. A
+    step moves the virtual mass, computes the force of the servo on the carriage, and moves carriage and handle by the
+    implicit midpoint rule."""
     dt, r, device, hand = (scene[name] for name in ("time", "rendering", "device", "hand"))
     dt = dt["step_s"]
     servo, parts = device["servo"], device["mechanics"]
@@ -179,7 +179,7 @@ MAPS = {"impedance": impedance_map, "admittance": admittance_map, "ideal": ideal
 
 
 def between(random, low, high):
-    """Returns a random number between `low` and `high`. Its logarithm is uniformly distributed."""
+    """Returns a random number between `low` and `high`, whose logarithm is uniformly distributed."""
     return float(np.exp(random.uniform(np.log(low), np.log(high))))
 
 
@@ -248,9 +248,9 @@ def random_device(random, kind):
 
 
 def limit_of(stable, low=1e-3, high=1e9):
-    """Returns the largest value for which `stable` is true, or None if there is no single boundary below `high`. A
-    single boundary requires values (each 1.1 times the previous value) that are stable from `low` to the boundary and
-    unstable up to 20 times the boundary."""
+    """Returns the boundary of the values for which `stable` is true, or None if there is no single boundary below
+    `high`. The test is made at values that grow by a factor of 1.1. They must be stable from `low` to the boundary, and
+    unstable from there to 20 times the boundary."""
     value, factor = low, 1.1
     while stable(value * factor):
         value *= factor

@@ -19,7 +19,7 @@ from scipy.linalg import expm
 
 PROGRAM = Path(sys.argv[1]).resolve()
 PAGE = Path(__file__).resolve().parent / "README.md"
-BETWEEN = " / "  # separates cases that share a line of the table
+BETWEEN = " / "  # separator of cases that share a line of the table
 BEGIN, END = "<!-- orders -->\n", "<!-- /orders -->\n"
 END_S = 0.02  # duration of a run [s]: 1.4 periods of the spring
 STEPS = [1e-3 / 2**i for i in range(6)]  # time steps [s]
@@ -39,7 +39,7 @@ FORMAL = {
 # at the second-finest step, the observed order differs from p by less than log2(1.07) = 0.1.
 WITHIN = 0.1
 NONLINEAR = {"static_coupling"}  # laws without a closed form, because their spring softens
-# Smallest error that is used, relative to the amplitude of the motion. Smaller errors are not caused by the time step.
+# Smallest error that is used, relative to the amplitude of the motion. Smaller errors are caused by rounding.
 ROUNDING = 1e-11
 
 
@@ -52,7 +52,8 @@ class Case:
     exact: object  # function (step, phase) -> (position, velocity) at END_S
     why: str = ""
     changes: object = field(default=lambda *_: {})  # function (step, phase) -> changes of the scene
-    phases: int = 1  # number of starting phases within a step; the largest error counts
+    # Number of starting times within a step; the largest error over these starts counts.
+    phases: int = 1
 
 
 def linear(A, b=0.0, x=(X0, V0), t=END_S):
@@ -64,9 +65,9 @@ def linear(A, b=0.0, x=(X0, V0), t=END_S):
 
 
 def driven(K, B, force=0.0, k=0.0, b=0.0, amplitude=0.0, omega=0.0):
-    """Returns a function that computes (position, velocity) of the mass M at END_S. The mass has a spring K and a
-    damper B, and the hand's force is force + amplitude sin(omega t) - k x - b v. The sine adds two states.
-    """
+    """Returns a function of (step, phase) that computes (position, velocity) of the mass M at END_S. The mass has a
+    spring K and a damper B. The force of the hand is force + amplitude sin(omega t) - k x - b v. The sine adds two
+    states to the linear system."""
     A = np.array(
         [
             [0, 1, 0, 0],
@@ -100,8 +101,8 @@ MOTORS = {
 
 
 def geared(K, B, force=0.0, k=0.0, b=0.0, amplitude=0.0, omega=0.0):
-    """Returns a function that computes (position, velocity) of the motors at END_S. Spring and damper act on the
-    motors, and the force of the hand acts on the handle. Arguments: see driven()."""
+    """Returns a function of (step, phase) that computes (position, velocity) of the motors at END_S. Spring and damper
+    act on the motors; the force of the hand acts on the handle. Arguments: see driven()."""
     share, gear, loss = MOTORS.values()
     m, h = share * M, (1 - share) * M
     A = np.array(
@@ -161,8 +162,9 @@ GAP, BOUNCES = 4e-4, 32  # initial distance from the spring [m], number of start
 
 
 def stiffness_of_bounce(phase):
-    """Returns a stiffness [N/m] that differs for each phase, so that the bounces end at different fractions of a step.
-    `phase`: fraction of a step by which the bounce begins later."""
+    """Returns the stiffness [N/m] of the spring for one start. It differs between the starts, so that the bounces end
+    at different fractions of a step. `phase`: fraction of a step by which the bounce begins later.
+    """
     return K * (1.0 + 0.4 * (phase * 0.6180339887 * BOUNCES % 1.0))
 
 
@@ -264,9 +266,9 @@ def cases(laws):
     }
     for integrator, orders in FORMAL.items():
         finds = integrator == "event"
-        # At the onset of contact, the force is continuous but its derivative is not, so that methods of second order
-        # keep this order. Leapfrog has second order too: without contact, its state equals the state of velocity
-        # Verlet, and the bounce begins and ends without contact.
+        # When contact begins, the force is continuous but its derivative is not. Methods of second order keep their
+        # order. Leapfrog also has second order: without contact, its state equals the state of velocity Verlet, and a
+        # bounce begins and ends without contact.
         formal = orders[0] if finds else 1 if integrator == "implicit_euler" else 2
         yield Case(
             "switching",
@@ -281,7 +283,7 @@ def cases(laws):
 
 
 def last_row(content, step, rows):
-    """Runs a scene and returns the last row of its trajectory.csv. `step`: time step [s]. `rows`: number of steps."""
+    """Runs a scene and returns the last row of its trajectory.csv. `step`: time step [s]. `rows`: number of rows."""
     with tempfile.TemporaryDirectory(prefix="hapbench-orders-") as folder:
         file = Path(folder) / "scene.json"
         file.write_text(
@@ -310,8 +312,8 @@ def error_at(case, step, phase):
 
 
 def row(case):
-    """Returns a row of the table: part, case, formal and observed order, the errors at the coarsest and the finest
-    step, and the verdict."""
+    """Returns the row of a case in the table: part, case, formal order, observed order, errors at the coarsest and at
+    the finest step, and verdict."""
     errors = [
         max(error_at(case, step, i / case.phases) for i in range(case.phases)) for step in STEPS
     ]
@@ -333,7 +335,7 @@ def row(case):
 
 
 def table_of(rows):
-    """Returns the lines of the table. Rows that differ only in their case share a line."""
+    """Returns the lines of the table. Rows that differ only in the case are joined to one line."""
     cases_of = {}
     for part, case, *rest in rows:
         cases_of.setdefault((part, *rest), []).append(case)

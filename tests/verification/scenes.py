@@ -31,23 +31,23 @@ from scipy.optimize import brentq
 
 from loop_models import MAPS, between, damping_of, radius, random_device, random_hand
 
-# Largest fraction of runs that may contradict `limit`. `limit` states that at most 6 % of its stable interval may be
-# unstable.
+# Largest fraction of runs that may contradict `limit`. `limit` itself states that up to 6 % of its stable interval may
+# be unstable.
 SHARE = 0.06
 # Largest relative difference of a linear limit. The derivative of a rendered force is a difference quotient with an
 # error of 1e-7. The limit depends on it about linearly. Newton's method finds an equilibrium to 1e-10 m, which changes
 # the slope of a round tip by up to 1e-10 / 1e-5.
 AGREE = 3e-5
-# Largest difference of an eigenvalue from 1 for a mode that moves freely. Rounding changes a double eigenvalue by the
-# square root of the machine precision.
+# An eigenvalue within this distance of 1 belongs to a mode that moves freely. Rounding changes a double eigenvalue by
+# the square root of the machine precision.
 FREE = 1e-6
 # DURATION_S: duration of a run [s]. CUTOFF_HZ: cutoff of the filter for vibration. MAX_M_PER_S: largest velocity of
 # low vibration. UNSURE: factor around a threshold within which a run has no verdict.
 DURATION_S = 0.8
 CUTOFF_HZ, MAX_M_PER_S, UNSURE = 30.0, 1e-3, 1.3
 
-# Weight c of each contact for n contacts with parallel normals. With the depths d, the force is f = -K sum c d. The
-# stiffness ratio is S = sum c. None means that only the deepest contact has a force.
+# Weight c of each contact, as a function of the number n of contacts with parallel normals. With the depths d, the
+# force is f = -K sum c d, and the stiffness ratio is S = sum c. None: only the deepest contact has a force.
 LAWS = {
     "summation": lambda n: 1.0,
     "tandpasta": lambda n: 1.0,
@@ -81,7 +81,7 @@ class Contact:
         x, y, _ = scene["initial"]["position_m"]
         rho = np.hypot(*np.meshgrid(at - x, at - y)).ravel()
         self.rho = np.sort(rho[rho <= self.r])
-        # The depth of the tip at which each point begins to touch.
+        # Depth of the tip [m] at which each point begins to be in contact.
         self.begins = (
             self.r - np.sqrt(self.r**2 - self.rho**2) if self.is_round else 0 * self.rho
         )
@@ -130,8 +130,8 @@ class Contact:
 
 
 def push_of(scene):
-    """Returns the force of the hand [N], at the end of the run, as a function of the depth z [m] by which the tool is
-    pressed in."""
+    """Returns the force of the hand [N] at the end of the run, as a function of the depth z [m] of the tip below the
+    plane."""
     hand, tool = scene["hand"], scene["tool"]
     last = lambda value: value["points"][-1][1] if isinstance(value, dict) else value
     if hand["type"] == "force":
@@ -139,7 +139,7 @@ def push_of(scene):
     if hand["type"] in ("push", "drag"):
         return lambda z: last(hand["force_N"])
     target = last(hand["target"]["z_m"])
-    # The position of a tool is the centre of its tip: for a round tip the centre of the ball.
+    # The position of a tool is the centre of its tip: for a round tip, the centre of the ball.
     lowest = target - (tool["diameter_m"] / 2 if tool["tip"] == "round" else 0.0)
     k = hand["stiffness_N_per_m"]
     if scene["device"]["type"] == "admittance":
@@ -186,7 +186,8 @@ def random_scene(seed, i):
             device["encoder_step_m"] = between(random, 1e-6, 3e-5)
 
     def over_time(first, last):
-        """Returns the constant `last`, or waypoints from `first` to `last` over a quarter of the run."""
+        """Returns either the constant `last`, or waypoints that move from `first` to `last` in the first quarter of the
+        run. The choice is random."""
         points = [[0, first], [DURATION_S / 4, last]]
         moves = {"type": "waypoints", "points": points, "interpolation": "cosine"}
         return moves if random.random() < 0.7 else last
@@ -241,7 +242,7 @@ def random_scene(seed, i):
 
 
 class Bench:
-    """Executes commands of the program on one scene, in the folder of this scene."""
+    """Runs commands of the program on one scene. Files are in the folder of this scene."""
 
     def __init__(self, program, folder, scene):
         self.program, self.folder, self.scene = program, folder, scene
@@ -273,7 +274,8 @@ class Bench:
 
 
 class Motion:
-    """Motion of a run: motion of the handle on an impedance device, otherwise motion of the virtual tool."""
+    """Motion of a run, from the rows of trajectory.csv: of the handle on an impedance device, of the virtual tool on
+    any other device."""
 
     def __init__(self, scene, rows):
         self.T = scene["time"]["step_s"]
@@ -287,8 +289,8 @@ class Motion:
 
     @staticmethod
     def is_led(scene):
-        """Returns True if a script moves the tool. By default, the vibration of the handle then decides on
-        stability."""
+        """Returns True if a script moves the tool: for a drag, or a hand whose target or force changes over time. By
+        default, the vibration of the handle then decides on stability."""
         hand = scene["hand"]
         led = (hand.get("target", {}).get("z_m"), hand.get("z_N"), hand.get("force_N"))
         return hand["type"] == "drag" or any(isinstance(value, dict) for value in led)
@@ -298,7 +300,7 @@ class Motion:
         return slice(n * i // 4, n * (i + 1) // 4)
 
     def fast_part(self, v):
-        """Returns the part of a velocity above 30 Hz, by the filter of the manual."""
+        """Returns the part of a velocity above 30 Hz, by the high-pass filter that the manual defines."""
         high = signal.butter(4, CUTOFF_HZ, "highpass", fs=1 / self.T, output="sos")
         return signal.sosfilt(high, v - v[0], axis=0)
 
@@ -348,8 +350,8 @@ class Motion:
 
 
 def loops_of(scene, contact, push, K):
-    """Returns (slope / K, stiffness ratio, number of contacts, depth [m]) of each equilibrium at the stiffness K
-    [N/m]."""
+    """Returns (slope / K, stiffness ratio, number of contacts, depth [m]) of each equilibrium at the stiffness K [N/m].
+    For a drag, returns one entry for each possible number of contacts."""
     if scene["hand"]["type"] != "drag":
         return contact.equilibria(K, push, 0.999 * contact.r)
     # During a drag, the number of contacts changes. All points have the same slope, so that only the number of contacts
@@ -386,7 +388,7 @@ def check_linear(scene, row):
             scene, printed * (1 + within), *after.get(n, (slope, ratio))
         ):
             return None, "agrees"
-    # At the limit, the equilibrium may change to another set of contacts.
+    # At the limit, the set of contacts at the equilibrium may change.
     stable = [is_stable(scene, printed * (1 - within), s, q) for s, q, *_ in below]
     unstable = [not is_stable(scene, printed * (1 + within), s, q) for s, q, *_ in above]
     if any(stable) and any(unstable) and {n for *_, n, _ in below} != after.keys():
@@ -428,12 +430,13 @@ def check_cause(scene, bench, row):
     if "gains and loses" in behaviour:
         points = rows["colliding"][motion.quarter(3)]
         return None, f"contact points change ({'count' if np.ptp(points) else 'not the count'})"
-    # A run that "shows no growth in its duration" is stable by the rule and not at rest. It must not lose contact.
+    # A run that "shows no growth in its duration" is stable by the rule although it is not at rest. It must not lose
+    # contact.
     return (f"{reason}: out of contact" if motion.share_away() > 0 else None), "no growth"
 
 
 def check_quote(scene, bench, row):
-    """Checks runs near the quoted limit. Returns (contradictions, number of runs)."""
+    """Checks runs near the quoted limit. Returns (texts about contradictions, number of runs)."""
     quoted, faults, runs = row["quoted_limit"], [], 0
     if quoted is None:
         return faults, runs
@@ -466,7 +469,7 @@ def check_tune(scene, bench):
     K, zeta, faults = law["stiffness_N_per_m"], law["damping_ratio"], []
     chosen = json.loads(json.dumps(scene))
     chosen["rendering"].pop("damping_N_s_per_m", None)
-    mass = tuned["rendering"]["mass_kg"]  # `tune` searches it on an admittance device
+    mass = tuned["rendering"]["mass_kg"]  # on an admittance device, `tune` also searches the mass
     chosen["rendering"].update(stiffness_N_per_m=K, damping_ratio=zeta, mass_kg=mass)
     contact, push = Contact(chosen), push_of(chosen)
     at_K = loops_of(chosen, contact, push, K)
@@ -492,7 +495,8 @@ def check_tune(scene, bench):
 
 
 def hand_in(text):
-    """Returns --set overrides for the hand that a text of `tune` names, such as "a hand of 0.1 kg and 100 N/m"."""
+    """Returns the --set options for the hand in a text of `tune`, such as "a hand of 0.1 kg and 100 N/m". Returns an
+    empty list if the text names no hand."""
     found = re.search(r"a hand of (?:([0-9.]+) kg and )?([0-9.]+) N/m", text)
     if not found:
         return []
@@ -501,7 +505,7 @@ def hand_in(text):
 
 
 def check_binding(scene, bench, law, zeta):
-    """Checks the constraint that limits the recommendation, by the run or the loop that `tune` names. Returns a fault
+    """Checks the constraint by which `tune` explains its recommendation, with a run or with the loop. Returns a fault
     or None. `law`: answer of `tune` for the law. `zeta`: damping ratio."""
     why, binding = law["why"], law["binding"]
     with (bench.folder / "tune" / "tune_trials.csv").open(encoding="utf-8") as file:
@@ -568,7 +572,7 @@ def known_results(file):
 
 
 def summary_of(results):
-    """Prints the checks and their faults. Returns the exit status."""
+    """Prints the results of all checks with their faults. Returns the exit status."""
     runs = sum(r["runs"] for r in results)
     contradictions = [(r["i"], text) for r in results for text in r["contradictions"]]
     faults = [(r["i"], text) for r in results for text in r["faults"]]

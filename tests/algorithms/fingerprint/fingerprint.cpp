@@ -30,7 +30,8 @@ RenderingConfig config_of(std::string_view algorithm) {
   return config;
 }
 
-/// Prints hashes for random springs at random positions: the laws on all gradient distributions.
+/// Prints one hash for each gradient distribution: the forces and contacts of the algorithm on random springs at random
+/// positions of the tool.
 void print_springs(const AlgorithmEntry& algorithm) {
   for (const GradientDistribution& family : gradient_distributions()) {
     Random random(1);
@@ -47,7 +48,7 @@ void print_springs(const AlgorithmEntry& algorithm) {
   }
 }
 
-/// Returns the 2-D peg with tilt and round tip.
+/// Returns the parts of a run of the 2-D peg, with a round tip and a changing tilt.
 SimulationParts peg(const RenderingConfig& config) {
   Setting setting;
   setting.tool = {0.0005, 0.005, Tip::round};
@@ -59,7 +60,7 @@ SimulationParts peg(const RenderingConfig& config) {
   return parts;
 }
 
-/// Returns a hand that presses the flat tool into a plane while the tool tilts and rotates.
+/// Returns the parts of a run in which a hand presses the flat tool into a plane while the tool tilts and rotates.
 SimulationParts plane(const RenderingConfig& config) {
   Setting setting;
   setting.points = surface_points(Plane{0.006, 0.00011});

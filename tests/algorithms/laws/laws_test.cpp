@@ -11,10 +11,11 @@
 namespace hapbench::laws_test {
 namespace {
 
-// Rounding of sums of n <= 300 products: below 2 n eps times the sum of magnitudes.
+// Relative rounding error of sums of n <= 300 products: below 2 n eps times the sum of magnitudes.
 constexpr double kRounding = 600 * std::numeric_limits<double>::epsilon();
 
-/// Compares the law on random sets of all distributions with weights c(n), computed with dense matrices.
+/// Checks the weights, force and tensor of the law on random sets of all distributions. The weights must be c(n); force
+/// and tensor are computed from them with dense matrices.
 void expect_constant_weights(const char* name, double (*c_of_n)(double), const RenderingConfig& config = {}) {
   test::for_random_contacts([&](ContactBuffer contacts, const char* family) {
     const LawForce force = make_law(name, config)->evaluate(contacts);
@@ -101,7 +102,7 @@ TEST(AveragedDirection, TurnsRoundWhereOneOfOpposedContactsComes) {
 }
 
 TEST(AveragedDirection, CountsGradientsAsCancelledUpToABillionthOfTheirNumber) {
-  // Two opposite gradients and a gradient of length t: |sum| = t is compared with 3e-9.
+  // Sum two opposite gradients and a gradient of length t: |sum| = t is compared with the threshold 3e-9.
   const auto with_rest = [](double t) {
     return evaluate("original_averaging", {Vec3::UnitX(), -Vec3::UnitX(), t * Vec3::UnitY()}).spring.norm();
   };
@@ -129,7 +130,7 @@ LawForce tandpasta(ContactBuffer& contacts) {
   return make_law("tandpasta", {})->evaluate(contacts);
 }
 
-/// Computes beta_i and sigma_E of thesis F.2 with dense matrices.
+/// Checks the weights beta_i / sigma_E and the force of thesis F.2 against dense matrices.
 TEST(Tandpasta, IsItsFormula) {
   test::for_random_contacts([](ContactBuffer contacts, const char* name) {
     const test::Dense dense(contacts);
@@ -140,7 +141,7 @@ TEST(Tandpasta, IsItsFormula) {
     // The error of beta is up to n eps (sums of n inner products divided by a sum of at least 1); c = beta / sigma
     // amplifies this error.
     const double rounding = 8 * static_cast<double>(dense.n()) * kEps / s;
-    if (s < 1e-9) return;  // near the threshold, rounding decides
+    if (s < 1e-9) return;  // rounding decides near the threshold
     const Eigen::VectorXd c = beta / s;
     const LawForce force = tandpasta(contacts);
     ASSERT_LE((test::weights(contacts) - c).cwiseAbs().maxCoeff(), rounding * c.maxCoeff()) << name;
@@ -160,7 +161,7 @@ TEST(Tandpasta, GivesNoForceUpToItsEnergyThreshold) {
     EXPECT_EQ(force.spring == Vec3::Zero(), force.S == Mat3::Zero());
     return force.spring.norm();
   };
-  // Two opposed springs, one rotated by an angle t: beta = (1 - cos t) / (1 + cos t) = t^2 / 4 for both.
+  // Two opposite springs, one of them rotated by an angle t, have beta = (1 - cos t) / (1 + cos t) = t^2 / 4.
   const auto at_angle = [&](double t) { return force_of({{1, 0, 0}, {-std::cos(t), std::sin(t), 0}}, 0.001); };
   EXPECT_EQ(at_angle(0.0), 0.0) << "all springs cancel";
   EXPECT_EQ(at_angle(1.9e-6), 0.0);
@@ -178,7 +179,8 @@ RenderingConfig config_of(double coupling, double saturation = 1e9) {
   return config;
 }
 
-// Rounding error: sums of n <= 300 terms, amplified by the condition number of K_vc I + K S, at most 1 + n K / K_vc.
+// Returns the rounding error: sums of n <= 300 terms, amplified by the condition number of K_vc I + K S, which is at
+// most 1 + n K / K_vc.
 double rounding(const test::Dense& dense, double coupling) {
   const double n = static_cast<double>(dense.n());
   return 4 * n * kEps * (1 + n * kK / coupling);
@@ -236,8 +238,8 @@ TEST(StaticCoupling, BalancesACopyBetweenTheCouplingAndTheContactsItIsStillIn) {
         for (Eigen::Index i = 0; i < pressed.size(); ++i)
           if (pressed[i] * dense.d[i] <= 0.0) pressed[i] = 0.0;
         const Vec3 pushed = -kK * (dense.U * pressed);
-        // The law balances to 1e-13 K |pressed|. The inverse divides by 1 - (f / F)^2, which loses the digits that
-        // saturation removes. The contacts multiply the remaining error by up to n K / K_vc.
+        // The law finds the equilibrium to 1e-13 K |pressed|. The inverse divides by 1 - (f / F)^2, which loses the
+        // digits that saturation removes. The contacts multiply the remaining error by up to n K / K_vc.
         const double kept = 1.0 - (felt / saturation).squaredNorm();
         const double n = static_cast<double>(dense.n());
         const double lost = 1e-15 / kept * (1.0 + n * kK / coupling) * felt.norm() + 1e-12 * kK * dense.d.norm();

@@ -76,7 +76,7 @@ TEST(ShapedStiffness, AZeroGradientGetsNoWeight) {
   EXPECT_EQ(contacts.weight[1], 0.0);
 }
 
-/// Both variants of normal projection differ from stiffness shaping only in their depth models.
+/// Tests both variants of normal projection, which differ from stiffness shaping only in their depth models.
 class NormalProjectionLaw : public testing::TestWithParam<const char*> {};
 INSTANTIATE_TEST_SUITE_P(Both, NormalProjectionLaw,
                          testing::Values("normal_projection", "continuous_normal_projection"),
@@ -114,7 +114,7 @@ void expect_optimal(const test::GradientDistribution& family, ContactBuffer& con
   // set change contact by contact: 135 steps were the worst of 1e6 mixtures.
   ASSERT_LT(steps, std::string(family.name) == "mixture" ? 200 : 60);
   const auto optimality = test::shaping_optimality(contacts, kExactShapingEpsilon);
-  // Written so that a NaN also fails.
+  // The condition is written so that a NaN also fails.
   ASSERT_TRUE(optimality.smallest_weight >= 0.0 && optimality.largest_weight <= 1.0);
   ASSERT_LE(optimality.violation, test::kShapingRounding);
   ASSERT_GE(optimality.ratio_margin, -test::kShapingRounding);
@@ -140,19 +140,19 @@ TEST_P(ExactShapingOnFamily, IsOptimalAndWithinTheBounds) {
 
 /// Sets for which earlier versions of the solver failed, given by the seeds that determine their size and gradients.
 const std::pair<const char*, std::vector<std::uint64_t>> kHardSets[] = {
-    // The slope of the dual function is lost in rounding: a line search that makes no step stops at a distance of 1e-4
-    // from the optimum.
+    // For these sets, rounding hides the slope of the dual function. A line search that makes no step then stops at a
+    // distance of 1e-4 from the optimum.
     {"clusters", {573042, 883808, 1649647, 2506946}},
     {"nearly_parallel", {342823, 523566}},
     {"nearly_parallel_planar", {1565149, 1653106, 1905696}},
-    // The active set changes in the last correction: a solver that only clips the negative weights stops at a distance
-    // of 1e-9.
+    // For these sets, the active set changes in the last correction. A solver that only clips the negative weights
+    // stops at a distance of 1e-9 from the optimum.
     {"nearly_parallel", {10976, 534807, 863432}},
     {"clusters", {2020649}},
-    // The rounding of a_i . w is small if |w| is small: a tolerance for |w| = 1/eps ignores gradients and stops at a
-    // distance of 0.1.
+    // For these sets, the rounding of a_i . w is small because |w| is small. A tolerance for |w| = 1/eps ignores
+    // gradients and stops at a distance of 0.1 from the optimum.
     {"mixture", {1943, 3501, 90246, 118655, 184124, 189569}},
-    // Contacts become inactive one by one.
+    // For these sets, contacts become inactive one by one.
     {"clusters", {166086, 1300902, 2093822}},
     {"mixture", {265578, 701896}},
 };
@@ -182,7 +182,7 @@ TEST(ExactShaping, AZeroGradientGetsNoWeight) {
 TEST(ExactShaping, ANonFiniteGradientDoesNotHang) {
   for (const double bad : {std::nan(""), std::numeric_limits<double>::infinity()}) {
     ContactBuffer contacts = test::contacts_of({{1, 0, 0}, {bad, 0, 0}, {0, 1, 0}});
-    // The result is useless, and the next check of bounds ends the run, but the time must be bounded.
+    // The result has no meaning, and the next check of bounds ends the run. Only the number of steps must be bounded.
     EXPECT_LE(solve_exact_shaping(contacts), 1000);
   }
 }
@@ -231,7 +231,7 @@ TEST(MergedShaping, IsOptimalForTheTensorsOfItsGroups) {
   test::for_random_contacts([](ContactBuffer contacts, const char* family) {
     const std::size_t given = contacts.size();
     const LawForce force = evaluate(contacts);
-    ASSERT_EQ(contacts.size(), given) << family;  // none is dropped
+    ASSERT_EQ(contacts.size(), given) << family;  // the law removes no contact
     const test::Dense dense(contacts);
     const Eigen::VectorXd c = test::weights(contacts);
     ASSERT_GE(c.minCoeff(), 0.0) << family;
@@ -239,8 +239,8 @@ TEST(MergedShaping, IsOptimalForTheTensorsOfItsGroups) {
     const double rounding = 4 * kEps * static_cast<double>(given + 8);
     ASSERT_LE((force.S - S).norm(), rounding * (1 + S.norm())) << family;
     ASSERT_LE((force.spring - dense.spring(kK, c)).norm(), rounding * kK * 0.001 * 3) << family;  // sum c <= 3
-    // The bound of exact_shaping. Its proof only requires that each tensor has trace 1. The solver satisfies the
-    // optimality condition to 1e-14.
+    // Check the bound of exact_shaping. Its proof only requires that the tensor of each group has trace 1. The solver
+    // satisfies the optimality condition to 1e-14.
     ASSERT_GE(S.trace() + 1e-12, S.squaredNorm()) << family;
     ASSERT_LE(lambda_max(S), (1 + std::sqrt(3.0)) / 2 + 1e-12) << family;
     bool same_weight = true;  // same weight for contacts with the same gradient
@@ -253,7 +253,7 @@ TEST(MergedShaping, IsOptimalForTheTensorsOfItsGroups) {
         members += 1.0;
       }
       // Contacts with equal weight > 0 belong to one group, or to groups that happen to have the same weight. In both
-      // cases the mean of their ratios is 1 up to epsilon C <= 3e-6.
+      // cases the mean of the ratios of these contacts is 1 up to epsilon C <= 3e-6.
       ASSERT_TRUE(c[i] == 0.0 || std::abs(ratios / members - 1.0) <= 3.1e-6) << family << ' ' << ratios / members;
     }
     ASSERT_TRUE(same_weight) << family;

@@ -28,7 +28,7 @@ struct Script {
 };
 Script script;
 
-/// Returns the contacts in `script`, or throws.
+/// Writes the contacts of `script`, or throws at the call `throws_at`.
 int step(void*, const HapbenchPose* pose, HapbenchContacts* contacts, HapbenchForce*, char*) {
   script.pose = *pose;
   if (script.asked++ == script.throws_at) throw std::runtime_error("no\nway");

@@ -35,7 +35,8 @@ double violation(const ContactBuffer& contacts, std::size_t i, const Vec3& x) {
   return contacts.depth[i] + contacts.gradient(i).dot(x);
 }
 
-/// Contacts that a position in the middle satisfies, some of them exactly, with a wanted move.
+/// Random contacts and a wanted move. At least one move satisfies all contacts; it satisfies about 30 % of them
+/// exactly.
 struct Problem {
   ContactBuffer contacts;
   Vec3 wanted;
@@ -55,7 +56,8 @@ void for_feasible_problems(Check check) {
   }
 }
 
-// A strictly convex problem has a unique solution, and these conditions of Karush, Kuhn and Tucker characterise it.
+// Checks the Karush-Kuhn-Tucker conditions. They characterise the solution, which is unique because the problem is
+// strictly convex.
 TEST(NearestAllowed, SatisfiesTheConditionsOfOptimality) {
   for_feasible_problems([](Problem problem, const char* family) {
     const AllowedMove allowed = nearest_allowed(problem.wanted, problem.contacts);
@@ -92,8 +94,8 @@ TEST(NearestAllowed, HoldsTheSpanOfTheActiveContacts) {
   });
 }
 
-/// Two opposite walls without room between them: n contacts with gradient x and depth a, m contacts with gradient -x
-/// and depth b, a + b > 0.
+/// Checks two opposite walls without room between them: n contacts with gradient x and depth a, m contacts with
+/// gradient -x and depth b, a + b > 0.
 TEST(NearestAllowed, SharesWhatOppositeWallsLackInEqualSquares) {
   for (const auto& [n, m] : {std::pair<std::size_t, std::size_t>{1, 1}, {3, 1}, {100, 250}}) {
     const double a = 3e-5, b = 1e-5;
@@ -151,8 +153,8 @@ TEST(NearestAllowed, FindsTheLeastSquaresOfContradictingContacts) {
   EXPECT_GT(contradicting, 1'000);
 }
 
-/// In a compromise, the multipliers are the derivatives of the stored energy 1/2 |x - t|^2 + 1/2 sum w^2 with respect
-/// to the depths, and t - x is its derivative with respect to t.
+/// Checks that the multipliers of a compromise are the derivatives of the stored energy 1/2 |x - t|^2 + 1/2 sum w^2
+/// with respect to the depths, and that t - x is its derivative with respect to t.
 TEST(NearestAllowed, StoresInACompromiseWhatItsMultipliersTakeIn) {
   const std::vector<Vec3> gradients = {Vec3::UnitX(),  Vec3(0.6, 0.8, 0.0),  Vec3(0.6, -0.8, 0.0),
                                        -Vec3::UnitX(), Vec3(-0.8, 0.0, 0.6), Vec3(0.0, 0.6, -0.8)};
@@ -168,7 +170,7 @@ TEST(NearestAllowed, StoresInACompromiseWhatItsMultipliersTakeIn) {
   };
   ContactBuffer contacts = test::contacts_of(gradients, depths);
   const AllowedMove here = nearest_allowed(wanted, contacts);
-  // Uses central differences of a function that is quadratic while the same walls are violated; epsilon is 1e-6.
+  // Take central differences of a function that is quadratic while the same walls are violated; epsilon is 1e-6.
   constexpr double h = 1e-8, kLengths = 3e-4;
   for (std::size_t i = 0; i < gradients.size(); ++i) {
     std::vector<double> more = depths, less = depths;
@@ -190,7 +192,8 @@ TEST(NearestAllowed, EndsWithinItsIterationsOnNumbersThatAreNotFinite) {
   for (const double bad : {nan, infinite, -infinite}) {
     ContactBuffer contacts = test::contacts_of({Vec3::UnitX(), -Vec3::UnitX(), Vec3(0, bad, 1)}, {1.0, bad, 1.0});
     for (const Vec3& wanted : {Vec3(bad, 0.0, 1.0), Vec3(0.0, 0.0, 1.0)})
-      EXPECT_LE(nearest_allowed(wanted, contacts).iterations, 200) << bad;  // 100 exact, 100 of the compromise
+      EXPECT_LE(nearest_allowed(wanted, contacts).iterations, 200)
+          << bad;  // at most 100 iterations of the exact solver and 100 of the compromise
   }
 }
 
@@ -246,7 +249,7 @@ RenderingConfig proxy_config() {
   return config;
 }
 
-/// A proxy in a setting; the test takes its steps.
+/// A proxy in a setting. Tests call step().
 struct Rig {
   PointShell shell;
   ShellSource source;
@@ -289,7 +292,7 @@ test::Setting tilted_on_plane(double tilt, double depth, Random& random) {
   return setting;
 }
 
-/// Returns a pose above the plane, at most two passes away.
+/// Returns a pose 0.15 mm above the setting's pose. From there, the proxy reaches the plane in at most two passes.
 ToolPose above(const test::Setting& setting) {
   return {setting.pose.position + Vec3(0, 0, 1.5e-4), setting.pose.axis};
 }
@@ -297,7 +300,7 @@ ToolPose above(const test::Setting& setting) {
 TEST(ProxyRendering, OfAnEdgeOnAPlaneIsTheDepthOfTheEdgeWhereverThePointsLie) {
   Random random(1);
   for (int i = 0; i < 300; ++i) {
-    // Below 0.11 rad the tip is flush with the plane; the first pass finds points within 0.1 mm.
+    // Below a tilt of 0.11 rad the tip is flush with the plane. The first pass of the proxy finds points within 0.1 mm.
     const double tilt = random.uniform(0.11, 1.3), depth = 9e-5 * random.uniform();
     const test::Setting setting = tilted_on_plane(tilt, depth, random);
     test::Probe probe(setting, proxy_config());
@@ -372,11 +375,12 @@ TEST(ProxyRendering, HoldsAToolThatIsPulledThroughAPlane) {
   EXPECT_LE((force.spring - Vec3(0, 0, kK * 0.00489)).norm(), kK * 1e-12);
 }
 
-/// Half width of the tools.
+/// Half width of the tools [m].
 constexpr double kHalfWidth = 0.0005;
-/// Largest motion in one step of a proxy that starts inside: 40 half widths per second.
+/// Largest motion [m] in one step of a proxy that starts inside: 40 half widths per second.
 const double kRecovery = 40.0 * kHalfWidth * Scene{}.dt;
-/// A move is only nearly proportional to the depths, because points that the proxy has not entered stay in place.
+/// Factor by which a move may exceed proportionality to the depths. Proportionality is only approximate, because points
+/// that the proxy has not entered keep their positions.
 constexpr double kNearly = 1.1;
 
 TEST(ProxyRendering, LeavesAPlaneItStartsInSlowlyAndThenForGood) {
@@ -395,7 +399,7 @@ TEST(ProxyRendering, LeavesAPlaneItStartsInSlowlyAndThenForGood) {
     last = rig.proxy_position;
   }
   EXPECT_LE((rig.force.spring - Vec3(0, 0, kK * depth)).norm(), kK * 1e-9);
-  // Once outside, the proxy stays outside, however fast the tool rotates.
+  // Check that the proxy stays outside once it is outside, however fast the tool rotates.
   const ToolPose turned{tool.pose.position, Vec3(1.0, 0.0, 0.02).normalized()};
   rig.step({turned, Vec3::Zero()});
   EXPECT_LE(rig.deepest(turned.axis), 1e-10);
@@ -430,9 +434,9 @@ TEST(ProxyRendering, DampsTheTurnOfTheEdgeThatTouches) {
   EXPECT_LE((rig.force.rendered - rig.force.spring - Vec3(0, 0, -B * along)).norm(), 1e-12);
 }
 
-/// Two planes, of which the tool touches the second plane later. In each step, the damping along the normal of the
-/// second plane increases by a fraction of the missing damping, even if an integrator evaluates several forces in the
-/// step.
+/// Checks two planes, of which the tool touches the second plane later. In each step, the damping along the normal of
+/// the second plane increases by a fraction of the missing damping, even if an integrator evaluates several forces in
+/// the step.
 TEST(ProxyRendering, DampsANewDirectionWithItsTimeConstant) {
   const SpringSet planes{{Vec3::UnitX(), Vec3::UnitZ()}, false};
   RenderingConfig config = proxy_config();

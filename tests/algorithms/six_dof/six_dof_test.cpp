@@ -15,10 +15,11 @@
 #include "sim/mesh/marching_cubes.hpp"
 #include "sim/tool/cylinder.hpp"
 
-// Predictions about the force of a 6-DOF device, used as reference for the force of a 3-DOF device, each with its
-// closed form. Symbols as in algorithms/six_dof: K_t and K_r are the translational and rotational stiffness of the
-// coupling, K_h and K_phi those of the hand, K' and K_r' the stiffness of both in series. c is the distance from the
-// force point to the grip, l the distance from the force point to the contact, both positive towards the tip.
+// Tests predictions about the force of a 6-DOF device, which is the reference for the force of a 3-DOF device, each
+// with its closed form. Symbols as in algorithms/six_dof: F is the force of the 6-DOF device and f the force of the
+// 3-DOF device. K_t and K_r are the translational and rotational stiffness of the coupling, K_h and K_phi those of the
+// hand, K' and K_r' the stiffness of coupling and hand in series. c is the distance from the force point to the grip, l
+// the distance from the force point to the contact, both positive towards the tip.
 namespace hapbench::six_dof {
 namespace {
 
@@ -39,8 +40,8 @@ RenderingConfig proxy(double stiffness, double rotation) {
   return config;
 }
 
-/// Returns the intent of a hand that tilts an upright drill about +y, so that its tip moves towards -x, and displaces
-/// it.
+/// Returns the pose that a hand intends when it displaces an upright drill and tilts it about +y, so that the tip moves
+/// towards -x.
 Intent intent_of(const HandAndCoupling& springs, const Vec3& tip, double tilt, double pivot = 0.0) {
   Intent intent;
   intent.orientation = turn_by({0.0, tilt, 0.0});
@@ -60,8 +61,8 @@ struct OneContact {
     return {{{-kRadius * s, -kRadius * s, height}, {s, s, 0.0}}, {{-kRadius * s, kRadius * s, height}, {s, -s, 0.0}}};
   }
 
-  /// Presses in two hundred steps. The displacement is so small that rotations stay below 1e-4 rad, and the linear
-  /// closed forms are accurate to this fraction.
+  /// Presses in two hundred steps and returns the force on the handle [N]. The displacement is so small that rotations
+  /// stay below 1e-4 rad, and the linear closed forms are accurate to this fraction.
   template <class Device>
   Vec3 pressed(Device& device) const {
     for (int k = -10; k <= 190; ++k) device.follow(intent_of(springs, {-1e-6 / 190 * k, 0.0, 0.0}, 0.0));
@@ -75,7 +76,7 @@ struct OneContact {
     ThreeDofDevice device(shell, tool, springs, config, 0.0005);
     return pressed(device).x();
   }
-  /// Compliance [m/N] of the 6-DOF device, and of a proxy with the rotational stiffness k.
+  /// Return the compliance [m/N] of the 6-DOF device, and of a proxy with the rotational stiffness k.
   double compliance() const {
     const double l = lever(), c = springs.grip;
     return 1.0 / series() + (l - c) * (l - c) / springs.hand_rotation + l * l / springs.coupling_rotation;
@@ -145,8 +146,8 @@ TEST(PoseSprings, HaveTheDerivativesOfTheirEnergy) {
   still.handle_turn.setZero();
   still.handle_follows.setZero();
   for (int k = 0; k < 6; ++k) {
-    // Central differences of the energy E = 1e-2 J with a step h: the rounding error is 1e-18 / h, the truncation error
-    // of order h^2.
+    // Compare with central differences of the energy E = 1e-2 J with a step h. The rounding error is 1e-18 / h, the
+    // truncation error of order h^2.
     const double h = k < 3 ? 1e-6 : 1e-4;
     const auto at = [&](double sign) {
       CoupledPose moved = pose;
@@ -218,8 +219,8 @@ TEST(OneContact, HasNoEquilibriumWhereTheForceTurnsTheTipIntoTheWall) {
     for (int k = -1; k <= 20; ++k) rest = device.follow(intent_of(contact.springs, {-1e-5 * k, 0.0, 0.0}, 0.0));
     const double force = device.handle().force.x();
     const double expected = 2e-4 / contact.compliance_of_proxy(kInfinite);
-    // The drill rotates by 0.02 rad. The compliance is a difference, which amplifies the resulting errors about ten
-    // times.
+    // The drill rotates by 0.02 rad. The compliance is a difference of terms, which amplifies the errors of the closed
+    // form about ten times.
     if (stable)
       EXPECT_NEAR(force, expected, 0.05 * expected);
     else
@@ -228,11 +229,12 @@ TEST(OneContact, HasNoEquilibriumWhereTheForceTurnsTheTipIntoTheWall) {
   }
 }
 
-// With the grip at the force point, the proxy with the stiffness K_r' renders the force of the 6-DOF device.
+// Checks that the proxy with the stiffness K_r' renders the force of the 6-DOF device if the grip is at the force
+// point.
 
 struct Path {
   std::vector<SurfacePoint> points;
-  std::function<Intent(const HandAndCoupling&, double)> intent;  ///< over t from 0 to 1
+  std::function<Intent(const HandAndCoupling&, double)> intent;  ///< pose that the hand intends at t = 0 … 1
 };
 std::vector<SurfacePoint> groove() {
   std::vector<SurfacePoint> points;
@@ -307,7 +309,7 @@ INSTANTIATE_TEST_SUITE_P(Scenes, GripAtTheForcePoint, testing::Values(0, 1, 2));
 // ---- Predictions 3 and 4: a tight peg
 
 TEST(TightPeg, HasNoForceButATorqueAndPenaltyLawsRenderAGhost) {
-  // Rings of points at a distance of 1 nm from the peg, so that the peg can tilt by 1e-6 rad.
+  // The hole has rings of points at a distance of 1 nm from the peg, so that the peg can tilt by 1e-6 rad.
   std::vector<SurfacePoint> points;
   for (int ring = 0; ring <= 20; ++ring)
     for (int k = 0; k < 32; ++k) {
@@ -331,7 +333,7 @@ TEST(TightPeg, HasNoForceButATorqueAndPenaltyLawsRenderAGhost) {
       alpha = 5e-4 * k;
       const Intent intent = intent_of(springs, -pivot * Vec3(0.0, 0.0, -1.0) + Vec3(0.0, 0.0, -pivot), alpha, 0.0);
       Intent about = intent;
-      // The pivot is on the axis, at the height `pivot` above the tip.
+      // Rotate about a pivot on the axis, at the height `pivot` above the tip.
       about.grip = Vec3(0.0, 0.0, pivot) + (pivot - a) * (about.orientation * Vec3(0.0, 0.0, -1.0));
       ASSERT_TRUE(reference.follow(about).solved) << k;
       shaping.follow(about);
@@ -356,7 +358,7 @@ TEST(TightPeg, HasNoForceButATorqueAndPenaltyLawsRenderAGhost) {
 
 TEST(OneContact, CreatesEnergyUnderEveryStiffness) {
   const double l = 0.03, press = 1e-3, angle = 0.1;
-  // A nearly rigid hand, so that the handle follows the intent.
+  // The hand is nearly rigid, so that the handle follows the pose that the hand intends.
   const HandAndCoupling rigid_hand = with(kSprings, [](auto& s) { s.hand = 1e8; });
   const OneContact contact(rigid_hand, l);
   for (const auto& [k, millijoules] : {std::pair{kInfinite, 6.0}, {0.4, 1.1}, {0.4 * 0.2 / 0.6, 0.41}}) {
@@ -401,8 +403,8 @@ TEST(OneContact, IsWrongUnderAnotherHand) {
   }
 }
 
-// The formula of springs in series is exact for isotropic stiffness and any rotation. It is not exact for different
-// stiffness about different axes: at half a radian, the error is some tenths of a per cent.
+// Checks that the formula of springs in series is exact for isotropic stiffness and any rotation. It is not exact for
+// different stiffness about different axes: at half a radian, the error is some tenths of a per cent.
 TEST(SpringsInSeries, AreExactForIsotropicStiffnessOnly) {
   // Returns the smallest energy of two rotational springs A and B in series at a total rotation v. Gradient descent
   // finds the rotation between the springs.
@@ -441,8 +443,8 @@ TEST(SpringsInSeries, AreExactForIsotropicStiffnessOnly) {
 
 // ---- The reference device
 
-// The energy of a device with torque is a potential. A closed path without jumps therefore creates no energy, wherever
-// the grip is.
+// Checks that a closed path without jumps creates no energy, wherever the grip is: the energy of a device with torque
+// is a potential.
 TEST(SixDofDevice, CreatesNoEnergyOnAClosedPath) {
   const PointShell shell(surface_points(Plane{.size = 0.004}), 0.0);
   const Cylinder tool(kRadius, kLength, Tip::flat);
@@ -466,7 +468,8 @@ TEST(SixDofDevice, CreatesNoEnergyOnAClosedPath) {
       last = handle;
     }
     EXPECT_GT(moved, 1e-6);
-    // Error of the trapezoidal rule with 400 steps on a path of curvature 1: (2 pi / 400)^2 / 12 of the work, 2e-5.
+    // The trapezoidal rule with 400 steps on a path of curvature 1 has an error of (2 pi / 400)^2 / 12 of the work,
+    // 2e-5.
     EXPECT_LE(std::abs(work), 1e-3 * moved);
   }
 }
@@ -507,17 +510,17 @@ Vec3 pressed_against(const std::vector<SurfacePoint>& points) {
   return device.tool().position;
 }
 
-// Against one point, the drill slides off sideways when the force exceeds K' r: the pose straight above the point is
-// then a saddle of the energy. The drill moves around the point to its other side, where the point no longer holds the
-// press.
+// Checks that the drill leaves a saddle of the energy. Against one point, the drill slides off sideways when the force
+// exceeds K' r, and the pose straight above the point is then a saddle. The drill moves around the point to its other
+// side, where the point no longer holds the press.
 TEST(SixDofDevice, LeavesASaddle) {
   const Vec3 position = pressed_against({{{-kRadius, 0.0, 0.005}, {1.0, 0.0, 0.0}}});
   EXPECT_LE((position - Vec3(-2 * kRadius, 0.0, 0.005)).norm(), 1e-9);
 }
 
-// Two points 1 um apart form a notch. The drill rests in the notch at any force, because each point blocks the motion
-// in one direction. Their normals differ by only 2e-3 rad, and the energy decreases again beyond a fraction of a
-// micrometre.
+// Checks two points 1 um apart, which form a notch. The drill rests in the notch at any force, because each point
+// blocks the motion in one direction. Their normals differ by only 2e-3 rad, and the energy decreases again beyond a
+// fraction of a micrometre.
 TEST(SixDofDevice, RestsInAShallowNotch) {
   const double angle = 1e-3;
   std::vector<SurfacePoint> points;
@@ -528,7 +531,7 @@ TEST(SixDofDevice, RestsInAShallowNotch) {
   EXPECT_LE((pressed_against(points) - Vec3(0.0, 0.0, 0.005)).norm(), 1e-9);
 }
 
-// A slot that is narrower than the tool: no pose satisfies all constraints.
+// Checks a slot that is narrower than the tool: no pose satisfies all constraints.
 TEST(SixDofDevice, ReportsThatThereIsNoRoom) {
   const PointShell shell(surface_points(Slot{.gap = 0.0009, .depth = 0.004, .length = 0.004}), 0.0);
   const Cylinder tool(kRadius, kLength, Tip::flat);

@@ -17,7 +17,7 @@ namespace {
 constexpr double kDt = 0.0005, kMass = 0.2;
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
-/// A stage in steps whose motion is as predicted: the tool moves v dt from step to step.
+/// Calls a force stage in successive steps. From step to step the tool moves by v dt, as the stage predicts.
 class Foreseen {
  public:
   explicit Foreseen(ForceStage& stage) : stage_(stage) {
@@ -31,7 +31,7 @@ class Foreseen {
     energy -= given.dot(velocity) * kDt;
     return given;
   }
-  /// Rounding error of the steps so far.
+  /// Returns a bound of the rounding error that the steps so far have accumulated [J].
   double rounding() const { return 20 * kEpsilon * static_cast<double>(rows_) * turnover; }
 
   double energy = 0.0, turnover = 0.0;
@@ -94,7 +94,7 @@ TEST(ActuatorLimitedPassivity, WithoutLimitsOwesNothing) {
   }
 }
 
-/// Compares the damping of the stage with the largest damping that its limits allow, which the test finds by trial.
+/// Checks the damping of the stage against the largest damping that its limits allow, which the test finds by trial.
 TEST(ActuatorLimitedPassivity, DissipatesWhatActuatorsAllowAndOwesTheRest) {
   bool owed_once = false, across_once = false;
   for (std::uint64_t seed = 1; seed <= 50; ++seed) {
@@ -136,7 +136,7 @@ TEST(ActuatorLimitedPassivity, DissipatesWhatActuatorsAllowAndOwesTheRest) {
   EXPECT_TRUE(across_once);
 }
 
-/// A force stage that calls a function.
+/// A force stage whose force is a given function of the step.
 class FakeStage final : public ForceStage {
  public:
   using Answer = std::function<Vec3(const StageStep&)>;
@@ -177,7 +177,8 @@ TEST(StagedRendering, AnIdleStageMovesNoBitUnderAnyIntegrator) {
   }
 }
 
-/// Computes the work along the path of the run with the mean velocity of two steps, which is exact under leapfrog.
+/// Checks the work along the path of the run, computed with the mean velocity of two steps, which is exact under
+/// leapfrog.
 TEST(StagedRendering, CountsWhatTheStageTakesAndWhatItAbsorbs) {
   std::vector<double> energies;
   const auto weaker = [&energies](const StageStep& s) -> Vec3 {
@@ -244,7 +245,7 @@ Vec3 rendered(const RenderingConfig& config, const Vec3& spring = kSpring, const
 TEST(Damping, ActsOnTheNormalVelocityOfTheContactsWhereItIsGiven) {
   RenderingConfig config = dyadic();
   config.mu_s = 3.0;
-  // v_t = (1, 2, 3) - (0.5, 0, 1).
+  // The tangential velocity is v_t = (1, 2, 3) - (0.5, 0, 1).
   const ContactVelocity velocity{{1.0, 2.0, 3.0}, {0.5, 0.0, 1.0}};
   const Vec3 force = DampingAndLimits(config).rendered_force(kSpring, kS, velocity);
   EXPECT_EQ(force, Vec3(kSpring - 96 * velocity.normal - 3.0 * Vec3(0.5, 2.0, 2.0)));
@@ -284,8 +285,9 @@ Mat3 load(const Vec3& u, double newtons) {
   return newtons * u * u.transpose();
 }
 
-/// In every step, the work that the tool does against friction is at least the increase of the bristle's energy, for
-/// any motion, loads and normals. The tolerance is rounding: some 50 operations on energies of the size of K_t e^2.
+/// Checks that in every step, the work that the tool does against friction is at least the increase of the bristle's
+/// energy, for any motion, loads and normals. The tolerance is rounding: some 50 operations on energies of the size of
+/// K_t e^2.
 TEST(DryFriction, IsPassiveForAnyMotionLoadsAndNormals) {
   Random random(1);
   for (int run = 0; run < 400; ++run) {
@@ -329,7 +331,7 @@ TEST(DryFriction, ForgetsItsBristleWithoutLoad) {
   EXPECT_EQ(friction.state(), Friction::none);
 }
 
-/// Integrators that evaluate several states in a step must not move the bristle more than once.
+/// Checks that integrators which evaluate several states in a step move the bristle only once.
 TEST(DryFriction, TheBristleMovesOnceARow) {
   std::uint64_t row = 0;
   Scene scene;
@@ -345,8 +347,8 @@ TEST(DryFriction, TheBristleMovesOnceARow) {
   }
 }
 
-/// On one spring, f_dn = -chi K d <v, u> u. The speeds u0 before and u1 after the bounce satisfy chi u0 - ln(1 + chi
-/// u0) = -chi u1 - ln(1 - chi u1).
+/// Checks a bounce off one spring with the damping force f_dn = -chi K d <v, u> u at the depth d. The speeds u0 before
+/// and u1 after the bounce satisfy chi u0 - ln(1 + chi u0) = -chi u1 - ln(1 - chi u1).
 TEST(HuntCrossley, BouncesAsItsClosedFormSays) {
   for (const double chi : {0.5, 5.0, 50.0}) {
     RenderingConfig config;

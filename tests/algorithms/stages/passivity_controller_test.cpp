@@ -31,7 +31,7 @@ class Watch final : public Observer {
   double smallest = std::numeric_limits<double>::infinity();
   double turnover = 0.0;
   double force_max = 0.0;
-  /// Rounding error of one step, for the scale s, the force and its work.
+  /// Returns a bound of the rounding error of one step [J], from the scale s, the force and its work.
   double rounding() const { return 50 * kEpsilon * turnover; }
 
  private:
@@ -59,8 +59,8 @@ SimulationParts controlled(SimulationParts parts, const RenderingConfig& config 
   return parts;
 }
 
-/// Renders forces of all sizes that do not depend on the tool, under a hand with random forces. For any law, the
-/// observed energy must stay above zero and the force within its limit.
+/// Checks any law under any hand: renders forces of all sizes that do not depend on the tool, under a hand with random
+/// forces. The observed energy must stay above zero and the force within its limit.
 TEST(PassivityController, KeepsAnyForceUnderAnyHandPassive) {
   for (std::uint64_t seed = 1; seed <= 200; ++seed) {
     SCOPED_TRACE(seed);
@@ -88,7 +88,8 @@ TEST(PassivityController, KeepsAnyForceUnderAnyHandPassive) {
   }
 }
 
-/// Renders forces of at most `limit` and moments, from the third step on; both are independent of the tool.
+/// Renders random forces of at most `limit` and random moments from the third step on. Both are independent of the
+/// tool.
 class Lever final : public ForceAlgorithm {
  public:
   Lever(std::uint64_t seed, double limit) : numbers_(seed), limit_(limit) {}
@@ -110,8 +111,8 @@ class Lever final : public ForceAlgorithm {
   Vec3 moment_ = Vec3::Zero();
 };
 
-/// A tilt that is random in 0 … 0.01 rad in each step. The first tilts, 0, 0.005 and 0, change the rotation by 0.01
-/// rad. Later changes are at most 0.02 rad, so no change exceeds twice the largest earlier change.
+/// Motion whose tilt is random in 0 … 0.01 rad in each step. The first tilts, 0, 0.005 and 0, change the rotation by
+/// 0.01 rad. Later changes are at most 0.02 rad, so no change exceeds twice the largest earlier change.
 class Trembling final : public Motion {
  public:
   explicit Trembling(std::uint64_t seed) {
@@ -151,8 +152,8 @@ TEST(PassivityController, KeepsAnyMomentOfATremblingHandPassive) {
   EXPECT_LT(smallest_without, -1e-3);
 }
 
-/// The controller predicts the observed energy of the next step exactly. With a fixed axis it therefore changes a run
-/// if and only if the run would create energy.
+/// Checks that the controller changes a run with a fixed axis if and only if the run would create energy, because it
+/// predicts the observed energy of the next step exactly.
 TEST(PassivityController, ChangesARunOnlyIfItWouldCreateEnergy) {
   std::size_t passive = 0, active = 0;
   for (const auto& algorithm : algorithms()) {
@@ -189,7 +190,8 @@ TEST(PassivityController, ChangesARunOnlyIfItWouldCreateEnergy) {
   EXPECT_GT(active, 0u);
 }
 
-/// alpha <= M / dt: the damping alone stops the tool and does not reverse its velocity.
+/// Checks the bound alpha <= M / dt of the damping alpha: the damping can stop the tool but cannot reverse its
+/// velocity.
 TEST(PassivityController, WithNothingToGiveItStopsTheToolAtMost) {
   SimulationConfig config = test::thrown(2);
   SimulationParts parts = controlled(test::fake_parts([](const ToolState& tool) { return Vec3(1e9 * tool.velocity); }));
@@ -203,7 +205,7 @@ TEST(PassivityController, WithNothingToGiveItStopsTheToolAtMost) {
   EXPECT_GT(after.dot(before), 0.0);
 }
 
-/// The Jacobian of f_render = s f - alpha w is s times the Jacobian of f plus the damping alpha; here s = 0.
+/// Checks the Jacobian of f_render = s f - alpha w: s times the Jacobian of f plus the damping alpha. Here s = 0.
 TEST(PassivityController, ItsJacobianIsThatOfTheForceItRenders) {
   RenderingConfig config;
   config.mass = 0.2;

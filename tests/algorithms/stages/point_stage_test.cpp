@@ -83,7 +83,7 @@ TEST(GradientReduction, OfEquallyDeepContactsTheFirstStays) {
 }
 
 TEST(GradientReduction, InnerProductsEqualToTheThresholdAreNotSimilar) {
-  // <u_0, u_1> = 0.5 exactly.
+  // The inner product <u_0, u_1> is exactly 0.5.
   const std::vector<Vec3> gradients = {{1, 0, 0}, {0.5, std::sqrt(0.75), 0}};
   EXPECT_EQ(reduced({0.5, 100, {}}, test::contacts_of(gradients)).size(), 2u);
   EXPECT_EQ(reduced({std::nextafter(0.5, 0.0), 100, {}}, test::contacts_of(gradients)).size(), 1u);
@@ -110,7 +110,7 @@ TEST(GradientReduction, AShuffledReductionVisitsTheShellsPointsInAnOrderOfItsSee
   const auto order = visiting_order(11, n);
   EXPECT_NE(order, visiting_order(12, n));
   for (int i = 0; i < 30; ++i) {
-    // Some of the points collide; their order does not depend on the others.
+    // Only some of the n points collide. The order in which they are visited must not depend on the other points.
     ContactBuffer contacts(n);
     std::vector<std::optional<std::size_t>> index(n);
     for (std::uint32_t k = 0; k < n; ++k) {
@@ -139,14 +139,14 @@ TEST(GradientReduction, AShuffledReductionVisitsTheShellsPointsInAnOrderOfItsSee
 
 constexpr double kCell = 0.001;
 
-/// A contact of a test.
+/// Input of one contact of a test.
 struct Contact {
   double x;  ///< position along the x axis, in cells
   double depth;
   Vec3 gradient;
 };
 
-/// Computes the contacts of a shell of given points after the stage.
+/// Fixture that applies the local average to contacts of a shell with given points.
 class LocalAverage : public testing::Test {
  protected:
   void prepare(const std::vector<Contact>& all) {
@@ -174,7 +174,7 @@ class LocalAverage : public testing::Test {
   std::unique_ptr<PointStage> stage_;
 };
 
-// Rounding of a product, a sum, a division and a norm.
+// Relative rounding error of a product, a sum, a division and a norm.
 constexpr double kRounding = 4 * std::numeric_limits<double>::epsilon();
 
 TEST_F(LocalAverage, DropsACellWhoseDepthVectorsCancel) {

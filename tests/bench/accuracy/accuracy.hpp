@@ -12,11 +12,11 @@
 #include "sim/contact/contact_buffer.hpp"
 #include "sim/loop/simulation.hpp"
 
-/// Panels of error against run time. Each panel varies one quantity; for every setting it gives the error and the run
-/// time.
+/// Panels of error against run time. Each panel varies one quantity. For every setting, the panel gives the error and
+/// the run time.
 namespace hapbench::accuracy {
 
-/// Errors of a setting. Their names end with their unit; an error without a value is empty.
+/// Errors of a setting by name. A name ends with its unit. An error without a value is empty.
 struct Errors {
   std::string outcome = "completes";  ///< outcome of the run; settings that fail are measured like all others
   std::vector<std::pair<std::string, std::optional<double>>> values;
@@ -25,7 +25,7 @@ struct Errors {
   double operator[](const std::string& name) const;
 };
 
-/// The work whose run time is measured.
+/// Work whose run time is measured.
 struct Work {
   std::function<void()> prepare;  ///< called before every run, outside of the measured time
   std::function<void()> run;
@@ -34,38 +34,42 @@ struct Work {
 
 struct Setting {
   std::string name;  ///< "panel/setting", the name in scripts and pictures
-  std::string unit;  ///< of Work::count: "step" or "call"
+  std::string unit;  ///< unit of Work::count: "step" or "call"
   std::function<Errors()> errors;
   std::function<Work()> work;  ///< creates the work without observers; the errors are measured separately, with
                                ///< observers
 };
 using Panel = std::vector<Setting>;
 
-/// Every integrator over the time step: error against the exact solution of damped springs and, without damping, the
-/// created energy. For signed bilateral springs, free position, no hand.
+/// Returns the panel of all integrators over the time step, for signed bilateral springs, a free position and no hand.
+/// Errors: the distance to the exact solution of damped springs, and the energy created without damping.
 Panel integrators(const Scenario& springs);
-/// Every algorithm, also with its own options, against the ideal trajectory of a drill in a hole.
+/// Returns the panel of all algorithms, some of them also with angular damping or with the passivity controller.
+/// Errors: the deviation from the ideal trajectory of a drill in a hole.
 Panel algorithms(const Scenario& drill);
-/// Spacing of the block's points, with both densities, against the ideal trajectory.
+/// Returns the panel of the spacing of the block's points, with both densities. Errors: the deviation from the ideal
+/// trajectory.
 Panel spacing(const Scenario& drill);
-/// Iterations of shaping, against the exact optimum on the contacts of a drill in a hole.
+/// Returns the panel of the number of shaping iterations. Errors: the deviation from the exact optimum on the contacts
+/// of a drill in a hole.
 Panel shaping(const Scenario& drill);
-/// Thresholds of the reduction, against exact shaping of all contacts.
+/// Returns the panel of the thresholds of the reduction. Errors: the deviation from exact shaping of all contacts.
 Panel reduction(const Scenario& drill);
-/// Reduced, merged and all contacts (from dozens to hundreds), against exact shaping of all contacts.
+/// Returns the panel of laws on reduced, merged and all contacts (from dozens to hundreds). Errors: the deviation from
+/// exact shaping of all contacts.
 Panel merging(const Scenario& drill);
-/// Every algorithm with contacts that are found in every n-th step, held or linear in between, against contacts that
-/// are found in every step.
+/// Returns the panel of all algorithms with contacts that are found in every n-th step, and held or extrapolated
+/// linearly between these steps. Errors: the deviation from a run whose contacts are found in every step.
 Panel multi_rate_contacts(const Scenario& free);
-/// The contact search with and without skips. Both find the same contacts.
+/// Returns the panel of the contact search with and without skips. Both settings find the same contacts.
 Panel skips(const Scenario& free);
-/// Energy that a bounce gains because contacts begin and end between samples. For a free tool that is thrown at an
-/// object.
+/// Returns the panel of all integrators over the time step, for a free tool that is thrown at an object. Errors: the
+/// energy that a bounce gains because contacts begin and end between samples.
 Panel events(const Scenario& thrown);
 
 // Functions that the panels share.
 
-/// Calls `make` when the result is requested for the first time.
+/// Returns a function that calls `make` at its first call and returns this result at every call.
 template <class Make>
 auto once(Make make) {
   using Made = std::invoke_result_t<Make>;
@@ -75,14 +79,14 @@ auto once(Make make) {
   };
 }
 
-/// Positions of every `stride`-th step of a run, and the end of the run.
+/// Result of a run, and the positions of the tool in every `stride`-th step.
 struct SampledRun {
   SimulationResult result;
   std::vector<Vec3> positions;  ///< [m]
 };
 SampledRun sampled_run(const Scenario& scenario, std::shared_ptr<const PointShell> shell, std::uint64_t stride,
                        std::vector<Observer*> observers = {});
-/// Returns the same run as work to be timed, without observers.
+/// Returns the run of this scenario, without observers, as work whose run time is measured.
 Work bare_run(const Scenario& scenario, std::shared_ptr<const PointShell> shell);
 
 /// Distance between two trajectories at their common samples [m].

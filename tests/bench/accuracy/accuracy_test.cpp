@@ -38,7 +38,7 @@ TEST(Integrators, ConvergeWithTheirOrdersToTheExactSolution) {
     double step = NAN, error = NAN, order = NAN;
     for (const Setting& setting : those(panel, "integrators/" + std::string(integrator->info.name) + " ")) {
       const accuracy::Errors errors = setting.errors();
-      // Stop at a hundred times the final rounding error of rk4.
+      // Stop at a hundred times the rounding error that rk4 reaches with the finest steps.
       if (errors["error_rms_m"] < 5e-12) break;
       order = std::log(error / errors["error_rms_m"]) / std::log(step / errors["step_s"]);
       step = errors["step_s"];
@@ -66,7 +66,7 @@ TEST(Integrators, TellWhichKeepTheEnergyOfUndampedSprings) {
 }
 
 TEST(Integrators, KeepASettingThatFails) {
-  // A step of 20 ms is far beyond the stability limit.
+  // Use a step of 20 ms, which is far beyond the stability limit.
   const Panel panel = accuracy::integrators(bundled("springs_oscillation", {"time.step_s=0.02", "time.steps=40"}));
   const accuracy::Errors errors = panel.front().errors();
   EXPECT_EQ(errors.outcome, "diverges");
@@ -100,8 +100,8 @@ TEST(Merging, DependsOnTheOrderOfTheContactsOnlyWhereTheyAreReduced) {
     const accuracy::Errors errors = setting.errors();
     const bool reduced = setting.name.find("reduced") != std::string::npos;
     EXPECT_EQ(errors["kept_mean"] < errors["contacts_mean"], reduced) << setting.name;
-    // Sums of up to a thousand contacts in another order; exact_shaping computes weights to rounding divided by
-    // epsilon.
+    // Another order changes sums of up to a thousand contacts by rounding. exact_shaping computes weights to rounding
+    // divided by epsilon.
     EXPECT_EQ(errors["order_spread_relative"] > 1e-9, reduced) << setting.name;
     if (setting.name.starts_with("merging/exact_shaping of all")) {
       EXPECT_EQ(errors["force_error_relative"], 0.0);

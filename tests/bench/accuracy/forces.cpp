@@ -20,14 +20,14 @@ using Sets = std::vector<ContactBuffer>;
 
 constexpr std::uint64_t kSampledEvery = 64;
 
-constexpr int kExact = -1;  // in place of a number of iterations
+constexpr int kExact = -1;  // stands for the exact optimum in kIterations
 constexpr int kIterations[] = {0, 1, 2, 3, 4, 5, 10, 20, 40, 80, 160, kExact};
 
 constexpr double kThresholds[] = {0.9, 0.95, 0.99, 0.995, 0.999, 0.9999};
 constexpr double kMergedSpacings[] = {0.0001, 0.00005, 0.000025};
 constexpr int kOrders = 4;
 
-/// A law with or without the reduction before it.
+/// A force law, and the reduction of the contacts before it; no reduction if empty.
 struct Method {
   std::string name;
   const char* law;
@@ -44,7 +44,8 @@ Sets drill_sets(const Scenario& drill) {
   return contact_sets(drill_in_hole(drill), kSampledEvery);
 }
 
-/// Returns the time of `force(contacts)` over copies of all sets, which it may change. Copying is not timed.
+/// Returns the work of calling `force(contacts)` once for each set. `force` may change its contacts, because it gets
+/// copies. Making the copies is not timed.
 template <class Force>
 Work forces_of(const Sets& sets, Force force) {
   const auto copies = std::make_shared<Sets>();
@@ -80,7 +81,8 @@ Errors off_the_optimum(const Sets& sets, const std::vector<Mat3>& optimum, int i
           {{"tensor_error_rms", std::sqrt(squares)}, {"tensor_error_max", largest}, {"ratio_error_max", ratio}}};
 }
 
-/// Computes the force of contacts, which it may change.
+/// Function object that reduces the contacts, if the method has a reduction, and computes their force. Changes the
+/// contacts.
 class ForceOf {
  public:
   ForceOf(const Method& method, const RenderingConfig& config, std::size_t capacity)
@@ -89,18 +91,18 @@ class ForceOf {
     if (reduction_) reduction_->prepare({});
     law_->prepare(capacity);
   }
-  /// Returns the force [N].
+  /// Returns the spring force [N].
   Vec3 operator()(ContactBuffer& contacts) const {
     if (reduction_) reduction_->process(contacts);
     return law_->evaluate(contacts).spring;
   }
 
  private:
-  std::shared_ptr<PointStage> reduction_;  ///< may be null
+  std::shared_ptr<PointStage> reduction_;  ///< null without a reduction
   std::shared_ptr<ForceLaw> law_;
 };
 
-/// Returns the largest change of the force if the contacts of a set are reordered [N].
+/// Returns the largest change of the force [N] over kOrders random orders of the contacts of a set.
 double spread_over_orders(const ForceOf& force_of, const ContactBuffer& set, const Vec3& force, Random& random) {
   std::vector<std::size_t> order(set.size());
   ContactBuffer work(set.size());

@@ -8,7 +8,7 @@
 namespace hapbench::accuracy {
 namespace {
 
-/// Times a setting (the shortest of all runs) and adds its errors.
+/// Measures the run time of a setting as the shortest of all runs, and adds the setting's errors as counters.
 void measure(benchmark::State& state, const Setting& setting, const Errors& errors) {
   using Clock = std::chrono::steady_clock;
   const Work work = setting.work();

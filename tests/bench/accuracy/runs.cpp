@@ -25,7 +25,7 @@ namespace {
 /// Divisors of the scene's time step, over three decades.
 constexpr int kDivisions[] = {1, 2, 5, 10, 20, 50, 100, 200, 500, 1000};
 
-/// Keeps the tensor of the first step, which is constant for springs.
+/// Keeps the stiffness tensor of the first step. For springs, the tensor is constant.
 class FirstTensor final : public Observer {
  public:
   void on_step(const StepRecord& record) noexcept override {
@@ -62,7 +62,7 @@ Exact exact_solution(const Scenario& scenario) {
   return exact;
 }
 
-/// The mechanical energy of a run on springs with constant S, without contact forces: M v^2 / 2 + K p S p / 2.
+/// Mechanical energy of a run on springs with constant S, kinetic energy plus spring energy: M v^2 / 2 + K p S p / 2.
 class SpringEnergy final : public Observer {
  public:
   SpringEnergy(const RenderingConfig& rendering, const Mat3& S) : K_(rendering.stiffness), M_(rendering.mass), S_(S) {}
@@ -73,7 +73,7 @@ class SpringEnergy final : public Observer {
     last_ = energy;
     largest_ = std::max(largest_, std::abs(energy - first_));
   }
-  /// Returns (E_end - E_0) / E_0 and the largest |E - E_0| / E_0.
+  /// Return (E_end - E_0) / E_0 and the largest |E - E_0| / E_0.
   double gain() const { return (last_ - first_) / first_; }
   double swing() const { return largest_ / first_; }
 
@@ -188,7 +188,7 @@ Panel algorithms(const Scenario& drill) {
                      [=] { return bare_run(run, shell()); }});
   };
   RenderingConfig config = scenario.rendering;
-  // Both are off, except in the settings that are named after them.
+  // Angular damping and the passivity controller are off, except in the settings that name them.
   config.angular_damping = config.passivity_controller = false;
   for (const AlgorithmEntry& algorithm : hapbench::algorithms()) {
     config.algorithm = algorithm.info->name;
@@ -214,7 +214,7 @@ Panel algorithms(const Scenario& drill) {
 namespace {
 
 constexpr std::int64_t kQueryEvery[] = {1, 2, 4, 8, 16, 32};
-/// time [s] within which two runs are compared; later they differ because the scene is chaotic
+/// Time [s] within which two runs are compared. Later, the runs differ because the scene is chaotic.
 constexpr double kTogether = 0.2;
 
 /// Time steps of the bounce, in units of the scene's time step.
@@ -260,8 +260,8 @@ class MechanicalEnergy final : public Observer {
   bool touched_ = false;
 };
 
-/// Returns a free tool without hand, damping and friction. Its energy is constant, unless the law or the sampling
-/// changes it.
+/// Returns the scenario of a free tool without hand, damping and friction. The tool's energy is constant, unless the
+/// law or the sampling changes it.
 Scenario bouncing(Scenario scenario) {
   scenario.hand = NoHandFields{};
   scenario.device = IdealDeviceFields{};
@@ -327,7 +327,7 @@ Panel events(const Scenario& thrown) {
     const Outcome outcome = outcome_of(sampled_run(run, shell(), 1, {&energy}).result.ending);
     return std::pair(outcome, energy);
   };
-  // The energy change of the law itself: measured with the integrator that locates events within a step.
+  // Compute the energy change that the law itself causes, with the integrator that locates events within a step.
   const auto reference =
       once([=] { return measured(with(scenario, kEvent, kStepFactors[std::size(kStepFactors) - 1])).second; });
   Panel panel;

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kMillimetres = 1e3;
 
-/// Collects the depths of one pair.
+/// Collects the depths of the contacts between the surface and the drill.
 class Taker final : public btCollisionWorld::ContactResultCallback {
  public:
   explicit Taker(std::span<PeerContact> room) : room_(room) {}

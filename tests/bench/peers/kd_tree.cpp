@@ -34,7 +34,7 @@ class KdTree final : public Peer {
     tree_.build();
   }
 
-  /// Returns the indices of the points in the drill, ascending.
+  /// Writes the indices of the points in the drill, ascending. Returns their number.
   std::size_t contacts_at(const HapbenchPose& pose, std::span<PeerContact> room) override {
     near_.clear();
     points_.clear();
@@ -58,7 +58,7 @@ class KdTree final : public Peer {
   }
 
  private:
-  double length_, radius_;  ///< length and radius of the drill
+  double length_, radius_;  ///< length and radius of the drill [m]
   Tree tree_;
   std::vector<Numbered> near_;
   std::vector<std::uint32_t> points_;

@@ -18,7 +18,8 @@
 namespace hapbench::bench {
 namespace {
 
-/// Poses between queries, because the libraries take milliseconds per pose.
+/// Number of poses from one query to the next. Not every pose is queried, because the libraries take milliseconds per
+/// pose.
 constexpr std::size_t kEvery = 64;
 
 /// Maximum number of contacts of a library; more than the limit of ODE.
@@ -101,7 +102,7 @@ const Ours& ours(const std::string& task) {
 }
 
 /// Before timing, compares the results of a library with the results of hapbench. They must be equal if the library
-/// solves the same problem. Otherwise reports how often both find a contact, and the depths.
+/// finds the points of the shell. Otherwise reports how often both find a contact, and the depths of both.
 void time_library(benchmark::State& state, const Library& library, const std::string& task) {
   const Ours& known = ours(task);
   const std::unique_ptr<Peer> peer = made(library, task);

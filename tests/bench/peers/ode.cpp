@@ -4,7 +4,7 @@
 
 #include "tests/bench/peers/contact_library.hpp"
 
-/// ODE: its triangle mesh (OPCODE) against its cylinder, in millimetres. It returns contacts until the given array is
+/// ODE: its triangle mesh (OPCODE) against its cylinder, in millimetres. ODE returns contacts until the given array is
 /// full.
 namespace hapbench::bench {
 namespace {

@@ -1,6 +1,6 @@
 /* Renders a recorded motion with hapbench's renderer and writes the log: own_renderer SCENARIO MOTION.csv LOG.csv
- * A line of the motion is x,y,z [m] of the handle; the period is that of the scenario. Written from hapbench_renderer.h
- * and the manual page "In your own loop" alone. */
+ * A line of the motion is x,y,z [m] of the handle. Lines are one period of the scenario apart. Uses only
+ * hapbench_renderer.h and the manual page "In your own loop". */
 #include <hapbench_renderer.h>
 #include <stdio.h>
 

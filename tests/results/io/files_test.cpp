@@ -159,7 +159,7 @@ TEST(JsonText, EscapesStringsAndKeysAndReplacesBytesThatAreNotUtf8) {
   EXPECT_EQ(json_text(value), "{\n  \"a\\\"b\": \"line\\nend \xef\xbf\xbd\"\n}\n");
 }
 
-// nlohmann's writer prints 5e-324 as 4.94…e-324, and adds ".0" to whole numbers.
+// Checks the shortest form of doubles. nlohmann's writer prints 5e-324 as 4.94…e-324, and adds ".0" to whole numbers.
 TEST(JsonText, WritesDoublesInShortestForm) {
   EXPECT_EQ(json_text({0.1, 1.0, 5e-324, 1e22, -0.0}), "[0.1, 1, 5e-324, 1e+22, -0]\n");
 }
@@ -189,7 +189,7 @@ TEST(CsvWriter, QuotesTextThatWouldBreakTheTable) {
   EXPECT_EQ(read_file(dir / "a.csv"), "text\n\"a,b\"\n\"say \"\"x\"\"\"\n\"two\nlines\"\n");
 }
 
-// Random bit patterns include all exponents and subnormal numbers.
+// Checks random bit patterns, which include all exponents and subnormal numbers.
 TEST(CsvWriter, NumbersReadBackBitForBit) {
   const TemporaryDirectory dir;
   std::mt19937_64 bits(1);

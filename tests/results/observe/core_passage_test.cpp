@@ -77,7 +77,8 @@ struct Ran {
   double deepest;  ///< depth of the deepest contact [m]
 };
 
-/// Moves the tool along its path, with contacts at the points.
+/// Moves the tool along its path in `rows` steps, with contacts at the points. Returns whether any part of the tool has
+/// passed through the solid, and the depth of the deepest contact [m].
 Ran run(const NamedTool& tool, const std::shared_ptr<const Solid>& solid, const std::vector<Vec3>& points,
         const Path& path, int rows) {
   InsideObserver observer(tool.shape, solid);
@@ -95,7 +96,7 @@ Ran run(const NamedTool& tool, const std::shared_ptr<const Solid>& solid, const 
   return {observer.passage().went_through() || observer.core_passage().event().has_value(), deepest};
 }
 
-/// A path through a plate that extends from x = 0 to 4 mm below z = 0 and is `thickness` t thick.
+/// Paths through a plate of the thickness t [m]. The plate extends from x = 0 to x = 4 mm, below z = 0.
 struct NamedPath {
   const char* name;
   int rows;
@@ -124,7 +125,7 @@ const NamedPath kPaths[] = {
 
 class ThroughAPlate : public testing::TestWithParam<std::size_t> {};
 
-/// Tests plates from a twentieth of the tool's radius to three radii thick.
+/// Checks plates with a thickness from a twentieth of the tool's radius to three radii.
 TEST_P(ThroughAPlate, OnEveryPath) {
   const NamedTool tool = tools()[GetParam()];
   constexpr double kShares[] = {0.05, 0.1, 0.3, 0.6, 1.0, 1.8, 3.0};
@@ -140,8 +141,8 @@ TEST_P(ThroughAPlate, OnEveryPath) {
 }
 INSTANTIATE_TEST_SUITE_P(Tools, ThroughAPlate, testing::Range<std::size_t>(0, 6));
 
-/// A wall on the ground, which the tool leaves by the rear face. At no time does the core cross the wall from face to
-/// face.
+/// Checks a wall that stands on the ground. The tool enters by one face and leaves by the opposite face, but at no time
+/// does its core reach from face to face.
 TEST(ThroughAWall, FromOneFaceToTheOther) {
   for (const double share : {0.05, 0.3, 1.0, 1.8}) {
     const Vec3 low(0.0, -0.003, -0.02), high(share * kRadius, 0.003, 0.0);
@@ -160,7 +161,7 @@ TEST(ThroughAWall, FromOneFaceToTheOther) {
   }
 }
 
-/// A block that keeps the tool out, or that the tool leaves on the path by which it entered.
+/// Checks a block that keeps the tool out, or that the tool leaves on the path by which it entered.
 TEST(DeepInABlock, IsNotThrough) {
   const Vec3 low(0.0, -0.003, -0.004), high(0.004, 0.003, 0.0);
   const TriangleSoup block = box(low, high);
@@ -186,7 +187,7 @@ TEST(DeepInABlock, IsNotThrough) {
   }
 }
 
-/// The drill in a hole, pressed against the wall, the rim and the bottom, almost as deep as the drill is wide.
+/// Checks the drill in a hole, pressed against the wall, the rim and the bottom, almost as deep as the drill is wide.
 TEST(DeepInAHole, IsNotThrough) {
   const std::shared_ptr<const Solid> hole = make_solid(BlockWithHole{{0.006, 0.006, 0.004}, 0.00104, 0.002});
   std::vector<Vec3> points;

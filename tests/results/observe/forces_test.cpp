@@ -21,13 +21,13 @@ namespace {
 
 using test::Setting;
 
-/// A step: its force along x, and whether the tool is in contact.
+/// Input of one step: the force along x [N], and whether the tool is in contact.
 struct Row {
   double force = 0.0;
   bool in_contact = true;
 };
 
-constexpr double kDt = 0.01;  ///< [s], exact enough that 0.03 s are three steps
+constexpr double kDt = 0.01;  ///< step [s]; exact enough that 0.03 s are three steps
 
 /// Returns the phases of the steps as a text with a, l or s for each step (away, landing, settled).
 std::string phases(const SettlingRule& rule, const std::string& contact) {
@@ -50,7 +50,7 @@ MetricsObserver forces_of(const std::vector<Row>& rows, const SettlingRule& rule
   return observer;
 }
 
-// The known answers compare the output of the filter with scipy.
+// Checks the settled filter only. The known answers compare the output of the filter with scipy.
 TEST(HighPass, SettledAtAConstantGivesExactlyZero) {
   HighPass filter(30.0, 2000.0);
   const Vec3 value(0.1, -1e3, 1.0 / 3.0);
@@ -136,8 +136,8 @@ TEST(ContactForces, AShortBreakOfContactVibratesAndALongOneStartsFromRest) {
   EXPECT_EQ(with_break(4), with_break(400));
 }
 
-/// A second trial begins like a first trial: its first touch is a landing, and the last force of the first trial does
-/// not count.
+/// Checks that a second trial begins like a first trial: its first touch is a landing, and the last force of the first
+/// trial does not count.
 TEST(ContactForces, OfSeveralTrialsAddUp) {
   ContactForces forces(kDt, kThreeRows);
   const auto add_trial = [&forces](double force) {
@@ -155,14 +155,15 @@ TEST(ContactForces, OfSeveralTrialsAddUp) {
   EXPECT_EQ(number_of(list, "force_rms_above_30Hz_N"), 0.0);
 }
 
-/// Returns the number as stored in a histogram without other numbers.
+/// Returns the value that a histogram reports for this number if it contains no other numbers.
 double counted(double number) {
   MagnitudeHistogram histogram;
   histogram.add_square(number * number);
   return histogram.quantile(1.0);
 }
 
-// For every bin, tests the lower edge and the number just below it, which are farthest from the middles of their bins.
+// Checks every bin at its lower edge and just below this edge, which are the numbers farthest from the middles of the
+// bins.
 TEST(MagnitudeHistogram, ErrorOfEveryBinIsTheStatedOne) {
   double largest = 0.0;
   for (double boundary = MagnitudeHistogram::kSmallest; boundary < MagnitudeHistogram::kLargest;
@@ -247,7 +248,8 @@ Accounts keep_accounts(SimulationConfig config, SimulationParts parts) {
   return accounts;
 }
 
-/// Checks that the energy balance of a free run is closed. The limit is the limit of an ideal device [N].
+/// Checks that the energy balance of a free run is closed. `limit` is the force limit of an ideal device [N]; empty for
+/// no limit.
 void expect_closed(const test::AnalyticScene& scene, const RenderingConfig& config, const IntegratorEntry& integrator,
                    std::optional<double> limit = {}) {
   SCOPED_TRACE(std::string(scene.name) + " " + config.algorithm + " " + integrator.info.name);
@@ -283,8 +285,8 @@ TEST(EnergyLedger, ClosesToRoundingForEveryAlgorithmAndEveryIntegrator) {
   }
 }
 
-/// The far end of the spring is fixed while the tool rotates. The energy that the rotation stores is work of the
-/// rotation and not created.
+/// Checks a tool that rotates while the far end of the spring is fixed. The energy that the rotation stores is work of
+/// the rotation and not created.
 TEST(EnergyLedger, TurningTheToolPutsEnergyIntoTheSprings) {
   EnergyLedger ledger(1.0, 0.1, true, 1);
   ContactBuffer contacts(1);

@@ -100,7 +100,7 @@ TEST(ExplicitFrictionLimit, IsThatOfTheIntegratorsDampers) {
   const auto limit = [](const IntegratorEntry& integrator, double mu_s, double mu_f) {
     return explicit_friction_limit(integrator, 0.2, 0.0005, mu_s, mu_f);
   };
-  // B dt / M < 2 for leapfrog, < 2.7853 for rk4.
+  // The damping B is stable if B dt / M < 2 for leapfrog, and < 2.7853 for rk4.
   EXPECT_DOUBLE_EQ(*limit(kLeapfrog, 5.0, 10.0), (800.0 - 5.0) / 10.0);
   EXPECT_NEAR(*limit(kRk4, 5.0, 10.0), (2.7853 * 400.0 - 5.0) / 10.0, 0.01);
   EXPECT_EQ(limit(kLeapfrog, 801.0, 1.0), 0.0) << "the constant part alone is too much";
@@ -138,8 +138,8 @@ TEST(PassivityObserver, OfSeveralTrialsTheTrialWithTheLargestCreatedEnergyCounts
   const ContactBuffer none(1);
   PassivityObserver observer;
   EXPECT_FALSE(reported(observer, "energy_min_J"));
-  // A tool that moves at 1 m/s. Without steps, and with the smallest energies -1, -3 and -3 J at final energies of -1,
-  // -2 and -3 J.
+  // Four trials of a tool that moves at 1 m/s. The first trial has no steps. The smallest energies of the others are
+  // -1, -3 and -3 J, and their final energies are -1, -2 and -3 J.
   for (const std::vector<double>& forces : std::vector<std::vector<double>>{{}, {2, 0}, {4, 2, -2, 0}, {6, 0}}) {
     observer.begin({config, parts});
     for (std::uint64_t k = 0; k < forces.size(); ++k) {
@@ -197,8 +197,8 @@ double shortest_row(const ContactBuffer& first, const ContactBuffer& second) {
   return shortest;
 }
 
-// If the number of points grows by a factor of 8, the time grows by a factor of 8 (linear), about 10 (n log n) or 64
-// (quadratic).
+// Checks the growth of the time. If the number of points grows by a factor of 8, the time grows by a factor of 8
+// (linear), about 10 (n log n) or 64 (quadratic).
 TEST(ReductionJumps, TakeTimeThatGrowsLessThanQuadratically) {
   constexpr std::uint32_t kFew = 2000, kGrowth = 8;
   constexpr double kMaxGrowth = 28.0;
@@ -236,7 +236,7 @@ TEST(ReductionJumps, AreAMetricOfRunsWithAReductionOnly) {
   EXPECT_EQ(reported(with, "reduction_force_step_max_N"), 2.0);
 }
 
-/// The metric uses the last quarter of the steps that were made, not of the planned steps.
+/// Checks that the metric uses the last quarter of the steps that were made, not of the planned steps.
 TEST(LastQuarterVibration, OfARunThatEndsEarlyIsThatOfARunPlannedSo) {
   for (const std::uint64_t made : {4u, 7u, 108u, 449u, 524u, 1500u, 1999u, 2000u}) {
     LastQuarterVibration planned(2000, 0.001), early(made, 0.001);

@@ -15,7 +15,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// 4.29 s is 2^32 ns. The test does not wait: the step has a start time 5 s ago.
+// Checks a step that is longer than 2^32 ns = 4.29 s. The test does not wait: the step has a start time 5 s ago.
 TEST(StepTimes, TimesAStepOfManySeconds) {
   StepTimes times(1);
   times.start(Clock::now() - std::chrono::seconds(5));
@@ -52,7 +52,8 @@ std::vector<std::uint64_t> samples(std::uint64_t steps, milliseconds step, milli
 TEST(StepSampler, LeavesOutWhatObserversTake) {
   const std::vector<std::uint64_t> times = samples(3, milliseconds(0), milliseconds(5));
   ASSERT_EQ(times.size(), 2u);  // no step follows the last step
-  // Other processes of the machine can only make a sample longer, and hardly twice in succession.
+  // Take the shortest sample: other processes of the machine can only make a sample longer, and hardly twice in
+  // succession.
   EXPECT_LT(*std::min_element(times.begin(), times.end()), 5'000'000u);
 }
 
@@ -78,7 +79,7 @@ Times scrambled(std::uint64_t n) {
   return times;
 }
 
-// The value of rank r among 1 … n is r.
+// Checks ranks: the value of rank r among 1 … n is r.
 TEST(StepLatency, PercentilesAreThoseOfNearestRank) {
   const StepLatency thousand = step_latency(scrambled(1000), 0);
   EXPECT_EQ(thousand.p50, 500u);
@@ -94,7 +95,7 @@ TEST(StepLatency, PercentilesAreThoseOfNearestRank) {
 }
 
 TEST(StepLatency, AStepThatTakesExactlyTheDeadlineDoesNotMissIt) {
-  // 1/2048 s is 488 281.25 ns.
+  // The period 1/2048 s is 488 281.25 ns.
   const StepLatency latency = step_latency(Times{488'281, 488'282, 500'000, 500'001}, 0);
   EXPECT_EQ(latency.misses[0], 1u);
   EXPECT_EQ(latency.misses[1], 3u);

@@ -50,15 +50,16 @@ TEST(IdealTrajectory, ComparesEachSoManyRows) {
 constexpr double kRounding = 1e-11;  // error that the header states
 const Cylinder kTool;
 
-/// Returns the depth at a point on the tool's side, given by an angle about the axis and a height above the tip.
+/// Returns the depth in the block [m] of a point on the tool's side. `angle` is the angle about the axis [rad],
+/// `height` the distance above the tip [m].
 double depth_at(const ToolPose& pose, double angle, double height) {
   const Vec3 e1 = pose.axis.unitOrthogonal(), e2 = pose.axis.cross(e1);
   const Vec3 side = kTool.radius() * (std::cos(angle) * e1 + std::sin(angle) * e2);
   return -signed_distance(kBlock, pose.position + side - height * pose.axis);
 }
 
-/// Returns the depth of the deepest point at an angle: evaluates many heights, then searches around the deepest height
-/// by ternary search.
+/// Returns the depth [m] of the deepest point at an angle: evaluates many heights, then searches around the deepest
+/// height by ternary search.
 double deepest_at(const ToolPose& pose, double angle) {
   constexpr int kHeights = 400;
   constexpr double kSpacing = 0.006 / kHeights;  // distance at which the rest of the tool is in free air [m]
@@ -78,8 +79,8 @@ double deepest_at(const ToolPose& pose, double angle) {
   return std::max(depth_at(pose, angle, best), depth_at(pose, angle, low));
 }
 
-/// Returns the depth of the deepest point of the tool: evaluates many angles, then ever smaller neighbourhoods of the
-/// deepest angle.
+/// Returns the depth [m] of the deepest point of the tool: evaluates many angles, then ever smaller neighbourhoods of
+/// the deepest angle.
 double searched(const ToolPose& pose) {
   double deepest = 0.0, angle = 0.0;
   const auto search = [&](double from, double spacing, int angles) {
@@ -106,7 +107,8 @@ TEST(Interpenetration, EqualsASearchOverTheWholeTool) {
   }
 }
 
-/// The tool is shorter than the hole is deep, and is wholly inside the wall: its upper end may be the deepest point.
+/// Checks a tool that is shorter than the hole is deep, and that is wholly inside the wall: its upper end may be the
+/// deepest point.
 TEST(Interpenetration, KnowsTheUpperEndOfAShortTool) {
   const Cylinder tool(kTool.radius(), 0.001);
   for (const double reach : {0.0006, 0.0008}) {
@@ -133,7 +135,7 @@ TEST(PositionMetrics, TargetsNeverReachedHaveNoForceAndNoSpeed) {
   EXPECT_EQ(position_metrics({missed})[0].speed.subjects, 0u);
 }
 
-/// A hand with a task; its trial can begin.
+/// A hand that exerts no force and has a task.
 class TaskHand final : public Hand {
  public:
   explicit TaskHand(const TargetTask& task) : task_(task) {}
@@ -206,7 +208,7 @@ TEST(TargetMetrics, MeansAreOverTheRowsOnTheTargetOfTheTrial) {
   step(0.0, 2.0, 0.0);
   step(0.0, 2.0, 0.0);
   ASSERT_EQ(observer.rows().size(), 2u);
-  // Steps on a target that has not ended do not count in the next trial, which adds its own steps.
+  // Steps on an unfinished target do not count in the next trial, which adds its own targets.
   TargetTask next(rules, 2);
   record.task = &next;
   begin(observer, 4, 6, next);

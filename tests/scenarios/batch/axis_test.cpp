@@ -7,7 +7,7 @@
 #include "scenarios/input/input_error.hpp"
 #include "tests/results/files.hpp"
 
-/// The errors for wrong axes are in tests/data/golden/refused_sweeps.txt.
+/// Tests the values of axes. The errors for wrong axes are in tests/data/golden/refused_sweeps.txt.
 namespace hapbench::axis_test {
 namespace {
 

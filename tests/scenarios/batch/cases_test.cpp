@@ -63,7 +63,7 @@ TEST(Cases, AreThePointsOfAFile) {
 
 TEST(Cases, RefuseMoreRunsThanTheyMayHaveHoweverMany) {
   EXPECT_EQ(cases_of({"a=0:1:1000", "b=0:1:1000"}).size(), kMaxRuns);
-  // 1000^7 exceeds the range of 64 bits.
+  // Check a number of cases that exceeds 64 bits: 1000^7.
   Values vary;
   for (const char path : std::string("abcdefg")) vary.push_back(std::string(1, path) + "=0:1:1000");
   EXPECT_TRUE(test::input_error_of([&] { cases_of(vary); }));
@@ -71,7 +71,7 @@ TEST(Cases, RefuseMoreRunsThanTheyMayHaveHoweverMany) {
 
 using Numbers = std::vector<std::size_t>;
 
-/// Returns the cases in the order of their runs.
+/// Returns the indices of the cases in the order of their runs.
 Numbers order_of(const Cases& cases) {
   Numbers order;
   for (std::size_t place = 0; place < cases.size(); ++place) order.push_back(cases.at(place));

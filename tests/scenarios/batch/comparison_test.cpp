@@ -99,7 +99,7 @@ TEST_F(ComparisonOf, WhatCannotBeComparedNamesTheFile) {
   script["motion"] = {{"position", {{"type", "prescribed"}, {"x_m", 0.0}, {"y_m", 0.0}, {"z_m", 0.0}}}};
   question.scenarios.push_back(write("script.json", script));
   EXPECT_NO_THROW(planned(question));
-  // A prescribed path is shifted, unless its forces are given.
+  // A prescribed path is shifted. With a reference force, which belongs to the path, the shift is rejected.
   question.jitter = 1e-4;
   EXPECT_NO_THROW(planned(question));
   script["reference_force"] = {{"z_N", 1.0}};
@@ -128,8 +128,8 @@ TEST_F(ComparisonOf, ScenesRemovesWhatAnEarlierOneLeftAndNothingElse) {
   EXPECT_FALSE(fs::exists(out / "plane/mean"));
 }
 
-/// Two blocks with different grids, one of them twice with another start, for any number of runs and any order of the
-/// threads.
+/// Checks that two shells are built for three scenes: two blocks with different grids, one of them in two scenes with
+/// different start positions. Checks one and four threads.
 TEST_F(ComparisonOf, AnyScenesBuildsEachDistinctShellOnce) {
   for (const unsigned jobs : {1u, 4u}) {
     Json scene = test::minimal_scenario("block_with_hole");

@@ -13,7 +13,7 @@ TEST(ForEachJob, BeginsEachOnceInOrderAndNoMoreThanItsThreads) {
   for (const unsigned threads : {1u, 2u, 7u}) {
     std::atomic<std::size_t> ended = 0;
     for_each_job(400, {threads, ""}, [&](std::size_t i) {
-      // All earlier jobs have begun, and all except threads - 1 of them have ended.
+      // When job i runs, all earlier jobs have begun, and at most threads - 1 of them have not ended.
       EXPECT_LT(i, ended + threads);
       std::this_thread::yield();
       ++ended;
@@ -23,7 +23,7 @@ TEST(ForEachJob, BeginsEachOnceInOrderAndNoMoreThanItsThreads) {
 }
 
 TEST(ForEachJob, ThrowsWhatTheLowestFailingJobThrew) {
-  // All jobs fail. The first job begins before any other job and has the lowest number.
+  // All jobs fail. The reported error is that of the job with the lowest number, which begins before any other job.
   for (const unsigned threads : {1u, 4u})
     EXPECT_THROW(for_each_job(50, {threads, ""},
                               [](std::size_t i) {

@@ -32,8 +32,8 @@ Ranking rank_comparison(const Values& values, Better better = Better::less, std:
   return ranking;
 }
 
-/// The proxy renders by the constraints of rigid contact, which also define the reference. Its fidelity therefore has
-/// no rank and does not change the ranks of other laws.
+/// Checks that the proxy's fidelity has no rank and does not change the ranks of other laws. The proxy renders by the
+/// constraints of rigid contact, which also define the reference.
 TEST(Ranking, DoesNotRankTheFidelityOfTheReferencesOwnConstraints) {
   for (const bool is_rigid : {true, false}) {
     Ranking ranking{{"scene"},
@@ -66,7 +66,7 @@ std::vector<std::size_t> ranks(const Ranking& ranking) {
 
 using Ranks = std::vector<std::size_t>;
 
-/// The ranks of `compare --errors` must agree with the significant order that it prints.
+/// Checks that the ranks of `compare --errors` agree with the significant order that it prints.
 TEST(Ranking, RespectsEstimatedErrors) {
   const auto ranks_with = [](std::vector<std::optional<double>> errors) {
     return ranks(rank_comparison({1.0, 1.3, 1.5}, Better::less, 1, 0.0,
@@ -98,8 +98,8 @@ TEST(Ranking, RanksByMeansThenThoseWithoutOneThenByFailedSeeds) {
   EXPECT_EQ(of_one_seed({-1.0, kNone, 2.0}), (Ranks{3, 2, 1}));
   EXPECT_EQ(of_one_seed({7.0, -1.0, 3.0, -9.0}), (Ranks{2, 3, 1, 3})) << "however small the numbers of failures";
   EXPECT_EQ(of_one_seed({-1.0, kNone}), (Ranks{0, 0})) << "nobody has a number that counts";
-  // An algorithm that fails for one of three seeds ranks before an algorithm that fails for two, whatever their other
-  // values are.
+  // An algorithm that fails for one of three seeds ranks before an algorithm that fails for two seeds, whatever the
+  // values for the other seeds are.
   const Ranking ranking = rank_comparison({9.0, 9.0, -1.0, 1.0, -1.0, -1.0, 50.0, 60.0, 70.0}, Better::less, 3);
   EXPECT_EQ(ranks(ranking), (Ranks{2, 3, 1}));
   EXPECT_EQ(ranking.at(0, 0, 0).mean, 9.0) << "of those that did not fail";
@@ -110,7 +110,7 @@ TEST(Ranking, RanksByMeansThenThoseWithoutOneThenByFailedSeeds) {
   EXPECT_EQ(without_common.at(0, 2, 0).mean, 5.0);
 }
 
-/// The page of tests/scripts/ranking_test.py has the same ranks.
+/// Checks ranks that errors make indistinct. The page of tests/scripts/ranking_test.py has the same ranks.
 TEST(Ranking, LeavesOutWhatTheErrorsDoNotAllow) {
   const auto with_error = [](const Values& values, double error) {
     return ranks(rank_comparison(values, Better::less, 1, error));

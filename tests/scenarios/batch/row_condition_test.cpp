@@ -11,7 +11,7 @@ const std::vector<std::string> kColumns = {"index", "a", "outcome"};
 const std::vector<std::vector<std::string>> kRows = {
     {"0", "3", "completes"}, {"1", "3.0", "diverges"}, {"2", "4", "completes"}, {"3", "", "error"}, {"4", "nan", ""}};
 
-/// Returns the first cells of the rows that meet the condition.
+/// Returns the first cells of the rows that meet the condition, joined without a separator.
 std::string kept(const std::string& condition) {
   const RowCondition is_met = parse_row_condition(condition, kColumns);
   std::string all;

@@ -11,7 +11,8 @@
 #include "scenarios/input/input_error.hpp"
 #include "tests/results/files.hpp"
 
-/// The errors for wrong samples are in tests/data/golden/refused_sweeps.txt.
+/// Tests sampled points and files of --points. The errors for wrong samples are in
+/// tests/data/golden/refused_sweeps.txt.
 namespace hapbench::sampling_test {
 namespace {
 

@@ -79,7 +79,7 @@ TEST(SweepPlan, HasExactlyTheMetricsOfItsRuns) {
   scenarios.push_back({"with_ideal_trajectory", block});
   std::set<std::string> all;
   for (const auto& [name, json] : scenarios) {
-    // Limit the length of tasks that take a long time.
+    // Run only a few steps, because a whole task takes a long time.
     const bool has_targets = json.contains("hand") && json["hand"]["type"] == "tracking";
     const SweepPlan plan = plan_of(json, {has_targets ? "seed=1" : "time.steps=2"});
     std::vector<std::string> names;
@@ -145,8 +145,8 @@ TEST(SweepPlan, RefusesBadMeshesOfToolsBeforeTheFirstRun) {
   EXPECT_NE(std::string(error->what()).find("open.obj"), std::string::npos) << error->what();
 }
 
-/// The error names the line of a value of --points that a field does not allow. It names no line for a fault of the
-/// scenario.
+/// Checks that the error names the line of a value of --points that a field does not allow. It names no line for a
+/// fault of the scenario.
 TEST(SweepPlan, NamesTheLineOfAPointThatAFieldRefuses) {
   const test::TemporaryDirectory directory;
   const auto refusal_of = [&](const std::string& points, const Json& scene) {
@@ -173,7 +173,8 @@ TEST(SweepPlan, NamesTheLineOfAPointThatAFieldRefuses) {
 
 TEST(RunSweep, HasErrorRowsForRunsThatNobodyChecked) {
   const test::TemporaryDirectory directory;
-  // Not all of these values are checked before the first run; 4567 is a value that is not checked.
+  // The sweep does not check all of these values before the first run; 4567 is the index of an invalid value that it
+  // does not check.
   std::string seeds = "seed=0";
   for (int i = 1; i < 6000; ++i) seeds += "," + std::to_string(i == 4567 ? -1 : i);
   const SweepPlan plan = plan_of(minimal_scenario("springs"), {seeds});
@@ -193,7 +194,7 @@ TEST(RunSweep, HasErrorRowsForRunsThatNobodyChecked) {
 
 // Tests the guarantees of a sweep: the bytes of its table, its memory, and its cost, also after interruptions.
 
-/// Thrown to end a sweep like a killed process: all written bytes remain.
+/// Thrown to end a sweep as if its process were killed: all written bytes remain.
 struct Killed {};
 
 class SweepPromises : public testing::Test {
@@ -272,7 +273,7 @@ TEST_F(SweepPromises, AFailedRunIsTriedAgain) {
   EXPECT_EQ(read_file(out / "sweep.csv"), read_file(whole / "sweep.csv"));
 }
 
-/// Tests that take seconds.
+/// Fixture of tests that take seconds.
 class SlowSweepPromises : public SweepPromises {};
 
 double most_resident_bytes() {
@@ -288,7 +289,7 @@ TEST_F(SlowSweepPromises, TheMemoryOfAThousandRunsForAHundredTimesAsMany) {
     return most_resident_bytes();
   };
   const double few = run("seed=1:1000:1000");
-  // The positions of the rows in their file take 8 bytes a run; the memory that the allocator keeps varies.
+  // The positions of the rows in their file take 8 bytes per run, 0.8 MB. The memory that the allocator keeps varies.
   EXPECT_LT(run("seed=1:100000:100000") - few, 4e6);
 }
 
@@ -298,8 +299,8 @@ double processor_seconds() {
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-/// Returns the processor time of the runs of a plan over three grids, each simulated by itself, with one shell for each
-/// grid as in a sweep.
+/// Returns the processor time [s] of the runs of a plan over three grids without a sweep: every simulation, plus the
+/// construction of one shell for each grid.
 double seconds_without_sweep(const SweepPlan& plan) {
   double simulations = 0.0, shells = 0.0;
   for (std::size_t run = 0; run < plan.cases.size(); ++run) {
@@ -320,7 +321,8 @@ TEST_F(SlowSweepPromises, LittleMoreTimeThanTheSimulationsInWhicheverOrderTheAxe
                                            {"time.steps=20000:20019:20", "environment.grid_m=2e-4,1.5e-4,1e-4"}};
   for (const auto& axes : vary) {
     const SweepPlan plan = plan_of(scene, axes, directory_ / "scene.json");
-    // Other programs on the machine make every measurement longer, never shorter: the least of five turns counts.
+    // Other programs on the machine make every measurement longer, never shorter. So take the shortest of five
+    // measurements.
     double sweep = 1e9, simulations = 1e9;
     for (int turn = 0; turn < 5; ++turn) {
       const double begun = processor_seconds();

@@ -27,7 +27,7 @@ class TableFiles : public testing::Test {
   TableTitle title(const std::string& definition = "mine") const {
     return {file_, "index,a", {{"definition", definition}}, 9};
   }
-  /// Returns the rows that a table keeps when it is continued.
+  /// Returns the rows that a table keeps when it is opened again to be continued.
   Rows resumed(const std::string& definition = "mine") const {
     Rows rows;
     const TableFile table(title(definition), [&](std::size_t, std::string_view row) {
@@ -36,7 +36,7 @@ class TableFiles : public testing::Test {
     });
     return rows;
   }
-  /// Writes a partial table, as a killed process leaves it, and returns its bytes.
+  /// Writes a partial table, as a killed process leaves it, and returns the bytes of its file.
   std::string left(const Rows& rows) const {
     TableFile table(title());
     for (const std::string& row : rows) table.add(static_cast<std::size_t>(row[0] - '0'), row);
@@ -113,7 +113,7 @@ TEST_F(TableFiles, OnAFullDiskAreAnErrorThatNamesThem) {
   } catch (const IoError& error) {
     EXPECT_NE(std::string(error.what()).find(part_.string()), std::string::npos) << error.what();
   }
-  EXPECT_EQ(added, 3u);  // header of 8 bytes, and 63 bytes for each row
+  EXPECT_EQ(added, 3u);  // a header of 8 bytes and 63 bytes for each row; the fourth row would exceed 200 bytes
 }
 
 TEST_F(TableFiles, OfShardsAreJoinedWhenAllAreThere) {

@@ -40,7 +40,7 @@ TEST(ParseJson, ReportsWhereTheSyntaxIsWrongAndWhatWasExpected) {
       "string literal; remove the comma before it");
   EXPECT_EQ(
       refusal_of("[1, \"\xff\"]").find("is not JSON: parse error at line 1, column 6: syntax error while parsing"), 0u);
-  // Positions are those of an editor: characters, any line end, no byte order mark.
+  // Positions count like in an editor: characters instead of bytes, any line end, no byte order mark.
   for (const auto& [text, position] : {std::pair("\xef\xbb\xbf{'a': 1}", "line 1, column 2"),
                                        {"{\"\xc3\xa4\xc3\xb6\": x}", "line 1, column 8"},
                                        {"{\r\"a\": 1,\r}", "line 3, column 1"},
@@ -94,7 +94,7 @@ TEST(ParseJson, RefusesObjectsWithMoreThanTenThousandKeys) {
 }
 
 TEST(Pointer, EscapesTildeAndSlashAsRfc6901Says) {
-  // Examples of RFC 6901, section 5.
+  // Check the examples of RFC 6901, section 5.
   EXPECT_EQ(member("", "a/b"), "/a~1b");
   EXPECT_EQ(member("", "m~n"), "/m~0n");
   EXPECT_EQ(member("", "~1"), "/~01");

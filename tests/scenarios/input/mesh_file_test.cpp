@@ -42,7 +42,8 @@ class MeshFile : public testing::Test {
     return refusal ? refusal->what() : "";
   }
 
-  /// Returns the text of the single warning after the file's name. The name has no directory.
+  /// Reads a mesh that causes one warning, and returns the text of the warning after the file's name. The name has no
+  /// directory.
   std::string warning_of(const std::string& name, const std::string& text) const {
     const auto warnings = read(name, text).warnings;
     EXPECT_EQ(warnings.size(), 1u);
@@ -77,7 +78,7 @@ TEST_F(MeshFile, IsReadFromEveryFormatAndEncoding) {
       EXPECT_GT(p.normal.dot(p.position), 0.9);
       EXPECT_NEAR(p.normal.norm(), 1.0, 1e-15);
     }
-    if (name.ends_with(".stl")) continue;  // a soup in the order of its triangles
+    if (name.ends_with(".stl")) continue;  // STL files list the vertices in the order of their triangles
     for (std::size_t i = 0; i < expected.size(); ++i) EXPECT_EQ(mesh.points[i].normal, expected[i].normal);
   }
 }
@@ -164,7 +165,7 @@ TEST_F(MeshFile, IsReadWhateverElseItsTextHolds) {
   }
 }
 
-/// The file has lists and other properties before, between and after the properties of the surface.
+/// Checks a file with lists and other properties before, between and after the properties of the surface.
 TEST_F(MeshFile, IsReadFromABinaryPlyWithMoreInIt) {
   std::string text =
       "ply\nformat binary_little_endian 1.0\nelement strip 1\nproperty list ushort short indices\nelement nothing 3\n"
@@ -202,7 +203,7 @@ TEST_F(MeshFile, IsReadFromABinaryStlWhateverItsHeaderAndEnd) {
   EXPECT_EQ(read("spaces.stl", "solid" + std::string(75, ' ') + text.substr(80)).points.size(), 8u);
 }
 
-/// Returns texts in all text formats.
+/// Returns the surface in each text format, with file names.
 std::vector<test::NamedText> text_formats(const TriangleSoup& soup) {
   return {{"m.obj", test::obj_text(soup)},
           {"m.off", test::off_text(soup)},
@@ -228,7 +229,7 @@ TEST_F(MeshFile, IsReadWithAByteOrderMarkAndAnyLineEnds) {
       }
     }
   }
-  // A header with CR line ends before binary data that begins with LF.
+  // Check a header with CR line ends before binary data that begins with LF.
   std::string binary = test::binary_ply_text(test::cube(), true, false);
   const std::size_t data = binary.find("end_header\n") + 11;
   binary[data] = '\n';
@@ -238,14 +239,14 @@ TEST_F(MeshFile, IsReadWithAByteOrderMarkAndAnyLineEnds) {
   EXPECT_EQ(
       sorted_positions(read("crlf.ply", replaced(binary.substr(0, data), "\n", "\r\n") + binary.substr(data)).points),
       expected);
-  // Files with another encoding.
+  // Check files in another encoding and compressed files.
   for (const std::string& start : {std::string("\xFF\xFEv\0", 4), std::string("\xFE\xFF\0v", 4)})
     EXPECT_NE(refusal_of("utf16.obj", start + " 0 0 0\n").find("is a text in UTF-16 or UTF-32; allowed: UTF-8"),
               std::string::npos);
   EXPECT_NE(refusal_of("packed.stl", "\x1F\x8B\x08").find("is compressed"), std::string::npos);
 }
 
-/// Returns an L-shaped prism, 2 mm high, with polygons instead of triangles.
+/// Returns an L-shaped prism, 2 units high, in each text format, with polygons instead of triangles.
 std::vector<test::NamedText> l_prisms(const std::string& face = "5 4 3 2 1 0") {
   const std::vector<std::string> faces = {face,      "6 7 8 9 10 11", "0 1 7 6",   "1 2 8 7",
                                           "2 3 9 8", "3 4 10 9",      "4 5 11 10", "5 0 6 11"};
@@ -318,7 +319,7 @@ TEST_F(MeshFile, NamesVerticesAsTheFileCountsThem) {
             std::string::npos);
 }
 
-/// Every text that is cut is either rejected, or accepted as an open mesh with a warning.
+/// Checks every truncated text: it is either rejected, or accepted as an open mesh with a warning.
 TEST_F(MeshFile, IsRefusedOrNamedIfItsFileIsCut) {
   for (const auto& [name, text] : text_formats(test::cube())) {
     // Cutting the last line end, or the name after endsolid, loses nothing.
@@ -395,8 +396,8 @@ TEST_F(MeshFile, KeepsOneOfSeveralEqualFaces) {
             ": faces left out, which repeat an earlier face with opposite winding: 1");
 }
 
-/// Both sides of a plane quadrilateral, which the readers divide along different diagonals. Its corners are rounded to
-/// six digits, so that the sides enclose a small volume. Both sides have their own vertices.
+/// Checks both sides of a plane quadrilateral, which the readers divide along different diagonals. Its corners are
+/// rounded to six digits, so that the sides enclose a small volume. Each side has its own vertices.
 TEST_F(MeshFile, NamesASheetWhoseSidesAreDividedDifferently) {
   const std::string corners = "0.123456 0 0\n1.123456 0.3 0.7\n0.423456 1.3 0.912346\n-0.576544 1 0.212346\n";
   std::string vertices = "v " + corners;
@@ -413,7 +414,7 @@ TEST_F(MeshFile, NamesASheetWhoseSidesAreDividedDifferently) {
     EXPECT_EQ(warning_of(name, text).find(says), 0u) << warning_of(name, text);
     EXPECT_TRUE(hapbench::MeshFile(text, name, {}).findings().components[0].is_flat);
   }
-  // A thin plate and a thin wire have a volume.
+  // A thin plate and a thin wire have a volume, so they cause no warning.
   for (const Vec3& size : {Vec3(1, 1, 1e-4), Vec3(1, 1e-3, 1e-3)}) {
     TriangleSoup thin = test::cube();
     for (Vec3& vertex : thin.vertices) vertex = vertex.cwiseProduct(size);
@@ -432,7 +433,7 @@ TEST_F(MeshFile, NamesVerticesThatNoFaceUses) {
             "open: is the file cut short?");
 }
 
-/// A file of another format, or with numbers in another notation, gives an error that names the problem.
+/// Checks that a file of another format, or with numbers in another notation, gives an error that names the problem.
 TEST_F(MeshFile, IsRefusedByWhatItIs) {
   for (
       const auto& [name, text, says] :
@@ -516,12 +517,13 @@ TEST_F(MeshFile, IsResampledToTheSpacing) {
   const std::string text = test::stl_text(test::cube(5.0));
   const double spacing = 0.0005;
   const MeshPoints mesh = read("cube.stl", text, {0.001, spacing});
-  // Six sides with 20 x 20 cubes, and half cubes at the edges: 21 x 21 at most. Nearly each cube has a point.
+  // The cube has six sides with 20 x 20 cells, and half cells at the edges: 21 x 21 at most. Nearly each cell has a
+  // point.
   EXPECT_LE(mesh.points.size(), 6u * 21 * 21);
   EXPECT_GE(mesh.points.size(), 6u * 20 * 20 * 9 / 10);
   for (const SurfacePoint& p : mesh.points) {
     EXPECT_NEAR(p.position.cwiseAbs().maxCoeff(), 0.005, 1e-18) << "on the surface";
-    // No gaps: the next point is in the same or a neighbouring cube, or was removed from such a cube.
+    // There are no gaps: the next point is in the same or a neighbouring cell, or was removed from one of these cells.
     const auto near = std::count_if(mesh.points.begin(), mesh.points.end(), [&](const SurfacePoint& q) {
       return (q.position - p.position).cwiseAbs().maxCoeff() <= 2 * spacing;
     });

@@ -13,7 +13,7 @@
 namespace hapbench::mesh_polygons_test {
 namespace {
 
-/// Returns the text of the single warning after the file's name.
+/// Reads a mesh that causes one warning, and returns the text of the warning after the file's name.
 std::string warning_of(const std::string& name, const std::string& text) {
   const auto warnings = MeshFile(text, name, {}).warnings(name);
   EXPECT_EQ(warnings.size(), 1u);
@@ -55,7 +55,7 @@ double volume_of(const MeshFile& mesh) {
   return volume;
 }
 
-/// A polygon that is listed again, with either winding and from any corner, is the same face.
+/// Checks a polygon that is listed again, with either winding and from any corner: it is the same face.
 TEST(MeshPolygons, KeepsOneOfSeveralEqualPolygons) {
   std::vector<std::string> twice = kQuadrilaterals;
   for (const std::string corners : {"1 3 2 0", "6 7 5 4", "4 5 1 0", "3 7 6 2", "2 6 4 0", "5 7 3 1"})
@@ -73,9 +73,10 @@ TEST(MeshPolygons, KeepsOneOfSeveralEqualPolygons) {
     EXPECT_EQ(warning_of(name, text), ": faces left out, which repeat an earlier face: 2");
 }
 
-/// Corners on the edges of a polygon, such as of a face whose neighbour is divided more finely, leave the mesh closed.
+/// Checks polygons with corners on their edges, such as a face whose neighbour is divided more finely. The mesh is
+/// closed.
 TEST(MeshPolygons, MayHaveCornersOnALine) {
-  // The vertices 8 and 9 are on edges of two faces each; the file starts the faces at each of their corners in turn.
+  // The vertices 8 and 9 lie on edges of two faces each. Start each of these faces at each of its corners in turn.
   const std::vector<std::string> more = {"3 0 0", "3 5 0"};
   Words bottom = {"0", "2", "9", "3", "1", "8"}, front = {"0", "8", "1", "5", "4"}, back = {"2", "6", "7", "3", "9"};
   for (int start = 0; start < 6; ++start) {
@@ -93,7 +94,7 @@ TEST(MeshPolygons, MayHaveCornersOnALine) {
       EXPECT_NEAR(volume_of(mesh), 90.0, 1e-12);
     }
   }
-  // A corner that is listed twice, or again at the end, is named as such.
+  // The warning reports a corner that is listed twice, or again at the end.
   for (const std::string corners : {"0 2 2 3 1", "0 2 3 1 0"}) {
     std::vector<std::string> faces = kQuadrilaterals;
     faces[0] = corners;

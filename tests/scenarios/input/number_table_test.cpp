@@ -111,7 +111,7 @@ TEST(NumberTable, ReportsLinesAboveTheHeader) {
     EXPECT_EQ(table.values, (std::vector<double>{1, 2, 3})) << text;
     EXPECT_EQ(table.notes, note[0] == 0 ? std::vector<std::string>{} : std::vector<std::string>{note});
   }
-  // A header below numbers, or with one name by chance, is none.
+  // A header below numbers is no header, and neither is a line with only one known name.
   EXPECT_NE(refusal_of("a,b,c\n1,2,3\nt,x,y\n").find("line 1: got header"), std::string::npos);
   EXPECT_NE(refusal_of("title\nx is what is meant\n1,2,3\n").find("line 1: got header"), std::string::npos);
   EXPECT_EQ(refusal_of("t,x,y\ns,m,m\n1,2,3\n"),

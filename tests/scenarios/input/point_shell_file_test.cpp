@@ -52,7 +52,8 @@ TEST(ShellFile, AsPlyReadsBackToSinglePrecision) {
   const std::vector<SurfacePoint> points = random_points(1000);
   const auto again = parse_point_shell(format_point_shell(points, "s.ply"), "s.ply");
   ASSERT_EQ(again.size(), points.size());
-  // Half a unit in the last of 24 bits, for numbers up to 0.1 and up to 1; normalisation also changes normals.
+  // Half a unit in the last of 24 bits, for positions up to 0.1 m and normals up to 1. Normalisation also changes
+  // normals.
   const double position_tolerance = 0.1 * 0x1p-24, normal_tolerance = 4 * 0x1p-24;
   for (std::size_t i = 0; i < points.size(); ++i) {
     EXPECT_LE((again[i].position - points[i].position).cwiseAbs().maxCoeff(), position_tolerance) << i;
@@ -71,7 +72,7 @@ std::string header(const std::string& format, const std::string& count, const st
   return "ply\nformat " + format + " 1.0\nelement vertex " + count + "\n" + properties + after + "end_header\n";
 }
 
-/// Returns the bytes of a number, most or least significant byte first.
+/// Returns the bytes of a number, with the most (`big_endian`) or least significant byte first.
 template <class Bits>
 std::string bytes(Bits value, bool big_endian) {
   std::string text;
@@ -131,7 +132,7 @@ TEST(ShellFile, IsRefusedOnceWithTheNumberOfPoints) {
                "s.csv, line 3, point 1: got a normal of length 2; allowed: unit normals (2 more rows have faults)");
 }
 
-/// tests/data/golden/refused_files.txt has further errors.
+/// Checks errors of PLY files. tests/data/golden/refused_files.txt has further errors.
 TEST(PlyPoints, AreRefusedWhereHeaderOrNumberIsWrong) {
   const std::string row = "0 0 0 0 0 1\n";
   std::string infinite;

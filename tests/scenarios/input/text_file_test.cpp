@@ -24,7 +24,7 @@ TEST(ReadTextFile, ReadsUpToItsLimitAndNoFurther) {
   const auto refusal = test::input_error_of([&] { read_text_file(directory / "file", contents.size() - 1); });
   ASSERT_TRUE(refusal);
   EXPECT_NE(refusal->problem().find("is larger than"), std::string::npos);
-  // A device without an end also stops at the limit.
+  // A device file without an end is also read only up to the limit.
   EXPECT_TRUE(test::input_error_of([] { read_text_file("/dev/zero", 1 << 20); }));
 }
 
@@ -46,7 +46,7 @@ TEST(ReadTextFile, RefusesOtherEncodingsAndCompressedFiles) {
   }
 }
 
-/// A second read would wait for a writer forever.
+/// Checks that a pipe is read only once. A second read would wait for a writer forever.
 TEST(ReadTextFile, ReadsAPipeOnceAndKeepsItsContents) {
   const test::TemporaryDirectory directory;
   const auto pipe = directory / "pipe";

@@ -1,4 +1,4 @@
-/* A module as it should not be. HOSTILE in the environment says which. */
+/* A module with a fault. The environment variable HOSTILE selects the fault; without it, the module is correct. */
 #include <hapbench_module.h>
 #include <math.h>
 #include <stdio.h>

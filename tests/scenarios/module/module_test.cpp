@@ -29,7 +29,7 @@ std::unique_ptr<ForceAlgorithm> make_some(const RenderingConfig& config) {
   return std::make_unique<PenaltyRendering>(make_law("mean", config), config);
 }
 
-/// Adds an algorithm and returns the reason why it was rejected, or nothing.
+/// Adds an algorithm. Returns the reason why it was rejected, or an empty text.
 std::string problem_with(const ModelInfo& info, std::vector<AlgorithmParameter> parameters = {}) {
   try {
     add_algorithm({.info = &info, .make = make_some, .algorithm_parameters = parameters});
@@ -99,7 +99,7 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 const Vec3 kTip(0.1, -0.2, 0.3);
 
-/// The behaviour of the laws below, and the counts of their calls.
+/// Behaviour of the laws below, and counts of the calls of their functions.
 struct Script {
   const char* fault = nullptr;
   double weight_scale = 1.0;
@@ -158,7 +158,7 @@ class AModuleLaw : public testing::Test {
  protected:
   AModuleLaw() { script = {}; }
 
-  /// Returns the fault of a law after one call, without the names of module and file.
+  /// Calls a law once and returns its fault, without the names of module and file; empty without a fault.
   static std::string fault_of(const HapbenchModule& table) {
     ModuleLaw law(module_of(table), kK, {});
     law.prepare(10);
@@ -202,7 +202,7 @@ TEST_F(AModuleLaw, OfAForceAnswersThatForce) {
   EXPECT_EQ(force.spring, Vec3(0, -1, 0));
   EXPECT_EQ(force.S, Mat3(0.5 * Mat3::Identity()));
   EXPECT_EQ(contacts.weight[1], 0.5) << "it wrote none";
-  // One spring of stiffness K acts at the mean of the contacts, which lie at the origin.
+  // The force is that of one spring of stiffness K at the mean of the contacts, which lie at the origin.
   const SpringState state = law.spring_state(contacts, force.spring, kTip);
   EXPECT_DOUBLE_EQ(state.energy, 1.0 / (2.0 * kK));
   EXPECT_TRUE(state.moment.isApprox((-kTip).cross(force.spring)));
@@ -211,7 +211,7 @@ TEST_F(AModuleLaw, OfAForceAnswersThatForce) {
 TEST_F(AModuleLaw, ReportsWhatIsNoForce) {
   EXPECT_EQ(fault_of(kMean), "");
   EXPECT_EQ(fault_of(kForce), "");
-  script = {.weight_scale = 1e306};  // with depths of 1 mm the force stays finite
+  script = {.weight_scale = 1e306};  // with depths of 1 mm the force is still finite
   EXPECT_EQ(fault_of(kMean), "");
   for (const Script& wrong :
        {Script{.weights_forgotten = 1}, Script{.weight_scale = kNaN}, Script{.weight_scale = kInfinity}}) {
@@ -302,7 +302,7 @@ fs::path module(const std::string& name) {
   return fs::path(HAPBENCH_TEST_MODULES) / (name + ".so");
 }
 
-/// Returns the problem of a module file, without the file's name.
+/// Returns the problem of a module file, without the file's name; fails the test if the file is accepted.
 std::string problem_of_file(const fs::path& file) {
   const auto error = test::input_error_of([&] { load_module(file); });
   if (!error) return "";
@@ -385,7 +385,7 @@ TEST(LoadModule, LoadsFoldersInTheOrderOfNames) {
   EXPECT_STREQ(error->what(), "PATH: /no/such/folder: No such file or directory");
 }
 
-// ---- Parameters in scenarios.
+// ---- Parameters in scenarios
 
 LoadedScenario scenario_with(const std::string& rendering) {
   return read_scenario(
@@ -402,7 +402,7 @@ TEST(OwnParameters, AreWrittenWithTheirAlgorithmCheckedAndInTheSchema) {
   EXPECT_FALSE(rendering_of(R"({"algorithm": "mean"})").contains("parameters"));
   const std::string given = R"({"algorithm": "hostile", "parameters": {"hostile": {"bias": 0.5}}})";
   EXPECT_EQ(rendering_of(given)["parameters"], Json::parse(R"({"hostile": {"gain": 1.0, "bias": 0.5}})"));
-  // Parameters of another algorithm are allowed, because a comparison changes the algorithm.
+  // Parameters of an algorithm that is not in use are allowed, because a comparison changes the algorithm.
   const std::string others = R"({"algorithm": "mean", "parameters": {"hostile": {"bias": 0.5}}})";
   EXPECT_EQ(rendering_of(others)["parameters"]["hostile"]["bias"], 0.5);
   const Scenario scenario = with_algorithm(scenario_with(others).scenario, "hostile");

@@ -16,7 +16,8 @@ namespace hapbench::renderer_test {
 inline constexpr double kPeriod = 0.001;  ///< period of the loop [s]
 inline constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-/// A plane at z = 0 below a round drill of 1 mm. Without damping, the force is a function of the position.
+/// Scenario of a round drill, 1 mm in diameter, above the plane z = 0. Damping is zero, so the force depends only on
+/// the position.
 inline const char* const kPlane = R"({
   "name": "plane",
   "time": {"step_s": 0.001, "steps": 100},
@@ -27,7 +28,7 @@ inline const char* const kPlane = R"({
   "rendering": {"algorithm": "mean", "stiffness_N_per_m": 2000, "damping_ratio": 0}
 })";
 
-/// Closes a renderer at the end of its owner.
+/// Closes a renderer when its owning pointer is destroyed.
 struct Closed {
   void operator()(HapbenchRenderer* renderer) const { hapbench_renderer_close(renderer); }
 };
@@ -56,7 +57,7 @@ struct Loop {
     input.time_ns = 1'000'000'000;
     input.handle = {{0, 0, 0.002}, {1, 0, 0, 0}};
   }
-  /// Makes one call, `seconds` after the last call, at a height.
+  /// Calls the renderer with the handle at the height z [m], `seconds` after the previous call, and returns its output.
   HapbenchOutput at(double z, double seconds = kPeriod) {
     input.handle.position[2] = z;
     return call(seconds);
@@ -68,7 +69,7 @@ struct Loop {
     EXPECT_EQ(status, output.status);
     return output;
   }
-  /// Makes calls in free air until the gain of the force is 1.
+  /// Calls the renderer with the handle in free air until its status is HAPBENCH_ON. Fails the test after 200 calls.
   void engage() {
     HapbenchOutput output{};
     for (int i = 0; i < 200 && output.status != HAPBENCH_ON; ++i) output = at(0.002);
@@ -83,7 +84,7 @@ inline double norm(const double (&v)[3]) {
   return std::hypot(v[0], v[1], v[2]);
 }
 
-/// Height of the tip centre at which the drill is 0.2 mm deep [m].
+/// Height of the tip centre [m] at which the lowest point of the drill is 0.2 mm below the plane.
 inline constexpr double kInside = 0.0003;
 
 }  // namespace hapbench::renderer_test

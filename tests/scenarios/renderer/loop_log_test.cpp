@@ -22,7 +22,7 @@
 namespace hapbench::renderer_test {
 namespace {
 
-/// Returns inputs that touch, press, slide, clutch, cause faults and wait.
+/// Returns n inputs of a handle that touches, presses, slides, uses the clutch, causes faults and waits.
 std::vector<HapbenchInput> busy_inputs(std::size_t n) {
   std::vector<HapbenchInput> inputs(n);
   for (std::size_t i = 0; i < n; ++i) {
@@ -105,7 +105,7 @@ TEST(Renderer, AnswersNullArguments) {
   hapbench_renderer_close(nullptr);
 }
 
-// The layout of version 1. A change of a size or an offset requires a new HAPBENCH_RENDERER_VERSION.
+// Checks the layout of version 1. A change of a size or an offset requires a new HAPBENCH_RENDERER_VERSION.
 TEST(RendererAbi, IsThatOfVersion1) {
   static_assert(HAPBENCH_RENDERER_VERSION == 1);
   static_assert(sizeof(HapbenchPose3) == 56);
@@ -174,7 +174,7 @@ TEST(LoopLog, RefusesWhatIsNotAWholeLog) {
     return std::string("nothing is refused");
   };
   EXPECT_EQ(error_with(lines), "nothing is refused");
-  // Any line ends, and a byte order mark.
+  // Logs with other line ends and with a byte order mark are read.
   for (const std::string end : {"\r\n", "\r"}) {
     std::string other = "\xEF\xBB\xBF";
     for (const std::string& line : lines) other += line + end;

@@ -36,7 +36,7 @@ TEST(Renderer, WaitsForFourCallsAndRampsUp) {
   EXPECT_EQ(on.status, static_cast<unsigned>(HAPBENCH_ON));
   EXPECT_GT(on.contacts, 0u);
   EXPECT_NEAR(on.dt, kPeriod, 1e-12);
-  // Mean of penalty springs: at most K times the depth of the tip.
+  // The law is the mean of the penalty springs, so the force is at most K times the depth of the tip.
   EXPECT_GT(on.force[2], 0.05);
   EXPECT_LE(on.force[2], 2000 * 0.0002 + 1e-9);
 }
@@ -172,7 +172,7 @@ TEST(Renderer, KeepsTheToolWhileTheClutchIsPressed) {
   output = loop.at(0.01 + kInside);
   EXPECT_EQ(output.status, static_cast<unsigned>(HAPBENCH_WAITING));
   EXPECT_GT(output.contacts, 0u);
-  // 2 mm above the plane in the moved frame, and back, gives the same force.
+  // A move to 2 mm above the plane in the moved frame, and back, gives the same force.
   for (int i = 0; i < 200; ++i) output = loop.at(0.012);
   EXPECT_EQ(output.status, static_cast<unsigned>(HAPBENCH_ON));
   EXPECT_NEAR(loop.at(0.01 + kInside).force[2], before, 1e-6 * before);
@@ -188,13 +188,13 @@ TEST(Renderer, LimitsTheForceAndItsRate) {
   EXPECT_EQ(output.limited, static_cast<unsigned>(HAPBENCH_MAX_FORCE));
   EXPECT_NEAR(norm(output.force), 0.04, 1e-15);
   setup.mount.max_force = INFINITY;
-  setup.mount.max_force_rate = 10.0;  // 0.01 N a call
+  setup.mount.max_force_rate = 10.0;  // 0.01 N per call
   Loop slow(setup);
   slow.engage();
   output = slow.at(kInside);
   EXPECT_EQ(output.limited, static_cast<unsigned>(HAPBENCH_MAX_FORCE_RATE));
   EXPECT_NEAR(norm(output.force), 0.01, 1e-12);
-  // The smaller limit of mount and scenario applies: force_max_N is 50 N.
+  // The smaller of the two limits applies. Here it is force_max_N of the scenario, 50 N.
   EXPECT_NE(std::string(hapbench_renderer_inspect(slow.renderer.get())).find("largest force: 50 N"), std::string::npos);
 }
 
@@ -228,7 +228,7 @@ TEST(Renderer, MountsTheDevice) {
   EXPECT_NEAR(norm(output.torque), 0.0, 1e-6);  // the force points along the arm
 }
 
-/// An admittance loop whose handle follows the set-points exactly; the tip is 0.1 m below the handle.
+/// An admittance loop whose handle follows the set-points exactly. The tip is 0.1 m below the handle.
 struct AdmittanceLoop : Loop {
   static HapbenchSetup setup() {
     static const char* const kOverrides[] = {R"(device={"type": "ideal"})", "rendering.mass_kg=0.1", nullptr};
@@ -318,7 +318,7 @@ TEST(Renderer, RefusesTheResultOfAFailingLaw) {
     EXPECT_EQ(output.reason, static_cast<unsigned>(HAPBENCH_ALGORITHM_FAILED));
     EXPECT_NEAR(output.force[2], 0.99 * before, 1e-9);
     EXPECT_NE(std::string(hapbench_renderer_fault(loop.renderer.get())).find("hostile"), std::string::npos);
-    // After immediate rearming, the force continues to fall.
+    // The force continues to fall although the renderer is rearmed at once.
     loop.input.has = HAPBENCH_REARM;
     const HapbenchOutput rearmed = loop.at(0.002);
     EXPECT_EQ(rearmed.status, static_cast<unsigned>(HAPBENCH_RAMPING));

@@ -77,7 +77,8 @@ TEST(OpenRenderer, ReportsWhatItUsesAndIgnores) {
   EXPECT_EQ(hapbench_renderer_period(renderer.get()), 0.002);
 }
 
-/// Feeds the poses of a scripted run to a renderer. Once the gain is 1, the forces must be bitwise equal.
+/// Checks that a renderer gives the forces of a scripted run. Feeds the poses of the run to the renderer; once the gain
+/// is 1, the forces must be bitwise equal.
 void expect_forces_of(const Json& scene, const std::string& what) {
   const std::string text = scene.dump();
   const Scenario scenario = read_scenario(scene, ".").scenario;
@@ -128,7 +129,7 @@ TEST(Renderer, HasTheBitsOfTheEngineAlongAScript) {
 }
 
 TEST(Renderer, HasTheBitsOfTheEngineWithAVirtualMass) {
-  // A hand pushes down and sideways with more than the input-force limit, with every integrator.
+  // Use a hand that pushes down and sideways with more than the input-force limit, with every integrator.
   for (const IntegratorEntry* integrator : kIntegrators) {
     Json scene = Json::parse(R"({
       "time": {"step_s": 0.0005, "steps": 600},

@@ -9,7 +9,7 @@
 namespace hapbench::clock_coverage_test {
 namespace {
 
-/// Returns the times of a run of 0.1 s.
+/// Returns the time fields of a run of 0.1 s.
 TimeFields run_time() {
   TimeFields time;
   time.step = 0.0005;
@@ -17,7 +17,7 @@ TimeFields run_time() {
   return time;
 }
 
-/// Returns times from `first` on at intervals of `interval`.
+/// Returns `count` times [s], from `first` on at intervals of `interval`.
 std::vector<double> times(double first, double interval, std::size_t count) {
   std::vector<double> all;
   for (std::size_t i = 0; i < count; ++i) all.push_back(first + interval * static_cast<double>(i));

@@ -22,8 +22,9 @@ namespace {
 using test::bundled;
 using test::rows_of;
 
-// Compares bundled scenarios with closed forms: bilateral springs with the linear recurrence (x, v) <- A (x, v) of one
-// spring-damper under the integrator, with the matrix A of Eq. A.2; and ten minutes in contact.
+// Compares bundled scenarios with closed forms. Bilateral springs are compared with the linear recurrence (x, v) <- A
+// (x, v) of one spring-damper under the integrator, with the matrix A of Eq. A.2. Another test spends ten minutes in
+// contact.
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
@@ -92,8 +93,9 @@ std::string number(const char* field, double value) {
   return std::string(field) + "=" + std::to_string(value);
 }
 
-/// The points of the wall lie at y = 0, +-0.1, ... mm. Their depth in the peg is the radius minus their distance from
-/// the peg's axis. `mean` gives each point the weight 1/n, so the loads add up to K times the mean depth.
+/// Checks the load at which a jammed peg slips. The points of the wall lie at y = 0, +-0.1, ... mm. Their depth in the
+/// peg is the radius minus their distance from the peg's axis. `mean` gives each point the weight 1/n, so the loads add
+/// up to K times the mean depth.
 TEST(PegThatJams, SlipsAtMuTimesTheLoadsOfBothWalls) {
   for (const double gap : {0.00085, 0.0009, 0.00096}) {
     double sum = 0.0, n = 0.0;
@@ -111,10 +113,10 @@ TEST(PegThatJams, SlipsAtMuTimesTheLoadsOfBothWalls) {
       for (const StepRecord& row : rows) {
         if (row.force.friction == Friction::slides && slipped == 0.0) slipped = row.time;
       }
-      // The bristle's damper bears 0.6 N/s B_t / K_t, less than 1 mN, or 2 ms. The tolerance is this time plus a step
-      // of the ramp.
+      // The bristle's damper bears 0.6 N/s B_t / K_t, less than 1 mN, which delays the slip by less than 2 ms. The
+      // tolerance is this time plus a step of the ramp.
       EXPECT_NEAR(slipped, slips_at, 0.003);
-      // Until then, the peg creeps by the deflection of the bristle, mu N / K_t; afterwards it moves.
+      // Before the slip, the peg creeps by the deflection of the bristle, mu N / K_t; afterwards it moves.
       const double until = slips_at - 0.005;
       for (const StepRecord& row : rows) {
         if (row.time < until) {
@@ -126,9 +128,10 @@ TEST(PegThatJams, SlipsAtMuTimesTheLoadsOfBothWalls) {
   }
 }
 
-/// A peg that is pushed into a taper of half angle w and then released stays if and only if mu > sin w / cos^2 w. The
-/// loads N push it out with N sin w. Friction holds mu N cos^2 w, because its projector P has cos^2 w along the exit
-/// direction. Coulomb friction on each face would hold from tan w on: the bristle of the whole tool never holds more.
+/// Checks that a peg that is pushed into a taper of half angle w and then released stays if and only if mu > sin w /
+/// cos^2 w. The loads N push it out with N sin w. Friction holds mu N cos^2 w, because its projector P has cos^2 w
+/// along the exit direction. Coulomb friction on each face would hold from tan w on: the bristle of the whole tool
+/// never holds more.
 TEST(PegInATaper, LocksItselfFromTheClosedFormOn) {
   for (const double w : {0.1, 0.2, 0.4}) {
     const double locks = std::sin(w) / (std::cos(w) * std::cos(w));
@@ -148,9 +151,10 @@ TEST(PegInATaper, LocksItselfFromTheClosedFormOn) {
   }
 }
 
-/// A spring whose end moves at the speed V pulls the block. The block slips when the spring force is mu N, moves with
-/// the velocity V (1 - cos w t), and therefore comes to rest every 2 pi sqrt(M/k). While it sticks, only the bristle
-/// damps it, so it slips again at once: with a single friction coefficient it does not stay at rest.
+/// Checks the period of stick-slip. A spring whose end moves at the speed V pulls the block. The block slips when the
+/// spring force is mu N, moves with the velocity V (1 - cos w t), and therefore comes to rest every 2 pi sqrt(M/k).
+/// While it sticks, only the bristle damps it, so it slips again at once: with a single friction coefficient it does
+/// not stay at rest.
 TEST(StickSlip, HasThePeriodOfSpringAndMass) {
   for (const double k : {100.0, 200.0, 400.0}) {
     for (const double mass : {0.05, 0.1}) {
@@ -190,13 +194,13 @@ LoadedScenario with_algorithm(const char* scenario, const char* algorithm) {
   return load_scenario(find_scenario(scenario), overrides);
 }
 
-/// Rounding of the proxy's position, plus the violation (kViolationTolerance) that a move of at most a millimetre
-/// allows.
+/// Largest depth of a point in a proxy that is outside [m]: rounding of the proxy's position, plus the violation
+/// (kViolationTolerance) that a move of at most a millimetre allows.
 constexpr double kOutside = 1e-9;
 /// Depth above which the drill's proxy leaves slowly [m]: the motion in a step at kRecoverySpeed.
 constexpr double kRecovery = 1e-5;
 
-/// Finds points in the proxy by brute force. The spring gives the position of the proxy: p + f_spring / K.
+/// Finds points in the proxy by brute force. The position of the proxy follows from the spring force: p + f_spring / K.
 class PointsInProxy final : public Observer {
  public:
   PointsInProxy(const PointShell& shell, const SimulationParts& parts, double K)
@@ -225,9 +229,9 @@ class PointsInProxy final : public Observer {
   }
 
   double algorithm_dt = 1.0;
-  bool cleared = false;  ///< true once no point was inside the proxy
+  bool cleared = false;  ///< true as soon as no point was inside the proxy in a step
   std::uint64_t steps_until_clear = 0, most_passes = 0;
-  double deepest = 0.0;  ///< largest depth since then [m]
+  double deepest = 0.0;  ///< largest depth after the proxy was clear [m]
   double fastest = 0.0;  ///< largest speed of a proxy that leaves slowly [m/s]
   double stiffest = 0.0, largest_force = 0.0;
 
@@ -259,8 +263,8 @@ struct Run {
   std::int64_t steps;
   double allowed = kOutside;  ///< allowed depth of a point in the proxy [m]
 };
-/// In a corner, patches may leave no room although the points do. The depth of the patches is then at most a tenth of
-/// the spacing, and is shared with the points.
+/// Allowed depth [m] in a corner, where patches may leave no room although the points do. The depth of the patches is
+/// at most a tenth of the spacing, and is shared with the points.
 constexpr double kShared = 1e-5;
 class ProxyOverAWholeRun : public testing::TestWithParam<Run> {};
 INSTANTIATE_TEST_SUITE_P(Scenes, ProxyOverAWholeRun,
@@ -275,18 +279,18 @@ TEST_P(ProxyOverAWholeRun, NeitherEntersTheShellNorGetsStifferThanOneSpringNorTa
   const PointsInProxy points =
       watch(GetParam().scenario, GetParam().steps / static_cast<std::int64_t>(test::sanitized(16)));
   EXPECT_TRUE(points.cleared);
-  // At the start, the hands of the pegs are up to 22 um deep; the proxies leave by 10 um per step.
+  // At the start, points are up to 22 um deep in the tools. The proxies leave by 10 um per step.
   EXPECT_LE(points.steps_until_clear, 10u);
   EXPECT_LE(points.deepest, GetParam().allowed);
   EXPECT_LE(points.stiffest, 1.0 + 1e-12);
   EXPECT_LE(points.most_passes, 10u);
 }
 
-/// At the start, the peg penetrates both walls of a hole of the same width by 0.4 mm. A tilted peg does not fit into
-/// this hole.
+/// Checks a peg that at the start penetrates both walls of a hole of the same width by 0.4 mm. A tilted peg does not
+/// fit into this hole.
 TEST(ProxyInATightHole, LeavesSlowly) {
   const PointsInProxy points = watch("peg_in_hole_2d_shaped_stiffness", 2'000);
-  // A move is only nearly proportional to the depths.
+  // A move is only nearly proportional to the depths, so the speed may exceed 0.02 m/s by a tenth.
   EXPECT_LE(points.fastest, 1.1 * 0.02);
   EXPECT_LE(points.largest_force, 2.0);
 }

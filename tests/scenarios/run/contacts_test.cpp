@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 using test::bundled;
 using test::rows_of;
 
-// Tests runs with late contacts, with contacts from a file, and with contacts from a library of the user.
+// Tests runs with multi-rate contacts, with contacts from a file, and with contacts from a library of the user.
 
 using Rows = std::vector<StepRecord>;
 
@@ -40,24 +40,26 @@ std::vector<std::string> late(std::int64_t every, std::int64_t delay, const char
           std::string("rendering.contacts.between=") + between};
 }
 
-// Linear contacts of a plane equal contacts that are found in every step.
+// Checks that linear contacts of a plane equal contacts that are found in every step.
 
 TEST(LinearContacts, OfAPlaneAreFreshForEveryAlgorithm) {
   // The tool is in contact from step 6 on, and the contacts found in step 7 are used from step 11 on.
   constexpr std::size_t kInContact = 11;
   for (const AlgorithmEntry& algorithm : algorithms()) {
     SCOPED_TRACE(algorithm.info->name);
-    const std::vector<std::string> pressed = {
-        "rendering.algorithm=" + std::string(algorithm.info->name),
-        // The exit along the normal: with other depth models, the depths of points at the rim do not follow the tool.
-        "rendering.depth_model=normal_projection", R"(hand={"type":"none"})", "time.duration_s=0.05",
-        R"(motion.position={"type":"prescribed","x_m":0,"y_m":0,
+    const std::vector<std::string> pressed = {"rendering.algorithm=" + std::string(algorithm.info->name),
+                                              // This model measures the exit along the normal. With other models, the
+                                              // depths of points at the rim do not follow the tool.
+                                              "rendering.depth_model=normal_projection", R"(hand={"type":"none"})",
+                                              "time.duration_s=0.05",
+                                              R"(motion.position={"type":"prescribed","x_m":0,"y_m":0,
            "z_m":{"type":"ramp","start":1e-6,"rate_per_s":-4e-4}})"};
     auto overrides = late(7, 4, "linear");
     overrides.insert(overrides.end(), pressed.begin(), pressed.end());
     const auto fresh = rows_of(bundled("poke_plane", pressed)), linear = rows_of(bundled("poke_plane", overrides));
     ASSERT_EQ(fresh.size(), linear.size());
-    // False for depth models with a memory, and for depth models that measure to the nearest side.
+    // True if depths are measured along the normal. False for depth models with a memory and for models that measure to
+    // the nearest side.
     const bool depths_are_the_normals =
         algorithm.fixed_depth_model.empty() || algorithm.fixed_depth_model == "normal_projection";
     for (std::size_t k = 0; k < fresh.size(); ++k) {
@@ -72,7 +74,8 @@ TEST(LinearContacts, OfAPlaneAreFreshForEveryAlgorithm) {
   }
 }
 
-/// Multi-rate contacts in every step, through held contacts: a dropout probability of 1e-300 loses no query.
+/// Checks multi-rate contacts that are found in every step. With a dropout probability of 1e-300, the contacts are
+/// held, but no query is lost.
 TEST(MultiRateContacts, OfEveryRowChangeNoBitForAnyAlgorithm) {
   for (const AlgorithmEntry& algorithm : algorithms()) {
     SCOPED_TRACE(algorithm.info->name);
@@ -89,7 +92,7 @@ TEST(MultiRateContacts, OfEveryRowChangeNoBitForAnyAlgorithm) {
   }
 }
 
-// Contacts from a trace.
+// Fixture of tests with contacts from a trace.
 
 class Trace : public testing::Test {
  protected:
@@ -124,7 +127,7 @@ TEST_F(Trace, OfARunGivesItsForcesBitForBit) {
   }
 }
 
-// Contacts from a library.
+// ---- Contacts from a library
 
 TEST(ContactPlugin, OfASphereGivesTheForceOfASphere) {
   const ModulePermission permission(true);
@@ -147,7 +150,7 @@ TEST(ContactPlugin, OfASphereGivesTheForceOfASphere) {
   EXPECT_GT(in_contact, 500u);
 }
 
-/// The code of a library that the user has not named must not be executed, not even for a check.
+/// Checks that the code of a library that the user has not allowed is not executed, not even for a check.
 TEST(ContactPlugin, IsRefusedWithoutPermission) {
   const std::string file = HAPBENCH_TEST_MODULES "/sphere.so";
   const auto named = [](const std::string& library) {
@@ -198,7 +201,7 @@ TEST(ContactPlugin, NamesWhatItMisses) {
 // Tests that skipped work does not change results: without skips, a run writes the same bytes, except the work
 // counters. tests/scenarios/program/bundled_scenarios_test.cpp tests the bundled scenarios.
 
-/// Returns summary.json without the counts of work, as text, so that every digit is compared. Writes the counts to
+/// Returns summary.json without the work counts, as text, so that every digit is compared. Writes the work counts to
 /// `work`.
 std::string summary_without_work(const fs::path& file, Json& work) {
   Json summary = Json::parse(test::read_file(file));
@@ -230,7 +233,7 @@ class WithAndWithoutSkips : public testing::Test {
   std::uint64_t skipped_ = 0;
 };
 
-// Free air, contact and free air again, for every algorithm with and without damping and friction.
+// Checks a motion through free air, contact and free air again, for every algorithm with and without friction.
 TEST_F(WithAndWithoutSkips, EveryAlgorithmGivesTheSameBytes) {
   for (const AlgorithmEntry& algorithm : algorithms()) {
     for (const char* friction : {"0", "5"}) {

@@ -12,13 +12,14 @@
 namespace hapbench::early_end_test {
 namespace {
 
-// Runs of batches, which end at a failure that no later step can undo (RunLength::until_failure).
+// Tests runs of batches, which end at a failure that no later step can undo (RunLength::until_failure).
 
 bool has_values(const Result& run) {
   return std::ranges::any_of(run.metrics, [](const Metric& m) { return number_of(m.value).has_value(); });
 }
 
-/// Compares the run of a scenario that may end early with its full run. Counts the early ends by outcome.
+/// Compares the run of a scenario that may end early with its full run. If the run ends early, counts its outcome in
+/// `early`.
 void compare(const CheckedScenario& scene, std::map<Outcome, int>& early) {
   const Result full = run_scenario(scene, {}, false);
   const Result run = run_scenario(scene, {}, false, nullptr, false, {}, RunLength::until_failure);
@@ -37,7 +38,7 @@ void compare(const CheckedScenario& scene, std::map<Outcome, int>& early) {
   EXPECT_FALSE(has_values(run)) << "values of a part of the run";
 }
 
-/// Every bundled scenario with its own gains, and with gains and forces that make the tool sink in, fly off and
+/// Checks every bundled scenario with its own gains, and with gains and forces that make the tool sink in, fly off and
 /// diverge.
 TEST(EarlyEnd, HasTheOutcomeOfTheFullRun) {
   // Runs that are cut off before their failure must also have the same outcome.
@@ -45,7 +46,7 @@ TEST(EarlyEnd, HasTheOutcomeOfTheFullRun) {
   std::map<Outcome, int> early;
   for (const auto& [name, group, file] : bundled_scenarios()) {
     const LoadedScenario own = load_scenario(file);
-    // Many trials: such a run never ends early.
+    // A run with many trials never ends early, so skip it.
     if (std::holds_alternative<TrackingHandFields>(own.scenario.hand)) continue;
     const std::string steps = "time.steps=" + std::to_string(std::min(kMaxSteps, own.scenario.time.steps));
     const double K = own.scenario.rendering.stiffness;
@@ -61,7 +62,8 @@ TEST(EarlyEnd, HasTheOutcomeOfTheFullRun) {
   EXPECT_GT(early[Outcome::diverges], 10);
 }
 
-/// A tool of 1 mm above a plane of 10 mm, which a hand pushes.
+/// Returns the scenario of a tool of 1 mm at a plane of 10 mm, changed by a patch. A hand pushes the tool onto the
+/// plane.
 CheckedScenario above_plane(const char* patch) {
   Json json = Json::parse(R"({
     "time": {"step_s": 0.0005, "steps": 2000},
@@ -86,20 +88,21 @@ TEST(EarlyEnd, LeavesOnlyIfNoHandBringsTheToolBack) {
                {R"({"hand": {"z_N": 1}, "initial": {"position_m": [0, 0, 0.003]}})", Outcome::no_contact},
                {R"({"hand": null, "initial": {"position_m": [0, 0, 0.003], "velocity_m_per_s": [0, 0, 0.2]}})",
                 Outcome::no_contact},
-               // It flies off and falls back: the force points towards the plane.
+               // The tool flies off and falls back, because the force points towards the plane.
                {R"({"initial": {"position_m": [0, 0, 0.003], "velocity_m_per_s": [0, 0, 0.6]}})", {}},
-               // The hand's force changes its sign, or a spring pulls.
+               // The hand's force changes its sign, or the hand's spring pulls.
                {R"({"hand": {"z_N": {"type": "waypoints", "points": [[0, 1], [0.5, -4]]}}})", {}},
                {R"({"hand": {"type": "impedance", "z_N": null, "stiffness_N_per_m": 100, "damping_N_s_per_m": 1,
                     "target": {"x_m": 0, "y_m": 0, "z_m": 0.05}}})",
                 {}},
-               // A device has a handle, which moves on its own.
+               // A device has a handle, which moves independently of the tool.
                {R"({"hand": {"x_N": 8}, "device": {"type": "impedance", "handle_mass_kg": 0.1}})", {}}};
   for (const auto& [patch, early] : cases) {
     SCOPED_TRACE(patch);
     const Result run = ended(patch);
     EXPECT_EQ(run.end.outcome, run_scenario(above_plane(patch), {}, false).end.outcome);
-    // A tool that returns may have another outcome, but it does not leave the surface.
+    // A run whose tool may come back does not end early because it left the surface. It may end early because it went
+    // through.
     if (!early && run.end.ended_at) {
       EXPECT_EQ(run.end.outcome, Outcome::went_through);
     }
@@ -110,7 +113,8 @@ TEST(EarlyEnd, LeavesOnlyIfNoHandBringsTheToolBack) {
   }
 }
 
-/// A tool that is pushed through the plane goes on to a bound: the outcome is the outcome of the full run.
+/// Checks a tool that is pushed through the plane and moves on to a bound. The early outcome is the outcome of the full
+/// run.
 TEST(EarlyEnd, ToolThatWentThroughMayStillDiverge) {
   const char* const shot = R"({"hand": {"z_N": -1e6}, "time": {"steps": 20000}})";
   const Result run = ended(shot), full = run_scenario(above_plane(shot), {}, false);
@@ -133,7 +137,7 @@ TEST(EarlyEnd, IsNotForOutcomesThatAreExpectedOrScripted) {
   EXPECT_FALSE(ended(scripted).end.ended_at);
 }
 
-/// Columns of a table for a run that ended early.
+/// Checks the summary and the tables of a run that ended early.
 TEST(EarlyEnd, HasATimeAndNoNumbers) {
   const Result run = ended(R"({"hand": {"z_N": -50}, "rendering": {"stiffness_N_per_m": 10}})");
   ASSERT_TRUE(run.end.ended_at);

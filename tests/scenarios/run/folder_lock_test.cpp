@@ -31,14 +31,15 @@ std::optional<FolderLock> try_lock(NewDirectories& directories, const fs::path& 
   }
 }
 
-/// Returns the number of files below a folder. An empty parent folder is not counted: one process created it, and when
-/// this process ended, another process still had an empty folder in it.
+/// Returns the number of files below a folder. Folders are not counted: a process that ends may leave an empty parent
+/// folder, because another process still had an empty folder in it.
 std::ptrdiff_t files_in(const fs::path& folder) {
   return std::count_if(fs::recursive_directory_iterator(folder), fs::recursive_directory_iterator(),
                        [](const fs::directory_entry& entry) { return entry.is_regular_file(); });
 }
 
-/// All threads try to lock a new folder at the same time. The winner keeps its lock until all have tried.
+/// Checks that one thread gets the lock when all threads try to lock a new folder at the same time. The winner keeps
+/// its lock until all have tried.
 TEST(FolderLock, IsHeldByOneOfManyThreads) {
   constexpr std::size_t kThreads = 4, kRounds = 1000;
   const test::TemporaryDirectory directory;
@@ -61,8 +62,8 @@ TEST(FolderLock, IsHeldByOneOfManyThreads) {
   EXPECT_EQ(files_in(directory.path()), 0) << "lock files are left";
 }
 
-/// Threads lock, write and unlock without a barrier, so that the lock file and the folder are repeatedly created and
-/// removed by other threads.
+/// Checks locks without a barrier: threads lock, write and unlock, so that the lock file and the folder are repeatedly
+/// created and removed by other threads.
 TEST(FolderLock, ExcludesWhileItsFileIsRemoved) {
   const test::TemporaryDirectory directory;
   std::atomic<int> inside = 0, conflicts = 0, successes = 0;
@@ -100,7 +101,8 @@ int status_of(pid_t process) {
   return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
-/// The same test with processes. They start when the first pipe closes, and each ends when the second pipe closes.
+/// Checks that one process gets the lock when all processes try to lock a new folder. The processes start when the
+/// first pipe closes, and each ends when the last pipe closes.
 TEST(FolderLock, IsHeldByOneOfManyProcesses) {
   constexpr int kProcesses = 4, kRounds = 50;
   const test::TemporaryDirectory directory;

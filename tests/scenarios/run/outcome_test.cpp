@@ -34,7 +34,7 @@ namespace fs = std::filesystem;
 
 // Tests the outcomes of runs that miss or lose their object, whether these outcomes were expected, and their warnings.
 
-/// Returns a tool of 1 mm that a hand pushes above a plane of 10 mm.
+/// Returns the scenario of a tool of 1 mm that a hand pushes towards a plane of 10 mm from 3 mm above it.
 Json above_plane() {
   return Json::parse(R"({
     "time": {"step_s": 0.0005, "steps": 100},
@@ -44,7 +44,7 @@ Json above_plane() {
   })");
 }
 
-/// Returns the result of this scene, changed by a patch.
+/// Returns the result of the scenario above_plane(), changed by a patch.
 Result run_of(const char* patch) {
   Json json = above_plane();
   json.merge_patch(Json::parse(patch));
@@ -69,7 +69,8 @@ TEST(Outcome, AScriptMayLeadTheToolAway) {
   EXPECT_EQ(run_of(led).end.outcome, Outcome::completes);
 }
 
-/// The tip centre is inside the environment's box all the time, 1 mm from the wall of a hole of 2 mm.
+/// Checks that the distance is measured to the surface. The tip centre is inside the environment's box all the time, 1
+/// mm from the wall of a hole of 2 mm.
 TEST(Outcome, NoContactIsMeasuredToTheSurface) {
   const char* const in_hole =
       R"({"hand": null, "initial": {"position_m": [0, 0, -0.001]}, "tool": {"diameter_m": 0.0006},
@@ -114,7 +115,7 @@ TEST(Outcome, NoContactNamesTheLikelyCause) {
   }
 }
 
-/// tests/data/golden/ends.txt has the texts about expectations that are not met.
+/// Checks bounds of expectations. tests/data/golden/ends.txt has the texts about expectations that are not met.
 TEST(Expectation, IncludesItsBoundsAndMayBoundEveryMetric) {
   Result run;
   run.metrics = all_metrics();
@@ -154,8 +155,8 @@ TEST(Drag, PressesWithItsForceAndLagsAsItsSpringSays) {
     // contact. Along the normal, s^2 + (B + 50) / M s + K / M has the roots -221 and -905 /s. After 2.5 s, the
     // remaining error is the rounding of a depth of 0.05 mm times K.
     EXPECT_NEAR(last.force.rendered.z(), 1.0, 1e-10) << algorithm;
-    // Tangentially, the spring must overcome the friction (5 + 10 F) N s/m; the roots are -15 and -195 /s, exp(-15.4 *
-    // 2.5) = 2e-17.
+    // Tangentially, the spring must overcome the friction (5 + 10 F) N s/m. The roots are -15 and -195 /s, so the
+    // remaining error is exp(-15.4 * 2.5) = 2e-17.
     const double moving_point = -0.002 + 0.001 * last.time;
     EXPECT_NEAR(moving_point - last.tool.pose.position.x(), (5.0 + 10.0) * 0.001 / 300.0, 1e-12) << algorithm;
     EXPECT_NEAR(last.tool.velocity.x(), 0.001, 1e-12) << algorithm;
@@ -169,9 +170,9 @@ std::string warnings_of(const Result& report) {
   return text;
 }
 
-/// Paths of two to four legs that turn back on themselves or to one side. A tool that lags behind the moving point by a
-/// fraction of its width follows all of these paths, whatever its displacement is. Under strong dry friction it follows
-/// none of them.
+/// Checks paths of two to four legs that turn back on themselves or to one side. A tool that lags behind the moving
+/// point by a fraction of its width follows all of these paths, whatever its displacement is. Under strong dry friction
+/// it follows none of them.
 TEST(Drag, IsJudgedAlongItsPathAlsoWhereThePathReturns) {
   const std::vector<Json> paths = {
       {{-0.002, 0, 0}, {0.002, 0, 0}, {-0.002, 0, 0}},
@@ -224,8 +225,8 @@ TEST(Drag, WithoutAPathIsNotDraggedAndIsWarnedOfBeforeItRuns) {
   EXPECT_TRUE(scene_facts(read_scenario(scene(), "")).warnings.empty());
 }
 
-/// A drill rotates about its resting tip into the wall of its hole. At the end, the axis of its shank is in the wall,
-/// but the tip centre and the core behind it have always been in the hole.
+/// Checks a drill that rotates about its resting tip into the wall of its hole. At the end, the axis of its shank is in
+/// the wall, but the tip centre and the core behind it have always been in the hole.
 TEST(Outcome, OfAShankThatIsInside) {
   const LoadedScenario loaded = load_scenario(find_scenario("pure_rotation"), {});
   const Result report = run_scenario(checked(loaded), std::nullopt, false);
@@ -238,8 +239,7 @@ TEST(Outcome, OfAShankThatIsInside) {
   EXPECT_NE(warnings_of(report).find("a part of the tool was 0.86"), std::string::npos) << warnings_of(report);
 }
 
-// Tests the diagnosis of runs with a fault, and that the diagnosis does not report the fault for very similar runs
-// without it.
+// Tests the diagnosis of runs with a fault. For very similar runs without the fault, the diagnosis must not report it.
 
 using Words = std::vector<std::string>;
 
@@ -248,8 +248,8 @@ struct Scene {
   Words overrides = {};
 };
 
-/// Returns the diagnosed run of a scene with its overrides. Whatever the file expects, the default outcomes are
-/// expected.
+/// Returns the diagnosed run of a scene with its overrides. The expectations of the file are replaced by the default
+/// outcomes.
 Result run(const Scene& scene) {
   Words overrides = {"expect={}", "record.trajectory=false"};
   overrides.insert(overrides.end(), scene.overrides.begin(), scene.overrides.end());
@@ -281,7 +281,7 @@ std::vector<Pair> pairs() {
        {"device_at_wall", {"device.servo.delay_samples=20"}},
        {"drag_molar", {"rendering.stiffness_N_per_m=2e6"}}},
       {"edge", {"drag_molar", {"rendering.stiffness_N_per_m=2e6"}}, molar},
-      // Nothing presses the ball to an equilibrium.
+      // In this scene, nothing presses the ball to an equilibrium.
       {"edge",
        {"bounce_molar", {"rendering.stiffness_N_per_m=3e6"}},
        {"bounce_molar", {"rendering.stiffness_N_per_m=157", "rendering.damping_ratio=7.5"}}},
@@ -334,7 +334,7 @@ TEST(Diagnosis, EachRuleFindsItsFaultAndIsSilentWithout) {
   all.push_back({"force_sign",
                  {"recorded_wipe", {"motion.position.file=" + fs::absolute(directory / "reversed.csv").string()}},
                  {"recorded_wipe"}});
-  // Loads a law that returns NaN, and the same law that returns the mean.
+  // Load a law that returns the mean or, if HOSTILE is "nan", NaN.
   load_module(fs::canonical(HAPBENCH_TEST_MODULES) / "hostile.so");
   std::set<std::string> tested = {"fault"};
   const Scene hostile = {"single_spring", {"rendering.algorithm=hostile"}};
@@ -374,8 +374,8 @@ TEST(Diagnosis, NamesNoOutcomeThatTheSceneExpects) {
   }
 }
 
-/// An undamped spring of 20 000 N/m and 0.1 kg oscillates at 71.2 Hz. The last quarter takes half a second, so an error
-/// of half an oscillation is 1 Hz.
+/// Checks the reported frequency. An undamped spring of 20 000 N/m and 0.1 kg oscillates at 71.2 Hz. The last quarter
+/// takes half a second, so an error of half an oscillation is 1 Hz.
 TEST(Diagnosis, ReportsTheFrequencyOfABuzz) {
   const Result result = run({"single_spring", {"rendering.damping_ratio=0.0005", "time.steps=4000"}});
   const Diagnosed* buzz = finding(result, "buzz");
@@ -385,7 +385,7 @@ TEST(Diagnosis, ReportsTheFrequencyOfABuzz) {
   EXPECT_NEAR(std::stod(frequency[1]), 71.2, 1.5);
 }
 
-/// A law in use is not a remedy for itself.
+/// Checks that the advice does not name the law that is in use.
 TEST(Diagnosis, AdvisesNoLawThatIsInUse) {
   const LoadedScenario loaded = load_scenario(find_scenario("drag_molar"), {});
   const auto tool = make_tool(loaded.scenario, loaded.files);
@@ -401,7 +401,7 @@ TEST(Diagnosis, AdvisesNoLawThatIsInUse) {
   }
 }
 
-/// A run that a rule might misinterpret, and the advice that would be wrong.
+/// A run that a rule might misinterpret, with the right and the wrong advice.
 struct Trap {
   const char* rule;
   Scene scene;
@@ -453,21 +453,21 @@ std::vector<Trap> traps() {
   const std::vector<std::pair<const char*, double>> buzz = {{kMean, 1.0}, {"force_rms_above_30Hz_N", 0.5}};
   const Scene passive = {"peg_in_hole_2d_shaped_stiffness"};  // nothing presses this tool
   return {
-      // The time step is not the cause if a law fails, and K is not the cause if a hand drives the tool away.
+      // If a law fails, the time step is not the cause. If a hand drives the tool away, K is not the cause.
       {"fault", kMolar, {}, "correct the law", "time.step_s", Outcome::diverges, "gives a force that is not finite"},
       {"diverged", kMolar, {}, "without contact", "smaller K", Outcome::diverges},
       {"edge", kMolar, {{"ratio_max", 1e9}}, "", "smaller K", Outcome::diverges, "gives a force that is not finite"},
-      // No K helps a tool that starts inside, and changing the hand does not help a tool that a script moves.
+      // No K helps a tool that starts inside. Changing the hand does not help a tool that a script moves.
       {"sank", kMolar, {}, "initial.position_m", "larger K", Outcome::went_through, "", inside()},
       {"sank", kLed, {}, "motion.position", "larger K", Outcome::went_through},
       {"lost", kOmegaMolar, {}, "device.coulomb_N", "initial.position_m", Outcome::no_contact, "", held()},
       {"lost", kLed, {}, "motion.position", "hand's direction", Outcome::no_contact},
       {"stuck", {"impedance_at_wall"}, {}, "device.coulomb_N", "rendering.friction", Outcome::stuck},
       {"stuck", {"drag_molar_dry"}, {}, "rendering.friction", "device.coulomb_N", Outcome::stuck},
-      // A tool that is thrown away makes long steps; a slower hand does not help a tool that a script moves.
+      // A tool that is thrown away makes long steps. A slower hand does not help a tool that a script moves.
       {"step", kMolar, {}, "", "", Outcome::diverges, "", long_step()},
       {"step", kLed, {}, "motion.position", "slower hand", Outcome::completes, "", long_step()},
-      // A script makes the same contacts at any K.
+      // A script makes the same contacts at any K, so a smaller K does not help.
       {"buzz", kLed, buzz, "another algorithm", "smaller K"},
       {"buzz", passive, buzz, "", ""},
       {"pop", passive, {{kMean, 0.05}, {"settled_force_step_max_N", 1.0}}, "", ""},
@@ -505,7 +505,7 @@ std::vector<Trap> traps() {
        {{"ratio_max", 1e6}},
        "",
        ""},
-      // Seven waypoints of tap_wall lift the tool.
+      // Eight landings are intended, because seven waypoints of tap_wall lift the tool.
       {"bounces", {"tap_wall"}, {{"landings", 8.0}}, "", ""},
       {"bounces", kMolar, {{"landings", 1.0}}, "", ""},
       {"energy",
@@ -549,8 +549,8 @@ TEST(Diagnosis, AdvisesNothingThatIsWrongInTheScene) {
   }
 }
 
-/// The target of the hand moves away from the handle by 4.5 mm, so that the hand's spring of 100 N/m pulls with at most
-/// 0.45 N. The handle does not move, because its dry friction is 0.8 N.
+/// Checks a handle that friction holds. The target of the hand moves away from the handle by 4.5 mm, so that the hand's
+/// spring of 100 N/m pulls with at most 0.45 N. The handle does not move, because its dry friction is 0.8 N.
 TEST(Diagnosis, NamesTheFrictionThatHoldsTheHandle) {
   const Result result = run({"impedance_at_wall", {"device.coulomb_N=0.8", "hand.stiffness_N_per_m=100"}});
   ASSERT_EQ(result.end.outcome, Outcome::no_contact);
@@ -560,7 +560,7 @@ TEST(Diagnosis, NamesTheFrictionThatHoldsTheHandle) {
   EXPECT_NE(finding(result, "lost")->attempt.find("device.coulomb_N"), std::string::npos);
 }
 
-/// If the tool flies past the tooth in a long step, the start position is not the cause.
+/// Checks a tool that flies past the tooth in a long step: the start position is not the cause.
 TEST(Diagnosis, BlamesTheStepWhereThatIsTooLong) {
   const Result leaps = run({"mesh_molar", {"time.step_s=1", "time.steps=5"}});
   ASSERT_NE(finding(leaps, "lost"), nullptr);
@@ -574,8 +574,8 @@ TEST(Diagnosis, BlamesTheStepWhereThatIsTooLong) {
   EXPECT_EQ(far.warnings[0].text.find("time.step_s"), std::string::npos) << far.warnings[0].text;
 }
 
-/// The diagnosis is computed only on request. A run without it has a warning if its numbers do not characterise the
-/// law.
+/// Checks a run without a diagnosis, which is computed only on request. The run has a warning if its numbers do not
+/// characterise the law.
 TEST(Diagnosis, OfARunThatNobodyDiagnosesIsAWarning) {
   for (const auto& [override, rule] : {std::pair("rendering.friction.mu_f_s_per_m=1000", "friction"),
                                        {R"(rendering.reduction={"threshold":0.9})", "reduction"}}) {

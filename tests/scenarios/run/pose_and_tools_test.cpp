@@ -52,7 +52,7 @@ constexpr Surface kPlane = {R"({"type": "plane", "size_m": 0.004, "spacing_m": 0
 constexpr Surface kSlot = {
     R"({"type": "slot", "gap_m": 0.0011, "depth_m": 0.005, "length_m": 0.004, "spacing_m": 0.0002})", -0.0006};
 
-/// Returns a drill that leans and that a script pushes into its environment.
+/// Returns the scenario of a drill that leans and that a script pushes into its environment.
 Json pressed_drill(const Surface& surface, std::string_view algorithm) {
   Json json = Json::parse(R"({
     "time": {"step_s": 0.0005, "steps": 40},
@@ -74,7 +74,7 @@ struct Contact {
 };
 
 /// Returns the force of one contact for laws without weighted springs, as the documentation of SpringState defines it.
-/// The forces of all contacts sum to the force of the law.
+/// The forces of all contacts sum to the force of the law. Empty for other laws.
 std::optional<Vec3> unweighted_share(std::string_view algorithm, const RenderingConfig& r, const Vec3& spring,
                                      std::size_t n, const Contact& c) {
   const double K = r.stiffness, K_vc = r.virtual_coupling.value_or(K);
@@ -88,7 +88,8 @@ std::optional<Vec3> unweighted_share(std::string_view algorithm, const Rendering
   return std::nullopt;
 }
 
-/// Laws with weighted springs. A law that is in neither list may define the forces of its contacts itself.
+/// Names of laws with weighted springs. A law that is neither here nor in unweighted_share() may define the forces of
+/// its contacts itself.
 constexpr std::string_view kWeighted[] = {
     "summation",         "mean",  "shaped_stiffness", "tandpasta", "exact_shaping", "continuous_normal_projection",
     "normal_projection", "proxy", "merged_shaping",   "mcneely"};
@@ -105,7 +106,7 @@ void expect_torques(std::string_view algorithm, const Surface& surface) {
   for (std::size_t k = 0; k < rows.rows(); ++k) {
     const Vec3 spring = rows.vector(k, {"fspring_x_N", "fspring_y_N", "fspring_z_N"});
     Vec3 tip = rows.vector(k, {"px_m", "py_m", "pz_m"});
-    // The points act on the proxy.
+    // For a proxy, the points act on the proxy, which is displaced from the tool.
     if (algorithm == "proxy") tip += spring / rendering.stiffness;
     std::vector<Contact> of_row;
     for (; next < contacts.rows() && contacts.number(next, "step") == static_cast<double>(k); ++next) {
@@ -114,7 +115,7 @@ void expect_torques(std::string_view algorithm, const Surface& surface) {
                         contacts.number(next, "depth_m"), contacts.number(next, "weight")});
     }
     Vec3 force = Vec3::Zero(), torque = Vec3::Zero();
-    double magnitude = 0.0;  // magnitude of the rounded numbers
+    double magnitude = 0.0;  // sum of the magnitudes of the rounded numbers
     for (const Contact& c : of_row) {
       const auto unweighted = unweighted_share(algorithm, rendering, spring, of_row.size(), c);
       const Vec3 f = unweighted.value_or(-rendering.stiffness * c.weight * c.depth * c.gradient);
@@ -123,11 +124,11 @@ void expect_torques(std::string_view algorithm, const Surface& surface) {
       torque += c.position.cross(f);
       magnitude += f.norm() + rendering.stiffness * c.depth + spring.norm();
     }
-    // A hundred sums; for least_squares, the rounding of a residual is multiplied by 1 / eps = 100.
+    // Rounding of a hundred sums. For least_squares, the rounding of a residual is multiplied by 1 / eps = 100.
     const double rounding = 1e-12 * magnitude;
     const Vec3 written = rows.vector(k, {"tx_Nm", "ty_Nm", "tz_Nm"});
     if (!is_known && (force - spring).norm() > rounding) continue;
-    // A sum of gradients that cancel has no direction and gives no force.
+    // If the gradients cancel, their sum has no direction and the law gives no force.
     if (spring != Vec3::Zero()) {
       ASSERT_LE((force - spring).norm(), rounding) << k;
     }
@@ -152,7 +153,8 @@ TEST(LostTorque, IsTheSumOverTheContactsOfArmTimesShareForEveryAlgorithm) {
   }
 }
 
-/// Returns all bytes except the columns of the quaternion, which are the last columns, and the name of the scenario.
+/// Returns all bytes of the recorded tables except the columns of the quaternion, which are the last four columns, and
+/// the name of the scenario.
 std::map<std::string, std::string> bytes_without_pose(const std::filesystem::path& directory) {
   std::map<std::string, std::string> files;
   for (const char* name : {"contacts.csv", "energy.csv"}) files[name] = read_file(directory / name);
@@ -202,7 +204,7 @@ TEST(Pose, IsThatOfTheScript) {
 
 // Tests tools and environments of every type, created from the fields of a scenario.
 
-/// Returns a plane onto which the tool is pressed.
+/// Returns the scenario of a plane onto which a hand presses the tool.
 Json scene(const std::string& tool, const std::string& algorithm = "shaped_stiffness") {
   Json json = test::minimal_scenario("plane");
   json["time"]["steps"] = 200;
@@ -236,8 +238,8 @@ TEST(ScenarioTool, WithoutATypeIsTheCylinderOfThatType) {
   }
 }
 
-/// The tool's frame has its origin at the tip, whichever face of the cube has the tip; in this frame the box lies
-/// behind the tip centre.
+/// Checks that the tool's frame has its origin at the tip, whichever face of the cube has the tip. In this frame the
+/// box lies behind the tip centre.
 TEST(ScenarioTool, OfAMeshHasItsTipWhereItsFieldsSay) {
   for (const auto& [surface, axis] : {std::pair{"[0.0005, 0, 0]", "[2, 0, 0]"},
                                       {"[0, -0.0005, 0]", "[0, -1, 0]"},
@@ -251,7 +253,7 @@ TEST(ScenarioTool, OfAMeshHasItsTipWhereItsFieldsSay) {
       low = low.cwiseMin(vertex);
       high = high.cwiseMax(vertex);
     }
-    // Rounding of positions of 1 mm by a rotation: some units in the last place, 2e-19.
+    // Allow the rounding of positions of 1 mm by a rotation: some units in the last place, 2e-19.
     EXPECT_LT((low - Vec3(-0.0005, -0.0005, 0.0)).norm(), 1e-18) << axis << ": " << low.transpose();
     EXPECT_LT((high - Vec3(0.0005, 0.0005, 0.001)).norm(), 1e-18) << axis << ": " << high.transpose();
   }
@@ -264,7 +266,7 @@ TEST(ScenarioTool, ThatLiesOddlyInItsFrameIsNamed) {
   EXPECT_EQ(frame_problem({Vec3(0, -0.001, -0.001), Vec3(0.009, 0.001, 0.001)}),
             "is longer across its axis than along it");
   EXPECT_EQ(frame_problem({wide + low, 2.0 * wide + 2.0 * low}), "is 9.11 mm away from its tip centre");
-  // A wheel is intentionally wider than long.
+  // A wheel is intentionally wider than long, so it causes no warning.
   EXPECT_EQ(frame_problem({Vec3(-0.002, -0.002, 0), Vec3(0.002, 0.002, 0.0005)}), "");
 }
 
@@ -298,7 +300,7 @@ TEST(ScenarioTool, IsInTheSummaryUnlessItIsACylinder) {
             tool_json(*tool_of(kHourglass)));
 }
 
-/// Returns a small block, changed by a merge patch.
+/// Returns the scenario of a small block, changed by a merge patch.
 Scenario block_scenario(const char* patch = "{}") {
   Json json = Json::parse(R"({"time": {"step_s": 0.0005, "steps": 20}, "environment": {"type": "block_with_hole",
     "size_m": [0.006, 0.005, 0.004], "hole_diameter_m": 0.002, "hole_depth_m": 0.002, "grid_m": 0.0002}})");
@@ -312,7 +314,7 @@ TEST(MakeShell, OfABlockListsVerticesOnceOrForEachCell) {
   const auto per_cell = make_shell(scenario);
   EXPECT_GT(shared->size(), 1000u);
   EXPECT_EQ(per_cell->size(), 4 * shared->size());
-  // Cubes between multiples of the grid's spacing would give different cells.
+  // The cubes are aligned with the multiples of the grid's spacing. Other cubes would give different cells.
   const auto& block = std::get<BlockEnvironment>(scenario.environment);
   const IsoSurface surface = marching_cubes(density_field(block.block, block.grid, block.density), {.cells = true});
   EXPECT_EQ(per_cell->cell_of_points(), points_by_cell(surface, block.grid).cells);

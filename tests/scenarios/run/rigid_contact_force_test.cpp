@@ -14,7 +14,8 @@ namespace {
 
 // Tests the reference force of rigid contact in a scenario, and the scenarios for which it is refused.
 
-/// A round drill that moves down onto a cube of 10 mm and along its upper face, at a depth of 0.1 mm.
+/// Returns the scenario of a round drill that moves down onto a cube of 10 mm and along its upper face, at a depth of
+/// 0.1 mm.
 Json over_a_cube() {
   return Json::parse(R"({
     "time": {"step_s": 0.0005, "steps": 1000},
@@ -28,8 +29,8 @@ Json over_a_cube() {
   })");
 }
 
-/// A hand of 300 N/m whose target comes down to 5 mm, 0.5 mm below the lowest free position over the cube's face, and
-/// then stays there.
+/// Returns the scenario of a hand of 300 N/m whose target comes down to 5 mm, 0.5 mm below the lowest free position
+/// over the cube's face, and then stays there.
 Json held_over_a_cube(const char* algorithm, double K) {
   Json json = over_a_cube();
   json.erase("motion");
@@ -58,7 +59,7 @@ TEST(RigidContactForce, OnAFaceIsStiffnessTimesDepth) {
   const LoadedScenario loaded = read_scenario(over_a_cube(), test::data_directory());
   const auto force = rigid_contact_force(loaded.scenario, loaded.files);
   EXPECT_EQ(*force->at(0.0), Vec3(0, 0, 0)) << "outside";
-  // K times a rounding error of 1e-17 m.
+  // The tolerance is K times a rounding error, with a margin.
   for (const double t : {0.25, 0.3, 0.4995}) EXPECT_NEAR((*force->at(t) - Vec3(0, 0, 2)).norm(), 0.0, 1e-10) << t;
   EXPECT_GT(force->error(), 0.0);
   EXPECT_LT(force->error(), 1e-9);
@@ -72,7 +73,7 @@ TEST(RigidContactForce, DoesNotDependOnTheLawAndScalesWithK) {
   EXPECT_NEAR(rigid_contact_force(loaded.scenario, loaded.files)->at(0.3)->z(), 0.5, 1e-10);
 }
 
-/// The fidelity of a run for two laws, with its tolerance of ten times the error of the reference.
+/// Checks the fidelity of a run with the proxy, and its tolerance of five times the error of the reference.
 TEST(RigidContactForce, IsComparedWithTheRenderedForce) {
   Json json = over_a_cube();
   json["rendering"]["algorithm"] = "proxy";  // the proxy uses the constraints of rigid contact on points
@@ -108,16 +109,17 @@ TEST(RigidContactForce, InAHandIsThatOfARigidToolInTheSameHand) {
   for (const double K : {5000.0, 20000.0}) {
     const LoadedScenario loaded = read_scenario(held_over_a_cube("shaped_stiffness", K), test::data_directory());
     const auto force = rigid_contact_force(loaded.scenario, loaded.files);
-    // The hand's stiffness times the distance of its target from the free position, 0.15 N: without K.
+    // The force is the hand's stiffness times the distance of its target from the free position, 0.15 N. It does not
+    // depend on K.
     EXPECT_NEAR((*force->at(1.0) - Vec3(0, 0, 300 * 0.0005)).norm(), 0.0, 1e-12);
     EXPECT_NEAR((*force->tip_at(1.0) - Vec3(0, 0.0003, 0.0055)).norm(), 0.0, 1e-15);
     EXPECT_EQ(*force->at(0.0), Vec3(0, 0, 0));
   }
 }
 
-/// With the proxy at the free position, equilibrium is k (z - z_target) = K (z_free - z): the tool is 0.5 mm k / (K +
-/// k) below the free position, and the rendered force is smaller than that of a rigid surface by the factor K / (K +
-/// k).
+/// Checks the equilibrium with the proxy at the free position, k (z - z_target) = K (z_free - z): the tool is 0.5 mm k
+/// / (K + k) below the free position, and the rendered force is smaller than the force of a rigid surface by the factor
+/// K / (K + k).
 TEST(RigidContactForce, InAHandComparesForceAndDisplacement) {
   constexpr double kK = 5000.0, kHand = 300.0;
   Json json = held_over_a_cube("proxy", kK);
@@ -132,7 +134,7 @@ TEST(RigidContactForce, InAHandComparesForceAndDisplacement) {
   // slow time constant is below (B + b) / (K + k) = (32 + 6) / 5300 s = 7.1 ms. The mean of the square over 2 s is
   // smaller by at most 2 * 7.1 ms / 2 s, the root by half of that.
   EXPECT_NEAR(displacement, depth, 0.004 * depth);
-  // The rendered force rises from 0 with this time constant tau: the mean of its squared error over 2 s is larger by at
+  // The rendered force rises from 0 with this time constant tau. The mean of its squared error over 2 s is larger by at
   // most (0.15 N)^2 (tau / 2) / 2 s.
   EXPECT_GT(force, kHand * depth);
   EXPECT_LT(force, std::sqrt(std::pow(kHand * depth, 2) + std::pow(kHand * 0.0005, 2) * 0.0071 / 2.0 / 2.0));

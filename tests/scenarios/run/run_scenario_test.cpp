@@ -23,9 +23,10 @@ namespace {
 namespace fs = std::filesystem;
 using test::TemporaryDirectory;
 
-// Tests a run with its trials, its files and its end: complete, diverged or stopped.
+// Tests a run with its trials and files, and the ways in which it ends: complete, diverged or stopped.
 
-/// Returns a study of two subjects, with two trials of two targets each, on a plane. It takes little time.
+/// Returns the scenario of a study of two subjects, with two trials of two targets each, on a plane. It takes little
+/// time.
 LoadedScenario study(const char* record = R"({"trajectory": false})") {
   const Json json = Json::parse(std::string(R"({
     "name": "study", "time": {"step_s": 0.001, "duration_s": 30}, "environment": {"type": "plane", "size_m": 0.004},
@@ -97,8 +98,8 @@ TEST(ExpectedOutput, IsWithinAFactorOfTwoOfWhatIsWritten) {
   }
 }
 
-/// The damping of the hand is too large for the time step. The handle, which is a separate body, diverges, while the
-/// tool continues to oscillate.
+/// Checks a hand whose damping is too large for the time step. The handle, which is a separate body, diverges, while
+/// the tool continues to oscillate.
 TEST(Divergence, OfTheHandleEndsTheRun) {
   const Json scenario = Json::parse(R"({
     "time": {"step_s": 0.003, "steps": 2000},
@@ -116,7 +117,8 @@ TEST(Divergence, OfTheHandleEndsTheRun) {
   EXPECT_GT(run.end.divergence.magnitude, run.end.divergence.bound);
 }
 
-/// SIGINT has its default action, as in the foreground of a shell; after "&" it is ignored and stays ignored.
+/// Fixture that gives SIGINT its default action, as in the foreground of a shell. After "&" it is ignored and stays
+/// ignored.
 class StopSignals : public testing::Test {
  protected:
   StopSignals() : before_(std::signal(SIGINT, SIG_DFL)) {}
@@ -152,7 +154,7 @@ TEST(StiffnessEigenvalues, AreThoseOfTheSpringsUnderTheAlgorithm) {
     double lambda;
   } kCases[] = {
       {R"([{"direction":[1,0,0],"count":7},{"direction":[0,-1,0],"count":3}])", "summation", 7.0},
-      // Three springs at 60 degrees: S = 3/2 I in the plane.
+      // Three springs at 60 degrees give S = 3/2 I in the plane.
       {R"([{"direction":[1,0,0],"count":1},{"direction":[0.5,0.8660254037844386,0],"count":1},
            {"direction":[-0.5,0.8660254037844386,0],"count":1}])",
        "summation", 1.5},
@@ -188,7 +190,7 @@ Scenario wall_on_handle(double delay, double K) {
   return struck(test::bundled("wall_on_handle", overrides));
 }
 
-/// Returns a hand on the admittance device, at a two-sided wall.
+/// Returns the scenario of a hand on the admittance device, at a two-sided wall.
 Scenario admittance_on_wall(double delay) {
   Scenario scenario = test::bundled("single_spring");
   ImpedanceHandFields hand;
@@ -200,14 +202,14 @@ Scenario admittance_on_wall(double delay) {
   return struck(scenario);
 }
 
-/// Rounding of some sixty steps of a state that need not decay.
+/// Relative rounding error of some sixty steps of a state that need not decay.
 constexpr double kRounding = 1e-12;
 
 void expect_same_motion(const Scenario& scenario) {
   const Eigen::MatrixXd A = device_loop(scenario, 1.0).state_matrix();
   const double T = scenario.time.step, x = scenario.initial.position.x();
   Eigen::VectorXd state = Eigen::VectorXd::Zero(A.rows());
-  state.head(3) << x, T * scenario.initial.velocity.x(), x;  // and the filter at rest
+  state.head(3) << x, T * scenario.initial.velocity.x(), x;  // the filter starts at rest
   const std::vector<StepRecord> rows = test::rows_of(scenario);
   double scale = state.norm();
   for (std::size_t k = 0; k < rows.size(); ++k) {
@@ -281,7 +283,7 @@ TEST(DeviceLoop, NamesWhatIsNotLinear) {
   EXPECT_NE(device_loop(dry, 1.0).no_theory, "");
 }
 
-/// A virtual mass M with an undamped bristle is stable up to K_t = 4 M / dt^2.
+/// Checks that a virtual mass M with an undamped bristle is stable up to K_t = 4 M / dt^2.
 TEST(ContactLoops, HaveThatOfAToolHeldByFriction) {
   for (const double factor : {0.99, 1.01}) {
     Scenario scenario = test::bundled("drag_molar_dry");

@@ -25,8 +25,8 @@
 #include "tests/support/meshes.hpp"
 #include "tests/support/scale.hpp"
 
-/// Tests difficult scenes: soft, thin, inverted, open, tiny, huge, stuck, too fast. The true result of each scene
-/// follows from its geometry. Outcome, motion class and depth must agree with it.
+/// Tests difficult scenes: soft, thin, inverted, open, tiny, huge, stuck or too fast. The true result of each scene
+/// follows from its geometry. Outcome, motion class and depth must agree with the true result.
 namespace hapbench::truth_test {
 namespace {
 
@@ -38,13 +38,13 @@ constexpr double kUnknown = -1.0;
 /// Returns the true depth of the tool with its tip centre at p; kUnknown if the depth is not defined.
 using Truth = std::function<double(const Vec3& p)>;
 
-/// A ball above the plane z = 0; the shank points away from the plane.
+/// Depth of a ball in the plane z = 0. The shank points away from the plane.
 double ball_in_plane(const Vec3& p) {
   return std::max(0.0, kRadius - p.z());
 }
-/// The plate is 0.2 mm thick, below z = 0, and wider than the tool's path. The depth is the depth at the height of the
-/// tool that is nearest to the middle of the plate. The tool extends from the lowest point of the ball to the end of
-/// the shank.
+/// Depth of a ball in a plate that is 0.2 mm thick, below z = 0, and wider than the tool's path: the depth at the
+/// height of the tool that is nearest to the middle of the plate. The tool extends from the lowest point of the ball to
+/// the end of the shank.
 double ball_in_plate(const Vec3& p) {
   const double neck = 0.3 * 2.0 * kRadius, end = std::sqrt(kRadius * kRadius - neck * neck) + 20.0 * neck;
   const double height = std::clamp(-0.0001, p.z() - kRadius, p.z() + end);
@@ -54,7 +54,7 @@ double ball_in_plate(const Vec3& p) {
 struct Case {
   const char* name;
   std::vector<std::string> changes;  ///< overrides path=value of a ball pressed onto a plane
-  std::vector<Outcome> outcomes;     ///< outcomes that are true
+  std::vector<Outcome> outcomes;     ///< outcomes of which each is true
   Truth depth = ball_in_plane;
   double tolerance = 1e-9;  ///< tolerance of the depth [m]
 };
@@ -108,11 +108,11 @@ const std::string kDrag =
 
 const std::string kNoHand = R"(hand={"type":"none"})";
 const std::string kLed = R"(motion.position={"type":"prescribed","x_m":0,"y_m":0,"z_m":0})";
-/// Returns the height that a script gives over time, for use after kLed.
+/// Returns the override with the heights that a script gives over time, for use after kLed.
 std::string led(const std::string& points) {
   return R"(motion.position.z_m={"type":"waypoints","points":)" + points + "}";
 }
-/// Returns a hand's spring whose target follows points over time.
+/// Returns the override with a hand's spring whose target follows points over time.
 std::string spring(const std::string& x, const std::string& z) {
   const auto waypoints = [](const std::string& points) { return R"({"type":"waypoints","points":)" + points + "}"; };
   return R"(hand={"type":"impedance","stiffness_N_per_m":300,"damping_N_s_per_m":6,"target":{"y_m":0,"x_m":)" +
@@ -126,14 +126,14 @@ double flat_in_plane(const Vec3& p) {
   return std::max(0.0, -p.z());
 }
 
-/// A ball in the cone about z with its apex at z = -3 mm. The wall's normal is inclined by the half angle from the
-/// horizontal.
+/// Depth of a ball in the cone about z with its apex at z = -3 mm. The wall's normal is inclined by the half angle from
+/// the horizontal.
 double ball_in_cone(const Vec3& p) {
   const double rho = p.head<2>().norm(), z = p.z() + 0.003;
   return std::max(0.0, kRadius - (std::sin(0.5) * z - std::cos(0.5) * rho));
 }
 
-/// Beside the plane there is no inside.
+/// Depth beside the border of the plane, where no inside is defined.
 double beside(const Vec3&) {
   return kUnknown;
 }
@@ -222,7 +222,7 @@ std::vector<Case> cases() {
        {spring("[[0,0],[0.05,0],[0.15,0.003],[0.3,0]]", "[[0,0.0006],[0.05,-0.002]]"),
         R"(rendering.friction={"mu_s_N_s_per_m":0,"mu_f_s_per_m":1e6})", R"(integrator={"type":"implicit_euler"})"},
        {Outcome::stuck}},
-      // Targets 3 mm apart on a display, which the subject's own spring follows.
+      // The targets are 3 mm apart on a display. The spring of the subject's hand follows them.
       {"a subject who follows targets", {kSubject, "time.steps=6000"}, kFine},
       {"a subject whose tool friction holds",
        {kSubject, "time.steps=6000", R"(rendering.friction={"mu_s_N_s_per_m":0,"mu_f_s_per_m":1e6})",
@@ -336,7 +336,8 @@ InsideDepths depths_of(const LoadedScenario& loaded, std::uint64_t every) {
   return inside.depths();
 }
 
-/// `exact`: metrics of a run that evaluated every step. Without a record, few steps are evaluated.
+/// Checks that a run without a record, which evaluates the depth in few steps, finds the depths of `exact` within its
+/// tolerances. `exact` are the metrics of a run that evaluated every step.
 void expect_seen_without_record(const LoadedScenario& loaded, const MetricList& exact) {
   const InsideDepths few = depths_of(loaded, 0);
   const auto max = number_of(exact, "inside_max_m"), settled = number_of(exact, "inside_settled_m");
@@ -375,7 +376,7 @@ TEST_F(ScenesMadeToFool, GetTheirTrueOutcomeAndDepthAlsoWithoutARecord) {
   }
 }
 
-/// Scenes in which no step is deeper than half the wall's thickness, and a drag that ends deep beside its path.
+/// Checks scenes in which no step is deeper than half the wall's thickness, and a drag that ends deep beside its path.
 TEST_F(ScenesMadeToFool, WithThinWallsOrAGapGetTheirTrueOutcome) {
   const Case cases[] = {
       {"led sideways through a plate, its tip below",
@@ -407,8 +408,8 @@ TEST_F(ScenesMadeToFool, WithThinWallsOrAGapGetTheirTrueOutcome) {
   }
 }
 
-/// A drill that rotates in a hole: its edge is in the wall by a fiftieth of its width. A coarser search would miss this
-/// depth.
+/// Checks a drill that rotates in a hole. Its edge is in the wall by a fiftieth of its width, a depth that a coarser
+/// search would miss.
 TEST(SettledDepth, OfEveryRowIsKnownToTheTolerance) {
   const std::vector<std::string> changes = {"time.steps=400",
                                             "expect={}",
@@ -426,7 +427,8 @@ TEST(SettledDepth, OfEveryRowIsKnownToTheTolerance) {
   EXPECT_EQ(few.settled_within, InsideSearch::kTolerance * half_width);
 }
 
-/// A drill that is dragged over a molar is equally deep nearly everywhere, so the search over the run has no early end.
+/// Checks a drill that is dragged over a molar. It is equally deep nearly everywhere, so the search over the run has no
+/// early end.
 TEST(LargestDepth, OfALongPathHasAnErrorBelowItself) {
   for (const char* law : {"summation", "proxy"}) {
     SCOPED_TRACE(law);

@@ -16,8 +16,8 @@
 #include "tests/support/meshes.hpp"
 #include "tests/support/scale.hpp"
 
-/// Valid files with a few bytes changed at random. Each changed file must be accepted or rejected: no crash, no other
-/// exception, and no partly read content.
+/// Tests valid files with a few bytes changed at random. Each changed file must be accepted or rejected: no crash, no
+/// other exception, and no partly read content.
 namespace hapbench::fuzz_test {
 namespace {
 
@@ -50,7 +50,7 @@ Tally fuzz(const std::vector<std::string>& texts, std::size_t mutants, std::uint
   return tally;
 }
 
-/// Checks that both happen often, because otherwise the mutants would test little.
+/// Checks that the mutants are often accepted and often rejected, because otherwise they would test little.
 void expect_mixture(const Tally& tally) {
   const std::size_t total = tally.accepted + tally.refused;
   EXPECT_GT(tally.accepted, total / 50);
@@ -64,7 +64,7 @@ TEST(Fuzz, ScenarioTextsAreReadOrRefused) {
   expect_mixture(fuzz(texts, test::cases(40'000), 1, [](const std::string& text) {
     const Json json = parse_json(text);
     const Json effective = effective_scenario(read_scenario(json, "").scenario, "");
-    // An accepted text is a scenario: reading its effective form gives the same scenario.
+    // An accepted text is a scenario: reading its effective form gives the same effective form.
     EXPECT_EQ(effective_scenario(read_scenario(effective, "").scenario, ""), effective) << text;
   }));
 }
@@ -111,7 +111,7 @@ TEST_P(MeshFuzz, MeshesAreReadOrRefusedSoon) {
   const Tally tally = fuzz({GetParam().text}, test::cases(2000), 6, [](const std::string& mutant) {
     const std::clock_t start = std::clock();
     const auto points = MeshFile(mutant, GetParam().name, {}).points();
-    // Processor time, which does not depend on the load of the machine: a mutant takes some milliseconds.
+    // Processor time does not depend on the load of the machine. A mutant takes some milliseconds.
     EXPECT_LT(std::clock() - start, 30 * CLOCKS_PER_SEC);
     EXPECT_FALSE(points.empty());
     for (const SurfacePoint& point : points) {
@@ -119,7 +119,7 @@ TEST_P(MeshFuzz, MeshesAreReadOrRefusedSoon) {
       EXPECT_NEAR(point.normal.norm(), 1.0, 1e-12);
     }
   });
-  // A byte more or less changes the size of most binary files to a size that they do not declare.
+  // A byte more or less gives most binary files a size that differs from the declared size.
   EXPECT_GT(tally.accepted, 0u);
   EXPECT_GT(tally.refused, tally.accepted / 4);
 }

@@ -95,7 +95,7 @@ TEST_F(Extends, RelativePathsStartFromTheFileThatHasThem) {
 }
 
 TEST_F(Extends, AnotherTimeStepReplacesTheSamplesOfADelayInSeconds) {
-  // As in an effective scenario: 0.0023 s are 4.6 steps of 0.0005 s.
+  // Both fields are given, as in an effective scenario: 0.0023 s are 4.6 steps of 0.0005 s.
   write("base.json", R"({"time": {"step_s": 0.0005, "steps": 20}, "environment": {"type": "plane"},
     "device": {"type": "impedance", "handle_mass_kg": 0.1, "delay_s": 0.0023, "delay_samples": 4.6}})");
   const auto samples = [&](const std::string& text) {
@@ -131,7 +131,7 @@ class Override : public testing::Test {
   Json with(const std::vector<std::string>& overrides) const {
     return effective_scenario(load_scenario(file_, overrides).scenario, directory_.path());
   }
-  /// Returns the message of the error, without the file before it.
+  /// Returns the message of the error for an override, without the file before it.
   std::string refusal(const std::string& override) const {
     SCOPED_TRACE(override);
     const auto error = test::input_error_of([&] { with({override}); });
@@ -152,20 +152,20 @@ TEST_F(Override, SetsWhatItsPathLeadsTo) {
   } kCases[] = {
       {{"time.steps=7"}, "/time/steps", "7"},
       {{"rendering.reduction.threshold=0.5"}, "/rendering/reduction/threshold", "0.5"},
-      // Entries of lists, by index.
+      // Indices select entries of lists.
       {{"environment.groups.1.count=9"}, "/environment/groups/1/count", "9"},
       {{"environment.groups.1.count=9"}, "/environment/groups/0/count", "2"},
       {{"environment.groups.0.direction.2=4"}, "/environment/groups/0/direction", "[1.0, 0.0, 4.0]"},
       // Missing objects are created.
       {{"rendering.limits.max_force_N=30"}, "/rendering/limits/max_force_N", "30.0"},
       {{"record.every=5"}, "/record/every", "5"},
-      // JSON values of every kind.
+      // Values may be JSON of every kind.
       {{"rendering.reduction=null"}, "/rendering/reduction", "null"},
       {{"rendering.local_average=false"}, "/rendering/local_average", "false"},
       {{"initial.position_m=[0.001, 0, -2e-3]"}, "/initial/position_m", "[0.001, 0.0, -0.002]"},
       {{R"(environment={"type":"plane"})"}, "/environment/type", "\"plane\""},
       {{"time.steps=1e3"}, "/time/steps", "1000"},
-      // Numbers that are not JSON, as other programs write them.
+      // Numbers may be written as in other programs, although they are not JSON.
       {{"rendering.damping_ratio=.5"}, "/rendering/damping_ratio", "0.5"},
       {{"rendering.damping_ratio=+0.5"}, "/rendering/damping_ratio", "0.5"},
       {{"rendering.damping_ratio=1."}, "/rendering/damping_ratio", "1.0"},
@@ -177,7 +177,7 @@ TEST_F(Override, SetsWhatItsPathLeadsTo) {
       // A later override takes precedence.
       {{"time.steps=7", "time.steps=8"}, "/time/steps", "8"},
       {{R"(rendering={"iterations":9})", "rendering.damping_ratio=0"}, "/rendering/iterations", "9"},
-      // The field with the same meaning is removed.
+      // A field removes another field with the same meaning.
       {{"time.duration_s=1"}, "/time/steps", "2000"},
       {{"time.duration_s=1", "time.steps=8"}, "/time/steps", "8"},
   };
@@ -195,7 +195,7 @@ TEST_F(Override, DelayInSecondsIsTheSceneSamples) {
   const double step = with({}).at("time").at("step_s").get<double>();
   EXPECT_EQ(delays({}), std::pair(0.0023, 0.0023 / step));
   EXPECT_EQ(delays({"time.step_s=0.001"}), std::pair(0.0023, 0.0023 / 0.001));
-  // One field replaces the other field.
+  // Each of the two fields replaces the other field.
   EXPECT_EQ(delays({"device.delay_samples=3"}), std::pair(-1.0, 3.0));
   EXPECT_EQ(delays({"device.delay_samples=3", "device.delay_s=0.001"}), std::pair(0.001, 0.001 / step));
   // The effective scenario has both fields and can be read again, also with another time step.
@@ -242,7 +242,7 @@ TEST_F(Override, NestedDeeplyIsRefused) {
             std::string::npos);
 }
 
-// The effective scenario: a file with all defaults filled in and the same meaning.
+// Tests the effective scenario: a file with all defaults filled in and the same meaning.
 
 std::string content_hash(const Scenario& scenario) {
   return scenario_hash(effective_scenario(scenario, {}), NamedFiles(scenario));
@@ -250,7 +250,7 @@ std::string content_hash(const Scenario& scenario) {
 
 void expect_fixed_point(const Scenario& scenario, const fs::path& directory) {
   const Json effective = effective_scenario(scenario, directory);
-  // Through text, as in a file.
+  // Read the effective scenario from text, as from a file.
   const LoadedScenario again = read_scenario(parse_json(json_text(effective)), directory);
   EXPECT_EQ(json_text(effective_scenario(again.scenario, directory)), json_text(effective));
   for (const auto& [kind, pointer, text] : again.warnings) {

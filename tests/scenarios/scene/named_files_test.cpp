@@ -51,7 +51,7 @@ TEST_F(NamedFilesOfAScenario, AreThoseItNames) {
   for (const auto& file : both.all()) EXPECT_EQ(file->hash(), hash_text(hash_of(test::read_file(file->path()))));
 }
 
-// A change of a file during a run changes neither the run nor the provenance that it reports.
+// Checks that a change of a file during a run changes neither the run nor the provenance that it reports.
 TEST_F(NamedFilesOfAScenario, AreReadOnce) {
   for (const char* environment : {"mesh", "point_shell"}) {
     const CheckedScenario scene = checked(load(environment, kStroke));
@@ -67,8 +67,8 @@ TEST_F(NamedFilesOfAScenario, AreReadOnce) {
   }
 }
 
-// Parallel laws share the parsed mesh, the shell and the solid. A special scale keeps cached values of other tests
-// away.
+// Checks that parallel laws share the parsed mesh, the shell and the solid. The unusual scale avoids cached values of
+// other tests.
 TEST_F(NamedFilesOfAScenario, AreParsedOnceForAllLaws) {
   const std::size_t before = shared_cache().made();
   for (const AlgorithmEntry& algorithm : algorithms()) {

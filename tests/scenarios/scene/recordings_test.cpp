@@ -10,7 +10,7 @@
 namespace hapbench::recordings_test {
 namespace {
 
-// tests/data/golden/refused_files.txt has the errors of recorded motions.
+// Tests recorded motions and contact traces. tests/data/golden/refused_files.txt has the errors of recorded motions.
 
 const std::string kHeader = "time_s,px_m,py_m,pz_m,axis_x,axis_y,axis_z\n";
 
@@ -47,7 +47,7 @@ TEST(MotionFile, ReportsAxesOfOtherLengths) {
   EXPECT_TRUE(notes.empty());
 }
 
-/// A quarter turn about x rotates the axis from -z to y.
+/// Checks a quarter turn about x, which rotates the axis from -z to y.
 TEST(MotionFileOfQuaternions, TurnsTheToolsFrameIntoTheWorlds) {
   const RecordedMotion motion =
       parse_stroke(kQuaternions + "0,1,2,3,1,0,0,0\n1,1,2,3,0.7072,0.7072,0,0\n", kFile).motion;

@@ -12,7 +12,7 @@
 namespace hapbench::relation_warnings_test {
 namespace {
 
-/// Returns the warnings about a bundled scenario with these overrides, without the file before them.
+/// Returns the warnings about the scenario poke_plane with these overrides, without the file before them.
 std::vector<std::string> warnings_with(std::vector<std::string> overrides) {
   std::vector<std::string> warnings;
   for (const Warning& warning : load_scenario(find_scenario("poke_plane"), overrides).warnings)
@@ -51,7 +51,8 @@ TEST(AdmittanceDevice, WarnsUnderAHandThatDoesNotFeelTheHandle) {
   EXPECT_TRUE(warnings(R"({"type": "impedance", "target": {"x_m": 0, "y_m": 0, "z_m": 0}})", kDelay).empty());
 }
 
-/// A device in millimetres or grams instead of metres and kilograms; presets and light or heavy devices are usual.
+/// Checks a device in millimetres or grams instead of metres and kilograms. Presets and light or heavy devices cause no
+/// warning.
 TEST(ImpedanceDevice, WarnsOfNumbersThatNoDeviceHas) {
   const auto warnings = [](const std::string& fields) {
     return warnings_with({R"(device={"type":"impedance",)" + fields + "}"});

@@ -32,7 +32,7 @@ const test::SchemaValidator& schema() {
   return validator;
 }
 
-/// Returns the error of the reader; empty if it accepts the document.
+/// Returns the error of the reader; empty if the reader accepts the document.
 std::optional<InputError> objection_to(const Json& document) {
   try {
     read_scenario(document, "");
@@ -42,8 +42,8 @@ std::optional<InputError> objection_to(const Json& document) {
   }
 }
 
-/// Returns valid scenarios, first the scenarios written for tests: they contain every field, while bundled scenarios
-/// are similar to each other.
+/// Returns valid scenarios. The scenarios written for tests come first, because they contain every field, while bundled
+/// scenarios are similar to each other.
 std::vector<NamedScenario> valid_scenarios() {
   std::vector<NamedScenario> all = test::rich_scenarios();
   for (const auto& more : {test::minimal_scenarios(), test::bundled_scenario_files()}) {
@@ -52,7 +52,7 @@ std::vector<NamedScenario> valid_scenarios() {
   return all;
 }
 
-/// Returns the number of mutants to test of the i-th scenario.
+/// Returns the number of mutants of the i-th valid scenario.
 std::size_t mutants_of(std::size_t i) {
   return test::cases(i < test::rich_scenarios().size() ? 4000 : 300);
 }
@@ -72,7 +72,7 @@ TEST(ScenarioSchema, AcceptsEveryValidScenarioAndItsEffectiveForm) {
 }
 
 TEST(ScenarioSchema, HasAnExampleInTheTestsForEveryField) {
-  // A field that is missing here could not be changed by the mutations below.
+  // The mutations below change only fields that occur in these scenarios, so every field must occur.
   std::set<std::string> seen, known;
   for (const NamedScenario& scenario : valid_scenarios()) {
     for (const std::string& at : test::pointers_in(scenario.json)) {
@@ -146,8 +146,8 @@ TEST(ScenarioSchema, RejectsExactlyTheMutantsWhoseShapeTheReaderRefuses) {
 }
 
 TEST(ScenarioSchema, RejectsNothingThatTheReaderAcceptsAfterManyChanges) {
-  // With several faults, the reader may find a contradiction first; both must still agree whether the document is
-  // accepted.
+  // With several faults, the reader may find a contradiction first. Reader and schema must still agree whether the
+  // document is accepted.
   Random random(7);
   const std::size_t per_scenario = test::cases(150);
   for (const NamedScenario& scenario : valid_scenarios()) {

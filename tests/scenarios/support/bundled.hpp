@@ -15,7 +15,7 @@ inline Scenario bundled(const std::string& name, const std::vector<std::string>&
   return load_scenario(find_scenario(name), overrides).scenario;
 }
 
-/// Runs a scenario and returns the record of every step. Their contact buffers no longer exist.
+/// Runs a scenario and returns the record of every step. The pointers to contact buffers in the records are invalid.
 inline std::vector<StepRecord> rows_of(const Scenario& scenario) {
   class Rows final : public Observer {
    public:

@@ -28,11 +28,12 @@ struct ProgramRun {
 
 struct ProgramOptions {
   std::filesystem::path directory = {};  ///< working directory; empty: the current directory
-  /// False: if the test runs as root, the process drops root's privileges; exit status 126 if that fails.
+  /// If false and the test runs as root, the process drops root's privileges. If it cannot drop them, its exit status
+  /// is 126.
   bool as_root_may = true;
   std::size_t file_limit = 0;  ///< maximum size of each written file [bytes]; 0: no limit
   std::size_t columns = 0;     ///< number of columns of the terminal that the process sees; 0: not set
-  /// Maximum address space [bytes]; 0: no limit. Not usable with sanitizers, which reserve a large address
+  /// Maximum address space [bytes]; 0: no limit. Do not use with sanitizers, because they reserve a large address
   /// space.
   std::size_t memory_limit = 0;
 };

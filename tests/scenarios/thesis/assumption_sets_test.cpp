@@ -17,8 +17,8 @@ namespace {
 
 const std::filesystem::path kReference = std::filesystem::path(HAPBENCH_SCENARIOS) / "../../results/reference";
 
-/// Two assumptions, and two claims written for this test: one about the stiffness of the springs, and one that always
-/// fails.
+/// Fixture with two assumptions, and two claims written for this test: one about the stiffness of the springs, and one
+/// that always fails.
 class AssumptionSets : public testing::Test {
  protected:
   AssumptionSets() {
@@ -103,8 +103,8 @@ TEST_F(AssumptionSets, JudgeNothingThatUsesAScenarioOfAMissedCalibration) {
   EXPECT_EQ(found[0].why, "no value of stiffness gives the published 5 raw points");
 }
 
-/// The hand of task 2: half the tilt amplitude changes the number of raw points, and calibration finds a force that
-/// restores this number. A given force is not calibrated.
+/// Checks the calibration of the hand of task 2. Half the tilt amplitude changes the number of raw points, and
+/// calibration finds a force that restores this number. A given force is not calibrated.
 TEST(Calibration, OfRecordedInputsIsMadeAnew) {
   const Assumptions assumptions(kReference / "assumptions.json");
   const auto index = [&](const std::string& id) {

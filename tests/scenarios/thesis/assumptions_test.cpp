@@ -37,12 +37,12 @@ std::vector<BundledScenario> thesis_scenarios() {
   return all;
 }
 
-/// Tests each field of each assumption, so that none is lost when a scenario is renamed.
+/// Checks each field of each assumption, so that no field is lost when a scenario is renamed.
 TEST(AssumptionsOnRecord, AreWhatTheScenariosHaveAndOthersChangeThem) {
   const Assumptions assumptions(kReference / "assumptions.json");
   const Texts on_record = assumptions.recorded_values();
-  // Returns the ends of ranges, and options other than the committed option; at least one value differs from the
-  // committed value.
+  // Two values of each assumption: the ends of its range, or its first and last option. At least one of them differs
+  // from the committed value.
   Texts low, high;
   for (const Assumption& assumption : assumptions.all()) {
     low.push_back(assumption.range ? fmt::format("{}", assumption.range->first) : assumption.options.front());
@@ -64,7 +64,7 @@ TEST(AssumptionsOnRecord, AreWhatTheScenariosHaveAndOthersChangeThem) {
       }
     }
   }
-  for (const Assumption& assumption : assumptions.all())  // those without fields are numbers of rules
+  for (const Assumption& assumption : assumptions.all())  // assumptions without fields are numbers of rules
     EXPECT_EQ(changing.contains(assumption.id), !assumption.fields.empty()) << assumption.id;
 }
 

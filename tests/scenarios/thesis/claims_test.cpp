@@ -15,7 +15,8 @@
 namespace hapbench::claims_test {
 namespace {
 
-/// Samples x = exp(-zeta t) cos(sqrt(1 - zeta^2) t), a hundred samples per unit of time.
+/// Returns the damping ratio that is measured from x = exp(-zeta t) cos(sqrt(1 - zeta^2) t) with a hundred samples per
+/// unit of time; empty if none can be measured.
 std::optional<double> measured(double zeta) {
   std::vector<double> x;
   for (int i = 0; i < 3000; ++i) {
@@ -40,7 +41,7 @@ TEST(DampingRatioOfSwings, IsNoneWithoutSwings) {
   EXPECT_FALSE(measured(1.0)) << "it creeps";
 }
 
-// Files by which claims are judged.
+// Fixture with a folder of result files, by which claims are judged.
 
 class ResultFile : public testing::Test {
  protected:
@@ -146,11 +147,11 @@ Measured cases_in(std::string_view text) {
 }
 
 struct Judged {
-  std::string_view change;  ///< of the rule's cases
+  std::string_view change;  ///< change of the rule's cases
   Verdict verdict;
 };
 struct Rule {
-  std::string_view ids;  ///< of claims that have the rule
+  std::string_view ids;  ///< claims that have the rule
   std::string_view measured;
   std::vector<Judged> judged;
 };
@@ -168,7 +169,7 @@ TEST(Claims, AreJudgedByTheirThresholds) {
           "damped_1=1 damped_2=1 damped_3=0.96 | | | | average signed_distance: | average binary:",
       vibration = "velocity_variation=0.1 vibration_power=1e-5 force_reversals=6 | | |";
   const std::vector<Rule> rules = {
-      // The largest depth over all tilts counts.
+      // Of each case, the largest depth over all tilts counts.
       {"V1",
        depths,
        {{"", replicated},
@@ -285,7 +286,7 @@ TEST(Claims, AreJudgedByTheirThresholds) {
       {"A1",
        vibration,
        {{"0.velocity_variation=0.5 0.vibration_power=2.5e-4", replicated},
-        // The vibration power is much larger, and the velocity variation is not larger to the same extent.
+        // The vibration power is much larger, but the velocity variation is not.
         {"0.velocity_variation=0.4 0.vibration_power=1e-3 2.velocity_variation=0.5 2.vibration_power=2.5e-4",
          qualitatively},
         // The number of force reversals increases by the same factor.
@@ -411,7 +412,7 @@ TEST(Claims, AreJudgedByTheirThresholds) {
         {"2.original=0.2", not_consistent},
         {"1.original=0.2", not_consistent},
         {"0.shaped=0.2", consistent}}},
-      // A threshold beyond the published threshold.
+      // Check a threshold beyond the published threshold.
       {"D6",
        "offset: value=0.4e-3 original=0.9 shaped=1 | value=0.6e-3 original=0.5 | height: value=2e-3 | "
        "value=4e-3 original=0.9 | offset: value=0.7e-3 original=0",
@@ -453,7 +454,7 @@ TEST(Claims, AreJudgedByTheirThresholds) {
   EXPECT_EQ(judged, all);
 }
 
-/// Without contacts, a measurement has no numbers. The other claims must still be judged.
+/// Checks a measurement without contacts, which has no numbers. The other claims must still be judged.
 TEST(Claims, AreNotJudgedIfTheirRunsHaveNothingToMeasure) {
   EXPECT_THROW(largest_of({}), NothingToMeasure);
   Claim silent = claim("G1");
@@ -476,11 +477,12 @@ TEST(Claims, OfTheRangeAfterOneUpdateCoverBothReadingsOfTheFigure) {
   EXPECT_EQ(claim("R1").judge(measured, averaged).verdict, replicated);
   set(measured, "5.min_1=0.79");
   EXPECT_EQ(claim("R1").judge(measured, averaged).verdict, not_replicated);
-  // Minima of 1 / (1 + k x) + k x / (k + x) over x in [0, 1], computed with Python: 0.7990, 0.7333, 0.6817.
+  // Expected minima of 1 / (1 + k x) + k x / (k + x) over x in [0, 1], computed with Python: 0.7990, 0.7333, 0.6817.
   EXPECT_NE(claim("R1").judge(measured, averaged).why.find("0.80, 0.73 and 0.68"), std::string::npos);
 }
 
-/// The texts of the rules contain the thresholds, so this test also covers the thresholds.
+/// Checks that ledger and program have the same claims. The texts of the rules contain the thresholds, so this test
+/// also covers the thresholds.
 TEST(Claims, AreThoseOfTheLedger) {
   const Json ledger = read_json(HAPBENCH_SCENARIOS "/../../results/reference/claims.json").at("claims");
   const std::vector<Claim> claims = all_claims();

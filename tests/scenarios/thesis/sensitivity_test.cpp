@@ -28,7 +28,7 @@ JudgedClaim judged(const std::string& id, const std::string& reach) {
 
 class Sensitivity : public testing::Test {
  protected:
-  /// Returns a record of one claim with cases "ASSUMPTION VALUE".
+  /// Returns a record of the claim T9 with the cases (assumption, verdict). Every case has the value "2".
   SensitivityRecord record(const std::vector<std::pair<std::string, Verdict>>& cases) const {
     SensitivityRecord made;
     made.begin("T9", "reach", found(Verdict::replicated), complete_ > 0 ? complete_ : cases.size());
@@ -39,7 +39,7 @@ class Sensitivity : public testing::Test {
     const JudgedClaim claim = judged("T9", "reach");
     return robustness_of(claim, record(cases).entry("T9", "reach")).text();
   }
-  std::size_t complete_ = 0;  ///< number of cases of a complete entry; 0: as many as it has
+  std::size_t complete_ = 0;  ///< number of cases of a complete entry; 0: the number of cases that are given
   test::TemporaryDirectory directory_;
 };
 
@@ -78,7 +78,7 @@ TEST_F(Sensitivity, IsKeptInAFileAndContinued) {
   EXPECT_TRUE(read.has("T9", "a", "2"));
   EXPECT_FALSE(read.has("T9", "a", "3"));
   EXPECT_TRUE(read.entry("T9", "other assumptions").is_null());
-  // A changed verdict, number or list of assumptions: the cases are computed again.
+  // With a changed verdict, number or list of assumptions, the cases must be computed again.
   for (const auto& [reach, recorded] : {std::pair("reach", found(Verdict::qualitatively)),
                                         {"reach", found(Verdict::replicated, "2")},
                                         {"other assumptions", found(Verdict::replicated)}}) {

@@ -63,7 +63,7 @@ TEST(LambdaMax, IsTheLargestEigenvalue) {
     Vec3 eigenvalues(random.uniform(-1.0, 2.0), random.uniform(-1.0, 2.0), random.uniform(-1.0, 2.0));
     if (i % 2 == 0) eigenvalues = {1.0, 1.0, random.uniform()};  // the largest eigenvalue is double
     const Mat3 S = Q * eigenvalues.asDiagonal() * Q.transpose();
-    // Building S and the iteration change eigenvalues by a few roundings of the norm.
+    // Computing S and the iteration change eigenvalues by a few roundings of the norm.
     EXPECT_NEAR(lambda_max(S), eigenvalues.maxCoeff(), 32 * kEps * eigenvalues.cwiseAbs().maxCoeff());
   }
 }
@@ -76,7 +76,7 @@ struct SpringContact {
   Vec3 gradient;
 };
 
-// Gradients whose inner products with dyadic positions are exact.
+// Springs with gradients whose inner products with dyadic positions are exact.
 const SpringSet kBilateral{{{1, 0, 0}, {-1, 0, 0}, {0, -1, 0}, {0, 0, 1}}, true};
 const SpringSet kUnilateral{kBilateral.gradients, false}, kUnsigned{kBilateral.gradients, true, false};
 
@@ -128,7 +128,7 @@ TEST(SpringSource, HasTheContactsOfItsKindOfSprings) {
 // Compares multi-rate contacts with an independent implementation of their definition, which uses all poses of a run
 // and no ring buffers.
 
-/// Contacts that are a function of the pose; their number also depends on the pose.
+/// Source of contacts that are a function of the pose. Their number also depends on the pose.
 class PoseSource final : public ContactSource {
  public:
   void contacts_at(const ToolPose& pose, ContactBuffer& contacts) noexcept override {
@@ -175,7 +175,7 @@ TEST(TurnMatrix, IsTheSmallestTurnFollowedByTheRoll) {
     const ToolPose from{{}, random.direction(), random.uniform(-3.0, 3.0)};
     const ToolPose near{{}, (from.axis + 1e-7 * random.direction()).normalized(), from.roll};
     const ToolPose to = i % 2 == 0 ? near : ToolPose{{}, random.direction(), random.uniform(-3.0, 3.0)};
-    // Rounding of a product of matrices of unit vectors, and of a rotation by an angle up to pi.
+    // Allow the rounding of a product of matrices of unit vectors, and of a rotation by an angle up to pi.
     EXPECT_TRUE(turn_matrix(from, to).isApprox(smallest_turn(from, to), 1e-12));
     EXPECT_EQ(turn_matrix(from, {Vec3::Ones(), from.axis, from.roll}), Mat3(Mat3::Identity()));
     const Mat3 over = turn_matrix(from, {{}, -from.axis, from.roll});
@@ -251,7 +251,7 @@ TEST_P(MultiRateContactsOfEverySchedule, AreTheFreshOnesOfTheQueryMovedAsTheTool
         EXPECT_EQ(contacts.index[next], asked.index[i]);
         EXPECT_EQ(contacts.point(next), x);
         EXPECT_EQ(contacts.gradient(next), asked.gradient(i));
-        // A few roundings of lengths of a millimetre.
+        // Allow a few roundings of lengths of a millimetre.
         EXPECT_NEAR(contacts.depth[next], depth, 1e-16);
         moved += static_cast<std::size_t>(depth != asked.depth[i]);
         ++next;
@@ -269,9 +269,9 @@ TEST_P(MultiRateContactsOfEverySchedule, AreTheFreshOnesOfTheQueryMovedAsTheTool
   EXPECT_EQ(dropped > 0, schedule.linear);
 }
 
-/// If springs may pull, contacts with a negative depth are not dropped. The depth of a spring is linear in the position
-/// of the tool. Contacts that are found in every eighth step, with depths extrapolated linearly between these steps,
-/// therefore equal contacts that are found in every step.
+/// Checks linear contacts of springs that may pull: contacts with a negative depth are not dropped. The depth of a
+/// spring is linear in the position of the tool. Contacts that are found in every eighth step, with depths extrapolated
+/// linearly between these steps, therefore equal contacts that are found in every step.
 TEST(MultiRateContacts, OfSpringsThatPullAreFreshWhenLinear) {
   const auto springs = std::make_shared<SpringSet>();
   Random random(1);

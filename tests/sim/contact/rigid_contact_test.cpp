@@ -12,10 +12,10 @@ namespace {
 
 // Tests the free position of a tool between rigid triangles against closed forms.
 
-constexpr double kRadius = 0.0005;        // of the tool [m]
+constexpr double kRadius = 0.0005;        // radius of the tool [m]
 constexpr RoundTool kBall{kRadius, 0.0};  // a tool of which only the tip can touch
 const Vec3 kDown = -Vec3::UnitZ();
-constexpr double kExact = 1e-14;  // [m]: rounding of centimetres in some additions
+constexpr double kExact = 1e-14;  // tolerance [m]: rounding of centimetres in some additions
 
 /// Adds the square a b c d, whose corners are counter-clockwise from outside.
 void add_square(TriangleSoup& soup, const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
@@ -31,7 +31,7 @@ TriangleSoup square(double height = 0.0) {
   return soup;
 }
 
-/// Returns a sphere around the origin: an octahedron whose faces are divided `levels` times.
+/// Returns a sphere around the origin: an octahedron whose faces are divided into four `levels` times.
 TriangleSoup sphere(double radius, int levels) {
   TriangleSoup soup;
   const auto add = [&](const auto& self, const Vec3& a, const Vec3& b, const Vec3& c, int level) -> void {
@@ -51,7 +51,7 @@ TriangleSoup sphere(double radius, int levels) {
   return soup;
 }
 
-/// Moves the tool on a straight path in steps, and returns the last free position.
+/// Moves the tool on a straight path in `steps` steps, and returns the last free position.
 Vec3 moved(RigidContact& contact, const Vec3& from, const Vec3& to, const Vec3& axis = kDown, int steps = 20) {
   EXPECT_TRUE(contact.start(from, axis));
   Vec3 free = from;
@@ -69,7 +69,8 @@ TEST(RigidContact, OnAPlaneIsAboveThePrescribedPosition) {
   EXPECT_EQ(contact.follow({0.001, 0, 0.0021}, kDown), Vec3(0.001, 0, 0.0021));
 }
 
-/// The triangles are inside the sphere by at most their sagitta s, and so is the tool.
+/// Checks the free position on a sphere. The triangles are inside the sphere by at most their sagitta s, and therefore
+/// the tool is at most s closer to the centre.
 TEST(RigidContact, OnASphereIsRadial) {
   constexpr double kLarge = 0.004;
   constexpr int kLevels = 6;
@@ -95,7 +96,7 @@ TEST(RigidContact, OnASphereIsRadial) {
   EXPECT_LT(contact.error(), 1e-10);
 }
 
-/// Around a convex edge, the tip's centre moves on a cylinder.
+/// Checks the free position at a convex edge, around which the tip's centre moves on a cylinder.
 TEST(RigidContact, OnAnEdgeIsRadial) {
   TriangleSoup soup;  // x < 0 and z < 0 is solid
   add_square(soup, {-0.01, -0.01, 0}, {0, -0.01, 0}, {0, 0.01, 0}, {-0.01, 0.01, 0});
@@ -140,7 +141,8 @@ TEST(RigidContact, StaysOnTheSideFromWhichItCame) {
   }
 }
 
-/// The side of a tilted tool rests on the edge of a wall: the distance between tool axis and edge is the tool's radius.
+/// Checks that the side of a tilted tool rests on the edge of a wall: the distance between tool axis and edge is the
+/// tool's radius.
 TEST(RigidContact, SideOfTheToolTouchesAnEdge) {
   TriangleSoup wall;  // a vertical wall in the plane x = 0 below z = 0, whose upper edge is the y axis
   add_square(wall, {0, -0.01, -0.01}, {0, 0.01, -0.01}, {0, 0.01, 0}, {0, -0.01, 0});
@@ -149,7 +151,7 @@ TEST(RigidContact, SideOfTheToolTouchesAnEdge) {
   // The tip is beside the wall and below the edge, and the tool leans over the edge.
   const double tilt = 0.5;
   const Vec3 axis(std::sin(tilt), 0, -std::cos(tilt));
-  // The normal from the edge to the axis is perpendicular to both.
+  // The normal from the edge to the axis is perpendicular to edge and axis.
   const Vec3 normal(std::cos(tilt), 0, std::sin(tilt));
   const Vec3 from = Vec3(0, 0, 0) + 0.002 * axis + 0.001 * normal, to = from - 0.0007 * normal;
   const Vec3 free = moved(contact, from, to, axis);
@@ -162,14 +164,14 @@ TEST(RigidContact, ReportsThatItStartsInContactOrTouchesTheFarEnd) {
   EXPECT_TRUE(contact.start({0, 0, 1.1 * kRadius}, kDown));
   contact.follow({0, 0, 0.5 * kRadius}, kDown);
   EXPECT_FALSE(contact.touched_far_end());
-  // Upside down: the end opposite to the tip is at the bottom.
+  // The tool is upside down: the end opposite to the tip is at the bottom.
   ASSERT_TRUE(contact.start({0, 0, 0.004}, -kDown));
   contact.follow({0, 0, 0.002}, -kDown);
   EXPECT_TRUE(contact.touched_far_end());
 }
 
-/// Free positions satisfy all constraints, and no free position nearby is closer to the prescribed position. Nearby
-/// positions are sampled at random.
+/// Checks that free positions satisfy all constraints, and that no free position nearby is closer to the prescribed
+/// position. Nearby positions are sampled at random.
 TEST(RigidContact, IsALocalMinimumAmongFreePositions) {
   Random random(3);
   TriangleSoup rough;

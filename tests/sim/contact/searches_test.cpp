@@ -21,8 +21,8 @@ using test::SearchPair;
 constexpr double kInf = std::numeric_limits<double>::infinity(), kNaN = std::numeric_limits<double>::quiet_NaN();
 const Cylinder kDrill(0.0005, 0.01, Tip::flat);
 
-/// The search must give exactly the result of brute force, whatever the tool did before: same points, same order, same
-/// bits.
+/// Checks that the search gives exactly the result of brute force, whatever the tool did before: same points, same
+/// order, same bits.
 TEST(NeighbourListQuery, FindsWhatBruteForceFindsAtPosesOfEveryKindOfTool) {
   for (const test::ToolKind& kind : test::tool_kinds()) {
     SCOPED_TRACE(kind.name);
@@ -49,7 +49,8 @@ TEST(NeighbourListQuery, SurvivesAnEmptyShellAndPosesThatAreNotFinite) {
 }
 
 TEST(NeighbourListQuery, HoldsToItsInequalityWhenTheToolTurnsAboutItsTip) {
-  // The bottom end, 10 mm from the tip, moves farthest: a list that ignored rotation would miss these points.
+  // Points on the arc of the end opposite to the tip, 10 mm away, which moves farthest. A list that ignored rotation
+  // would miss these points.
   std::vector<SurfacePoint> arc;
   for (int k = 0; k < 360; ++k) {
     const double a = k * std::numbers::pi / 180.0;
@@ -90,15 +91,16 @@ class ShellQueryForTip : public testing::TestWithParam<Tip> {};
 INSTANTIATE_TEST_SUITE_P(BothTips, ShellQueryForTip, testing::Values(Tip::flat, Tip::round),
                          [](const auto& tip) { return tip.param == Tip::flat ? "flat" : "round"; });
 
-// Poses along the coordinate axes and dyadic sizes: all coordinates below are exact, so it is exactly known which
-// points belong to the closed set.
+// Poses along the coordinate axes and sizes that are multiples of powers of two: all coordinates below are exact, so it
+// is exactly known which points belong to the closed set.
 constexpr double kRadius = 0x5p-13;  // 0.61 mm, a multiple of 5 for the point (3, 4) on the circle
 constexpr double kLength = 0x1p-7;
-// One unit in the last place of the coordinates, which are below 1/2; the radius is far above it.
+// One unit in the last place of coordinates below 1/2; the radius is far larger than this unit.
 constexpr double kOut = 0x1p-53;
 const Vec3 kPosition(0x3p-4, -0x5p-4, 0x1p-4);
 
-/// Returns points (s, a, b): s along the axis, a and b perpendicular to it.
+/// Returns points (s, a, b) on the surface of the cylinder and on its axis: s along the axis, a and b perpendicular to
+/// it [m].
 std::vector<Vec3> on_cylinder() {
   std::vector<Vec3> points;
   for (const double s : {0.0, -kLength / 2, -kLength}) {
@@ -142,7 +144,7 @@ std::size_t marked_near(const PointShell& shell, const ToolShape& tool, const To
   });
 }
 
-/// Returns the largest ratio of the number of points near the tool, over some poses, to the bound of this number.
+/// Returns the largest number of points near the tool over some poses, divided by the bound of this number.
 double worst_part_of_bound(const ToolShape& tool, double size, Random& random) {
   const double margin = random.uniform(0.0, 0.3) * tool.half_width();
   const PointShell shell(test::random_shell(random, size), 0.0);

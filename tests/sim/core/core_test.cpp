@@ -15,7 +15,7 @@
 namespace hapbench::core_test {
 namespace {
 
-// Values of the reference implementation (draft-eastlake-fnv, test vectors for FNV-1a, 64 bits).
+// Checks values of the reference implementation (draft-eastlake-fnv, test vectors for FNV-1a, 64 bits).
 TEST(Hash, OfTextEqualsPublishedVectorsOfFnv1a) {
   EXPECT_EQ(hash_of(""), 0xcbf29ce484222325u);
   EXPECT_EQ(hash_of("a"), 0xaf63dc4c8601ec8cu);
@@ -42,7 +42,8 @@ TEST(Random, NormalNumbersHaveTheMomentsOfTheNormalDistribution) {
     const double x = random.normal();
     for (std::size_t k = 1; k < moments.size(); ++k) moments[k] += std::pow(x, static_cast<double>(k)) / n;
   }
-  // Expected 0, 1, 0, 3 with variances 1, 2, 15, 96 over n; five standard errors.
+  // The expected moments are 0, 1, 0 and 3, with the variances 1, 2, 15 and 96 divided by n. Allow five standard
+  // errors.
   const double root = std::sqrt(n);
   EXPECT_NEAR(moments[1], 0.0, 5 * 1.0 / root);
   EXPECT_NEAR(moments[2], 1.0, 5 * std::sqrt(2.0) / root);
@@ -91,7 +92,7 @@ TEST(Profile, CosineWaypointsFollowHalfACosineOnEachLeg) {
   const Profile profile = Profile::Shape(Waypoints{{{2.0, 1.0}, {4.0, 5.0}}, kCosine});
   for (int k = 0; k <= 20; ++k) {
     const double s = k / 20.0;
-    // A segment of length 4, evaluated in a few operations on numbers below 8.
+    // The tolerance covers a segment of length 4, evaluated in a few operations on numbers below 8.
     EXPECT_NEAR(profile(2.0 + 2.0 * s), 3.0 - 2.0 * std::cos(std::numbers::pi * s), 1e-14) << s;
   }
 }
@@ -208,7 +209,7 @@ TEST(Math, PowersOfTenAreExact) {
   EXPECT_EQ(math::pow(9.0, 0.5), 3.0);
 }
 
-/// Large angles occur at long times and high frequencies; 1e-15 is the stated absolute error.
+/// Checks large angles, which occur at long times and high frequencies. 1e-15 is the stated absolute error.
 TEST(Math, LargeAnglesKeepAnAbsoluteError) {
   if (!has_reference()) GTEST_SKIP() << "long double is no wider than double";
   Random random(3);
@@ -259,8 +260,8 @@ TEST(Math, SineAndCosineTogetherAreTheSameBits) {
   EXPECT_TRUE(std::signbit(math::sine_cosine(-0.0).sine) && std::isnan(math::sine_cosine(kInf).cosine));
 }
 
-/// Every compiler and instruction set gives these bits. The value was computed by g++ 12 for AVX-512 and by clang 14
-/// without optimization for SSE2.
+/// Checks the bits that every compiler and instruction set must give. The value was computed by g++ 12 for AVX-512 and
+/// by clang 14 without optimization for SSE2.
 TEST(Math, GivesTheSameBitsEverywhere) {
   Random random(4);
   Hash64 hash;

@@ -1,4 +1,4 @@
-// Built twice, with the vector type and with plain loops, so that both follow the same rules.
+// Built twice, with the vector type and with plain loops, so that both builds pass the same tests.
 #include "sim/core/simd_check.hpp"
 
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ TEST(Simd, AWrongOperationIsFound) {
 }
 
 TEST(Simd, SumAddsLanesInItsStatedOrderAndProductsAreRoundedBefore) {
-  // Numbers whose sum depends on the order: any other order of these rounds differently.
+  // Use numbers whose sum depends on the order: any other order rounds differently.
   const AlignedDoubles v = {1e16, 1.0, -1e16, 3.0, 1.0, 1e-3, 7.0, 0.1};
   const double stated = ((v[0] + v[4]) + (v[2] + v[6])) + ((v[1] + v[5]) + (v[3] + v[7]));
   double from_left = 0.0;

@@ -59,7 +59,7 @@ TEST(ShellBounds, AreThoseOfThePointsWithoutThePadding) {
 
 constexpr double kEps = std::numeric_limits<double>::epsilon();
 
-// Returns a hole of random size; most sizes are no multiple of the spacing.
+// Returns a hole of random size. Most sizes are not a multiple of the spacing.
 Hole2d random_hole(Random& random) {
   return {random.uniform(1e-4, 2e-3), random.uniform(1e-4, 1e-2), random.uniform(2e-5, 5e-4),
           random.uniform(1e-4, 4e-3)};
@@ -115,7 +115,7 @@ TEST(Hole2dShell, FollowsTheProfileFromLeftToRightInStepsOfAtMostTheSpacing) {
       EXPECT_LE(step, longest(hole.spacing));
       length += step;
     }
-    // Intervals that never turn back add up to the length of the profile.
+    // Intervals add up to the length of the profile only if they never turn back.
     const double profile = 2 * hole.mouth + 2 * hole.depth + hole.width;
     EXPECT_NEAR(length, profile, 4 * kEps * static_cast<double>(points.size()) * profile);
     EXPECT_EQ(points.front().position, Vec3(-hole.width / 2 - hole.mouth, 0, 0));
@@ -174,7 +174,7 @@ TEST(ConicalHoleShell, LiesOnTheConeAndIsItsOwnQuarterTurn) {
     for (std::size_t k = 1; k < points.size(); ++k) {
       const Vec3& p = points[k].position;
       const double radius = std::hypot(p.x(), p.y());
-      // Distance from the wall; a few roundings of lengths up to the depth over the cosine.
+      // Check the distance from the wall, up to a few roundings of lengths up to the depth over the cosine.
       EXPECT_NEAR(radius * cosine - (p.z() + cone.depth) * sine, 0.0, 8 * kEps * cone.depth / cosine);
       const Vec3 normal(-cosine * p.x() / radius, -cosine * p.y() / radius, sine);
       EXPECT_LE((points[k].normal - normal).norm(), 4 * kEps);
@@ -197,7 +197,7 @@ TEST(BlockWithHole, DistanceChangesNoFasterThanThePointMoves) {
   Random random(11);
   for (std::size_t i = 0; i < cases(200'000); ++i) {
     const Vec3 a = random_point(random), b = a + random.uniform(0.0, 0.002) * random.direction();
-    // Rounding of coordinates near 0.01.
+    // 1e-16 is the rounding of coordinates near 0.01.
     ASSERT_LE(std::abs(signed_distance(block, a) - signed_distance(block, b)), (a - b).norm() + 1e-16);
   }
 }

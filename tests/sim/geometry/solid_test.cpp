@@ -30,8 +30,8 @@ TEST(Solid, BelowAPlaneIsTheDepthAtAnyDepth) {
   }
 }
 
-/// Returns the smallest distance to dense points on the surface, with the tolerance: this distance is at most half a
-/// diagonal of the squares between the points too large.
+/// Compares the distance of the solid with the smallest distance to dense points on its surface. The distance to the
+/// points is too large by at most half a diagonal of the squares between the points.
 template <class Shape>
 void expect_distances_to_points(Shape shape, double reach, bool planar) {
   const auto solid = make_solid(shape);
@@ -52,7 +52,7 @@ void expect_distances_to_points(Shape shape, double reach, bool planar) {
     }
     EXPECT_LE(std::abs(phi.value), nearest + 1e-12);
     EXPECT_GE(std::abs(phi.value), nearest - 0.75 * shape.spacing) << q.transpose();
-    // Beside an edge, the mean normal of the edge also gives the sign.
+    // Away from the surface, the normal of the nearest point gives the sign, also the mean normal of an edge.
     if (nearest > 2.0 * shape.spacing) {
       EXPECT_EQ(phi.value > 0.0, point->normal.dot(q - point->position) > 0.0) << q.transpose();
     }
@@ -202,9 +202,9 @@ struct TiltedSolid {
   double tilt;
 };
 
-/// Tools of every kind are pressed into every kind of solid and compared with a dense sample of the tool. The result is
-/// the depth of a point of the tool, so the deepest sample is deeper by at most the tolerance. The deepest point has a
-/// sample in or near the tool within half a diagonal of the grid.
+/// Checks tools of every kind that are pressed into every kind of solid, against a dense sample of the tool. The result
+/// is the depth of a point of the tool, so the deepest sample is deeper by at most the tolerance. The deepest point has
+/// a sample in or near the tool within half a diagonal of the grid.
 TEST(Inside, AgreesWithADenseSampleOfTheTool) {
   const TriangleSoup box = test::cube(0.001, {0.0, 0.0, -0.001});
   const TriangleSoup plate = test::cube(0.001, {0.0, 0.0, 0.0});
@@ -241,7 +241,7 @@ TEST(Inside, AgreesWithADenseSampleOfTheTool) {
       EXPECT_LE(*depth, sample + 2.0 * std::sqrt(3.0) * step) << kind.name << " in " << tilted.name;
       largest = std::max(largest, sample - *depth);
       deep += *depth > 0.0 ? 1 : 0;
-      // The bound must not be lower, neither at this pose nor at a nearby pose for which it must hold.
+      // The bound must not be lower than the depth, neither at this pose nor at a nearby pose for which it must hold.
       InsideBound bound(*tool.shape, *tilted.solid);
       EXPECT_GE(std::max(0.0, bound.at(pose, 0.0, 0.0, 0.0, true)), *depth - 1e-12)
           << kind.name << " in " << tilted.name;
@@ -263,9 +263,9 @@ TEST(Inside, AgreesWithADenseSampleOfTheTool) {
   RecordProperty("largest_shortfall_um", std::to_string(1e6 * largest));
 }
 
-/// A round tip lies in one ball, which is enlarged by a tenth of the tolerance for rounding. A leaning flat tip touches
-/// a ball whose centre is behind it along the normal; the radii of two neighbouring candidate balls may differ by a
-/// factor of two.
+/// Checks how much the bound exceeds the depth. A round tip lies in one ball, which is enlarged by a tenth of the
+/// tolerance for rounding. A leaning flat tip touches a ball whose centre is behind it along the normal; the radii of
+/// two neighbouring candidate balls may differ by a factor of two.
 TEST(Inside, HasATightBoundOverAMesh) {
   const TriangleSoup cube = test::cube(0.004, {0.0, 0.0, -0.004});
   const auto solid = make_solid(cube.vertices, cube.triangles);
@@ -288,12 +288,13 @@ TEST(Inside, OfAMeshToolIsThatOfItsMesh) {
   for (const double tilt : {0.0, 0.3}) {
     ToolPose pose = at({0.0, 0.0, -0.0001});
     pose.axis = {-std::sin(tilt), 0.0, -std::cos(tilt)};
-    // The lowest corner of the mesh; one of its 48 corners is at the front.
+    // The deepest point is the lowest corner of the mesh: one of its 48 corners is at the front.
     EXPECT_NEAR(search.depth(pose).value_or(0.0), 0.0001 + 0.0005 * std::sin(tilt), grid->error_bound()) << tilt;
   }
 }
 
-/// A known distance nearby bounds the search and changes no bit of the result, also at a point of the surface.
+/// Checks that a known distance nearby bounds the search and changes no bit of the result, also at a point of the
+/// surface.
 TEST(Solid, KnownDistanceNearbyChangesNothing) {
   const TriangleSoup sphere = test::sphere(0.004, 3);
   TriangleSoup open = sphere;

@@ -31,7 +31,7 @@ void for_random_systems(const IntegratorEntry* integrator, Check check) {
   }
 }
 
-/// Returns the matrix of (x, dt v) over a step of M x'' = -lambda (K x + B x'), as the headers of the integrators
+/// Returns the matrix of (x, dt v) for one step of M x'' = -lambda (K x + B x'), as the headers of the integrators
 /// define it.
 Eigen::Matrix2d step_of(const SpringDamper& s) {
   using Matrix = Eigen::Matrix2d;
@@ -56,7 +56,7 @@ TEST(IntegratorTable, AStepIsTheMatrixOfItsFormula) {
       const Eigen::Matrix2d expected = step_of(system), scale = Eigen::Vector2d(1.0, system.dt).asDiagonal();
       for (const IntegratorEntry* used : {entry, static_cast<const IntegratorEntry*>(&stepped)}) {
         system.integrator = used;
-        // A few roundings of terms up to the fourth power of 30.
+        // Allow a few roundings of terms up to the fourth power of 30.
         EXPECT_LE((scale * system.step_matrix() * scale.inverse() - expected).norm(), 1e-12 * expected.norm())
             << entry->info.name << ' ' << system.K << ' ' << system.B;
       }
@@ -75,7 +75,8 @@ TEST(IntegratorTable, MarginsArePositiveExactlyWhereAStepIsStable) {
   }
 }
 
-/// A step slightly below a limit is stable, a step slightly above it is not; without a limit every step is stable.
+/// Checks that a step slightly below a limit is stable and a step slightly above it is not. Without a limit every step
+/// is stable.
 TEST(IntegratorTable, DampersAloneAreStableUpToTheirLimits) {
   constexpr double kMargin = 1e-6;
   for (const IntegratorEntry* entry : kIntegrators) {
@@ -89,7 +90,7 @@ TEST(IntegratorTable, DampersAloneAreStableUpToTheirLimits) {
   }
 }
 
-/// A mass on a linear spring-damper that is equal in all directions.
+/// Force of a linear spring-damper that is equal in all directions. Counts its evaluations.
 class SpringField final : public ForceField {
  public:
   SpringField(double stiffness, double damping) : K(stiffness), B(damping) {}
@@ -117,7 +118,7 @@ TEST(Integrators, AskForTheForceAsOftenAsTheySay) {
   }
 }
 
-/// A spring along x that only pushes, from x = 0 on.
+/// Force of a spring along x that only pushes, from x = 0 on.
 class OneSidedSpring final : public ForceField {
  public:
   Vec3 force_at(double, const Vec3& position, const Vec3&) noexcept override {
@@ -134,7 +135,7 @@ class OneSidedSpring final : public ForceField {
 };
 
 /// Returns the relative change of the speed of a mass that bounces on the spring, and the duration of the contact in
-/// half periods.
+/// units of half a period.
 std::pair<double, double> bounce(const IntegratorEntry& integrator, double dt, double tolerance) {
   constexpr double kSpeed = 0.2, kGap = 4.13e-4;
   OneSidedSpring field;
@@ -144,15 +145,16 @@ std::pair<double, double> bounce(const IntegratorEntry& integrator, double dt, d
   double time = 0.0;
   for (; tool.velocity.x() > 0.0 || tool.pose.position.x() > -kGap; time += dt)
     integrator.step(tool, field.force_at(0.0, tool.pose.position, tool.velocity), kMass, dt, field, tolerance);
-  // Time since the mass passed the start position.
+  // Time [s] since the mass passed the start position on its way back.
   const double late = (-kGap - tool.pose.position.x()) / -tool.velocity.x();
   const double contact = time - late - kGap / kSpeed - kGap / -tool.velocity.x();
   return {-tool.velocity.x() / kSpeed - 1.0,
           contact / (std::numbers::pi * std::sqrt(kMass / OneSidedSpring::kStiffness))};
 }
 
-/// Contact lasts half a period, and the tool leaves with the speed of its arrival. With steps of 0.1 ms, w h is 0.045:
-/// Runge-Kutta loses (w h)^6 / 144 of the energy in each of 70 steps, 4e-9, and is late by (w h)^4 / 120 = 3e-8.
+/// Checks a bounce: contact lasts half a period, and the tool leaves with the speed of its arrival. With steps of 0.1
+/// ms, w h is 0.045: Runge-Kutta loses (w h)^6 / 144 of the energy in each of 70 steps, 4e-9, and is late by (w h)^4 /
+/// 120 = 3e-8.
 TEST(Event, FindsContactOnAndOffWithinAStep) {
   const auto [gain, duration] = bounce(kEvent, 1e-4, 1e-12);
   EXPECT_NEAR(gain, 0.0, 1e-8);
@@ -162,7 +164,7 @@ TEST(Event, FindsContactOnAndOffWithinAStep) {
   EXPECT_EQ(bounce(kEvent, 1e-4, 1e-4), bounce(kRk4, 1e-4, 1e-4));
 }
 
-/// Holds a constant Jacobian; the implicit integrators evaluate no force within the step.
+/// Force field with a constant Jacobian. The implicit integrators evaluate no force within the step.
 class HeldJacobian final : public ForceField {
  public:
   explicit HeldJacobian(ForceJacobian jacobian) : jacobian_(std::move(jacobian)) {}
@@ -176,7 +178,7 @@ class HeldJacobian final : public ForceField {
 TEST(LinearlyImplicit, CopesWithDampingThatDrives) {
   Random random(1);
   for (int i = 0; i < 1000; ++i) {
-    // Friction on a law whose S exceeds 1: D = B S + f (I - S) with both signs and arbitrary size.
+    // Use friction on a law whose S exceeds 1: D = B S + f (I - S) with both signs and arbitrary size.
     Mat3 S = Mat3::Zero();
     for (int j = 0; j < 3; ++j) {
       const Vec3 u = random.direction();
@@ -205,7 +207,7 @@ TEST(LinearlyImplicit, AnswersAnInfiniteJacobianWithTheExplicitStep) {
   }
 }
 
-// ---- Integrators in the step loop.
+// ---- Integrators in the step loop
 
 SimulationConfig config_of(const IntegratorEntry* integrator, std::uint64_t steps) {
   SimulationConfig config;
@@ -233,7 +235,7 @@ TEST(IntegratorInTheLoop, MovesTheToolAsItDoesAlone) {
   }
 }
 
-/// Records the states at which it is evaluated.
+/// Algorithm that records the states at which it is evaluated and renders no force.
 class Witness final : public ForceAlgorithm {
  public:
   Witness(std::vector<ToolState>& seen, double cutoff) : seen_(&seen), cutoff_(cutoff) {}
@@ -283,7 +285,7 @@ TEST(IntegratorInTheLoop, SeesTheAxisAndTheTurnOfItsTime) {
   }
 }
 
-/// Step response of a first-order low-pass, at every time at which an integrator evaluates the force.
+/// Checks the step response of a first-order low-pass, at every time at which an integrator evaluates the force.
 TEST(IntegratorInTheLoop, SeesTheTurnThroughTheLowPassOfTheAlgorithm) {
   constexpr double kCutoff = 40.0;
   const double dt = SimulationConfig{}.dt;

@@ -119,7 +119,8 @@ TEST(Simulation, EndsWithTheRowInWhichTheHandHasFinishedItsTask) {
   SimulationParts parts = fake_parts(test::weightless);
   parts.hand = std::make_unique<Worker>();
   Recorder recorder;
-  Simulation simulation(config_of(10), std::move(parts), {&recorder});  // owns the task to which the records point
+  Simulation simulation(config_of(10), std::move(parts),
+                        {&recorder});  // the simulation owns the task to which the records point
   const SimulationResult result = simulation.run();
   EXPECT_EQ(result.ending, Ending::completed);
   EXPECT_EQ(result.rows, 4u) << "two targets, two samples each";
@@ -153,7 +154,7 @@ TEST(Simulation, PreparesItsAlgorithmOnceAndComputesOncePerRow) {
   EXPECT_EQ(calls.reset, resets + 1);
 }
 
-/// Returns the thesis's 2-D peg, which uses all parts of a run.
+/// Returns the parts of a run of the thesis's 2-D peg, in which all kinds of parts occur.
 SimulationParts peg(const RenderingConfig& rendering) {
   test::Setting setting;
   setting.tool = {0.0005, 0.005, Tip::round};
@@ -219,7 +220,8 @@ TEST(PrescribedMotion, PutsToolAndHandleWhereTheScriptSaysWithTheBackwardDiffere
   for (std::size_t k = 0; k < rows.size(); ++k) {
     const auto& [position, axis, roll] = rows[k].tool.pose;
     EXPECT_EQ(position, Vec3(path[0](rows[k].time), path[1](rows[k].time), path[2](rows[k].time)));
-    const std::size_t to = std::max<std::size_t>(k, 1);  // step 0 has the velocity of step 1
+    const std::size_t to =
+        std::max<std::size_t>(k, 1);  // step 0 has the velocity of step 1, because it has no previous step
     const Vec3 moved = rows[to].tool.pose.position - rows[to - 1].tool.pose.position;
     EXPECT_EQ(rows[k].tool.velocity, Vec3(moved / SimulationConfig{}.dt));
     EXPECT_EQ(rows[k].handle.position, position);
@@ -238,7 +240,7 @@ Profile ramp(double start, double rate) {
 const Orientation kSpun{{0, 0, 1}, {1, 0, 0}, ramp(0.3, 2.0), ramp(-1.0, 5.0), ramp(0.5, 30.0)};
 const Orientation kLed{{0, 0, 1}, {1, 0, 0}, ramp(0.3, 2.0), ramp(-1.0, 5.0), 0.5};
 
-/// Returns the rotation, computed independently of axis and roll.
+/// Returns the rotation of the tool at the time t, computed independently of axis and roll.
 Mat3 rotation(const Orientation& o, double t) {
   return (Eigen::AngleAxisd(o.azimuth(t), Vec3::UnitZ()) * Eigen::AngleAxisd(o.tilt(t), Vec3::UnitY()) *
           Eigen::AngleAxisd(o.roll(t), -Vec3::UnitZ()))
@@ -252,7 +254,7 @@ class WantsRoll final : public Observer {
   std::vector<StepRecord> rows;
 };
 
-/// Reads the angular velocity without a filter, and renders no force.
+/// Algorithm that requests the angular velocity without a filter, and renders no force.
 class ReadsTurn final : public ForceAlgorithm {
  public:
   void prepare(const Scene&) override {}
@@ -295,7 +297,7 @@ TEST(Roll, IsRecordedOfEveryToolAndInThePoseOfThoseThatAreNotRound) {
   }
 }
 
-/// The angular velocity of a rotation by 1e-3 rad has a relative error of 1e-16 / 1e-3.
+/// Checks the angular velocity. For a rotation by 1e-3 rad, it has a relative error of 1e-16 / 1e-3.
 TEST(Roll, IsInTheAngularVelocityWhereItIsScriptedOrTheToolIsNotRound) {
   const auto expect_whole = [](const std::vector<StepRecord>& rows, const Orientation& script) {
     for (std::size_t k = 1; k < rows.size(); ++k) {
@@ -313,7 +315,7 @@ TEST(Roll, IsInTheAngularVelocityWhereItIsScriptedOrTheToolIsNotRound) {
   }
 }
 
-/// Returns a weightless tool that rises at 1 m/s along `up` from 10.5 steps below height 0.
+/// Returns the configuration of a run in which the tool rises at 1 m/s along `up`, from 10.5 steps below height 0.
 SimulationConfig rising(const Vec3& up) {
   SimulationConfig config;
   config.steps = 100;
@@ -330,7 +332,8 @@ TEST(StopConditions, LeavesTheHoleAtTheFirstRowAboveHeightZeroWhichIsRecorded) {
   for (const Vec3& up : {Vec3(0, 0, 1), Vec3(0, 1, 0)}) {
     SimulationConfig config = rising(up);
     config.stop_when = {{Ending::left_hole, up}};
-    // At step 11 the tool is half a step above; a stop in the last step is still a stop.
+    // At step 11 the tool is half a step above height 0. If step 11 is the last step, the run still ends by the stop
+    // condition.
     for (const std::uint64_t steps : {100u, 12u}) {
       config.steps = steps;
       Recorder recorder;
@@ -359,7 +362,7 @@ TEST(StopConditions, ToolIsHorizontalAtTheFirstRowWhereItsAxisReachesThePlaneWhi
     Recorder recorder;
     const SimulationResult result = Simulation(config, tilting(up, 0.1, 1.2), {&recorder}).run();
     EXPECT_EQ(result.ending, Ending::tool_horizontal);
-    // 0.1 + 1.2 k dt = pi / 2.
+    // The tool is horizontal when 0.1 + 1.2 k dt = pi / 2.
     const double k = std::ceil((std::numbers::pi / 2 - 0.1) / 1.2 / config.dt);
     EXPECT_EQ(static_cast<double>(result.rows), k + 1);
     ASSERT_EQ(recorder.rows.size(), result.rows);
@@ -442,7 +445,8 @@ ToolState run_spring(ObservedEnergy& observed, double damping, double position, 
   return tool;
 }
 
-/// Work is the kinetic energy that the force adds, so E_n - E_0 is the energy that the tool has lost.
+/// Checks the definition of the energy: work is the kinetic energy that the force adds, so E_n - E_0 is the energy that
+/// the tool has lost.
 TEST(ObservedEnergy, IsWhatALoneToolHasLost) {
   ObservedEnergy observed(kStep);
   const ToolState end = run_spring(observed, 20.0, 0.003, 0.4, 300);
@@ -450,8 +454,8 @@ TEST(ObservedEnergy, IsWhatALoneToolHasLost) {
   EXPECT_NEAR(observed.energy(), given - 0.5 * kMass * end.velocity.squaredNorm(), 300 * 10 * kEpsilon * given);
 }
 
-/// Trapezoidal rule: half of a rotation is assigned to the moment of the previous step, half to the moment of the next
-/// step.
+/// Checks the trapezoidal rule: half of a rotation is assigned to the moment of the previous step, half to the moment
+/// of the next step.
 TEST(ObservedEnergy, AMomentThatAppearsOrGoesCountsForHalfATurn) {
   ObservedEnergy observed(kStep);
   double angle = 0.0;
@@ -473,7 +477,8 @@ TEST(ObservedEnergy, AMomentThatAppearsOrGoesCountsForHalfATurn) {
   EXPECT_NEAR(observed.energy(), 0.4, 1e-15);
 }
 
-/// After steps of rest, the work of a moment uses the rotation since the previous step, as without the short cut.
+/// Checks that after steps of rest, the work of a moment uses the rotation since the previous step, as without the
+/// short cut.
 TEST(ObservedEnergy, ARowOfRestIsARowWithoutForceAndMoment) {
   ObservedEnergy resting(kStep), asked(kStep);
   for (int k = 0; k < 30; ++k) {

@@ -35,7 +35,7 @@ std::string refusal_of(const TriangleSoup& soup) {
   return "";
 }
 
-/// Returns the triangles with separate vertices for each triangle, as in STL.
+/// Returns the same triangles with separate vertices for each triangle, as in STL.
 TriangleSoup exploded(const TriangleSoup& soup) {
   TriangleSoup loose;
   for (const Triangle& t : soup.triangles) {
@@ -118,7 +118,7 @@ TEST(MeshFromTriangles, CutsTheSurfaceAlongEdgesWithMoreThanTwoFaces) {
     EXPECT_EQ(mesh.n_faces(), c.soup.triangles.size());
     EXPECT_EQ(mesh.n_vertices(), c.vertices);
   }
-  // Triangles that touch the cube do not change its normals.
+  // Triangles that touch the cube at an edge or a corner do not change the cube's normals.
   const auto expected = vertices_with_normals(mesh_from_triangles(cube()).mesh);
   const auto points = vertices_with_normals(mesh_from_triangles(winged).mesh);
   for (const SurfacePoint& e : expected) {
@@ -139,7 +139,7 @@ TEST(MeshFromTriangles, KeepsTheFirstOfTrianglesWithTheSameCorners) {
   EXPECT_EQ(found.opposite_triangles, 1u);
   EXPECT_FALSE(found.is_double_sided);
   expect_nothing_found(found);
-  // Both sides of every triangle: the normals are the normals of one side, whichever side comes first.
+  // The surface has both sides of every triangle. The normals are the normals of one side, whichever side comes first.
   const TriangleSoup both = together(cube(), reversed(cube()));
   const CheckedMesh double_sided = mesh_from_triangles(both);
   EXPECT_TRUE(double_sided.findings.is_double_sided);
@@ -201,7 +201,7 @@ TEST(MeshFromTriangles, RefusesSurfacesWithOneSide) {
 }
 
 TEST(MeshFromTriangles, GivesEachFanAtAPointItsOwnVertex) {
-  // Two cubes that touch at a corner.
+  // Check two cubes that touch at a corner.
   const auto [mesh, found] = mesh_from_triangles(together(cube(), cube(1.0, {2, 2, 2})));
   expect_nothing_found(found);
   EXPECT_EQ(mesh.n_vertices(), 16u);
@@ -235,7 +235,7 @@ TEST(MeshFromTriangles, TurnsClosedPartsOutwards) {
   EXPECT_EQ(enclosed_volume(one.mesh), 8.0);
   const CheckedMesh two = mesh_from_triangles(together(cube(), reversed(cube(1.0, {900, 0, 0}))));
   EXPECT_EQ(two.findings.inverted_parts, 1u);
-  EXPECT_NEAR(enclosed_volume(two.mesh), 16.0, 1e-9);  // terms up to 1e3^3 / 6 cancel up to rounding
+  EXPECT_NEAR(enclosed_volume(two.mesh), 16.0, 1e-9);  // terms up to 1e3^3 / 6 cancel, so rounding is 1e-9
 }
 
 TEST(MeshFromTriangles, KeepsCavitiesAndTurnsThemWithWhatIsAroundThem) {
@@ -284,7 +284,7 @@ TEST(MeshFromTriangles, RebuildsAnySurfaceFromItsTrianglesInAnyOrder) {
     EXPECT_EQ(mesh.n_vertices(), original.n_vertices());
     EXPECT_EQ(mesh.n_edges(), original.n_edges());
     EXPECT_EQ(mesh.n_faces(), original.n_faces());
-    // Sums of a thousand terms of a few units, in another order.
+    // Rounding of sums of a thousand terms of a few units, in another order.
     EXPECT_NEAR(enclosed_volume(mesh), enclosed_volume(original), 1e-11);
   }
 }
@@ -318,12 +318,12 @@ TEST(Refine, LeavesNoLongerEdgeAndTheSameSurface) {
   EXPECT_LE(longest_edge(mesh), 0.05);
   EXPECT_GT(longest_edge(mesh), 0.025) << "no finer than asked for";
   EXPECT_EQ(test::euler_characteristic(mesh), euler);
-  // Sums of some 1e5 terms, each rounded when it is added: relative 1e5 * 2^-53.
+  // Rounding of sums of some 1e5 terms, relative 1e5 * 2^-53.
   EXPECT_NEAR(surface_area(mesh) / area, 1.0, 3e-11);
   EXPECT_NEAR(enclosed_volume(mesh) / volume, 1.0, 3e-11);
 }
 
-/// Compares every handle, because the handles determine the order of points, and with it the last digits of a force.
+/// Checks every handle, because the handles determine the order of points, and with it the last digits of a force.
 TEST(Refine, SplitsAsOpenMeshDoes) {
   using Base = OpenMesh::TriMesh_ArrayKernelT<HalfEdgeMeshTraits>;
   Random random(7);

@@ -12,8 +12,8 @@ from skimage import measure
 
 
 def distance(block, p):
-    """Returns the signed distance to box minus cylinder: exact in the material, and outside at all nodes next to the
-    surface."""
+    """Returns the signed distance [m] of points to a box minus a cylinder. It is exact inside the material, and at all
+    outer nodes next to the surface."""
     sx, sy, sz, diameter, depth = block
     q = np.abs(p + [0, 0, sz / 2]) - np.array([sx, sy, sz]) / 2
     box = np.linalg.norm(np.maximum(q, 0), axis=-1) + np.minimum(q.max(axis=-1), 0)
@@ -34,8 +34,8 @@ def our_mesh(program, block, spacing, density):
 
 
 def their_mesh(block, spacing, density):
-    """Returns the mesh of scikit-image in units of the spacing, as hapbench prints its mesh. Grid nodes lie at
-    half-integer multiples of the spacing."""
+    """Returns the mesh of scikit-image in the form in which hapbench prints its mesh: coordinates in units of the
+    spacing. Grid nodes lie at half-integer multiples of the spacing."""
     low = np.floor(np.array([-block[0] / 2, -block[1] / 2, -block[2]]) / spacing) - 1.5
     high = np.ceil(np.array([block[0] / 2, block[1] / 2, 0]) / spacing) + 1.5
     axes = [np.arange(a, b + 1) for a, b in zip(low, high)]
@@ -51,8 +51,8 @@ def their_mesh(block, spacing, density):
 def compare(program, block, spacing, density):
     ours, our_faces = our_mesh(program, block, spacing, density)
     theirs, their_faces, nodes = their_mesh(block, spacing, density)
-    # The library scikit-image computes in single precision. Errors: half a unit in the last place of an index up to
-    # `nodes`, and a few units of the field, which is of the order of one next to the surface.
+    # scikit-image computes in single precision. Its errors are half a unit in the last place of an index up to `nodes`,
+    # and a few units of the distance, which is of the order of one next to the surface.
     tolerance = (nodes + 8) * 2.0**-24
     gap, partner = cKDTree(theirs).query(ours)
     print(

@@ -29,7 +29,7 @@ IsoSurface surface_of(const DensityField& field) {
 /// Checks that each edge of the surface is used once in each direction, so that the surface is closed and consistently
 /// wound. If the triangles around each vertex also form one fan, the surface is a manifold.
 void expect_closed_manifold(const IsoSurface& surface) {
-  std::map<Edge, std::uint32_t> opposite;  // for each directed edge, the corner opposite to it
+  std::map<Edge, std::uint32_t> opposite;  // for each directed edge, the corner opposite to the edge
   std::vector<std::size_t> triangles(surface.vertices.size());
   for (const auto& t : surface.triangles) {
     for (std::size_t i = 0; i < 3; ++i) {
@@ -56,7 +56,7 @@ long euler_characteristic_of(const IsoSurface& surface) {
   return static_cast<long>(surface.vertices.size()) - faces * 3 / 2 + faces;
 }
 
-/// Returns a small block, so that tests with sanitizers finish, with the spacing of the thesis's block.
+/// Returns a block that is small, so that tests with sanitizers finish in time.
 BlockWithHole small_block() {
   BlockWithHole block;
   block.size = {0.004, 0.005, 0.004};
@@ -102,7 +102,7 @@ bool same(const IsoSurface& a, const IsoSurface& b) {
 }
 
 TEST(MarchingCubes, NarrowBandFindsWhatAFullSweepFinds) {
-  // Compare the same field, once exact and once scaled down so that no node is skipped.
+  // Compare the surfaces of the same field, once exact and once scaled down so that no node is skipped.
   const BlockWithHole block = small_block();
   DensityField field = density_field(block, 0.0002, Density::signed_distance);
   const IsoSurface band = surface_of(field);
@@ -153,7 +153,7 @@ Coordinates coordinates(const Vec3& p) {
   return {p.x(), p.y(), p.z()};
 }
 
-/// A surface with its cells, and the results computed from it.
+/// A surface with its cells and its grid spacing [m].
 struct Surface : IsoSurface {
   explicit Surface(const DensityField& field)
       : IsoSurface(marching_cubes(field, {.cells = true})), spacing(field.spacing) {}
@@ -236,7 +236,7 @@ TEST(PointsByCell, AreTheMeshsVerticesCellAfterCell) {
   ASSERT_EQ(shell.points.size(), shell.cells.size());
   for (std::size_t i = 0; i < shell.points.size(); ++i) {
     ASSERT_EQ(shell.points[i].normal, normals.at(coordinates(shell.points[i].position)));
-    // The numbers are consecutive, without a gap, as the local average numbers cells.
+    // The numbers of the cells are consecutive, without a gap, as the local average requires.
     ASSERT_TRUE(shell.cells[i] == next || shell.cells[i] + 1 == next) << i;
     if (shell.cells[i] == next) ++next;
   }
@@ -244,14 +244,14 @@ TEST(PointsByCell, AreTheMeshsVerticesCellAfterCell) {
   EXPECT_EQ(PointShell(shell.points, 0.0002, shell.cells).cell_of_points(), shell.cells);
 }
 
-/// Returns the result of the definition of surface_shell.
+/// Returns the result of surface_shell as its documentation defines it: all vertices with a normal, in grid order.
 PointShell vertices_in_grid_order(const DensityField& field) {
   std::vector<SurfacePoint> vertices = marching_cubes(field).vertices;
   std::erase_if(vertices, [](const SurfacePoint& vertex) { return vertex.normal.isZero(0.0); });
   return {in_grid_order(vertices, field.spacing), field.spacing};
 }
 
-/// Compares every bit of every column, including the padding.
+/// Checks that every bit of every column is equal, including the padding.
 void expect_same(const PointShell& a, const PointShell& b) {
   ASSERT_EQ(a.size(), b.size());
   ASSERT_EQ(a.padded_size(), b.padded_size());
@@ -266,7 +266,7 @@ void expect_same(const PointShell& a, const PointShell& b) {
 
 TEST(SurfaceShell, IsTheVerticesInTheOrderOfTheirGridWhateverTheNumberOfThreads) {
   for (const Density density : {Density::signed_distance, Density::binary}) {
-    // 71 nodes along x, more than the nodes of one word.
+    // The block has 71 nodes along x, more than the bits of a 64-bit word.
     const DensityField field = density_field({{0.0067, 0.005, 0.004}, 0.002, 0.002}, 0.0001, density);
     const PointShell expected = vertices_in_grid_order(field);
     ASSERT_GT(expected.size(), 10'000u);

@@ -73,7 +73,7 @@ Polygon rotated(Polygon polygon, std::size_t by) {
   return polygon;
 }
 
-/// Checks also that each triangle is higher than the rounding of single precision.
+/// Calls expect_covered(), and checks that each triangle is higher than the rounding of single precision.
 void expect_covered_without_flat_triangles(const Polygon& polygon) {
   expect_covered(polygon);
   for (const auto& [i, j, k] : divided(polygon).triangles) {
@@ -83,7 +83,7 @@ void expect_covered_without_flat_triangles(const Polygon& polygon) {
   }
 }
 
-/// An L-shaped polygon: 24 mm^2 minus the notch of 6 mm^2.
+/// An L-shaped polygon with the area 24 - 6 = 18 mm^2.
 const Polygon kL = {{6, 2, 0}, {6, 4, 0}, {0, 4, 0}, {0, 0, 0}, {3, 0, 0}, {3, 2, 0}};
 
 TEST(Polygon, IsAFanIfItIsConvex) {
@@ -96,7 +96,7 @@ TEST(Polygon, IsAFanIfItIsConvex) {
       polygon.push_back(turn * Vec3(3.0 * std::cos(a), std::sin(a), 0.0) + Vec3(5, 6, 7));
     }
     EXPECT_TRUE(is_fan(divided(polygon))) << n;
-    // Corners on the sides, and single precision far from the origin.
+    // Add corners on the sides, and round to single precision far from the origin.
     Polygon with_middles;
     for (std::size_t i = 0; i < n; ++i) {
       with_middles.push_back(polygon[i]);
@@ -105,12 +105,13 @@ TEST(Polygon, IsAFanIfItIsConvex) {
     for (Vec3& p : with_middles) p = (p + Vec3(500, 0, 0)).cast<float>().cast<double>();
     for (std::size_t by : {0u, 1u}) expect_covered_without_flat_triangles(rotated(with_middles, by));
   }
-  // Polygons without area.
+  // Check polygons without area.
   EXPECT_TRUE(is_fan(divided({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}})));
   EXPECT_TRUE(is_fan(divided({{1, 1, 1}, {1, 1, 1}, {1, 1, 1}, {1, 1, 1}})));
 }
 
-/// A flat triangle on an edge would repeat the corners of the neighbour's triangle on the same edge.
+/// Checks corners on a line. A flat triangle on an edge would repeat the corners of the neighbour's triangle on the
+/// same edge.
 TEST(Polygon, HasNoFlatTrianglesIfItsCornersAreOnALine) {
   Random random(5);
   const Polygon square = {{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}};
@@ -176,7 +177,8 @@ TEST(Polygon, IsCoveredOnceIfItHasReflexCorners) {
 TEST(Polygon, IsCoveredOnceForRandomOutlines) {
   Random random(3);
   for (int round = 0; round < 500; ++round) {
-    // Star-shaped around the origin, not around the first corner; with repeated corners and corners on sides.
+    // The polygon is star-shaped around the origin, not around the first corner. It has repeated corners and corners on
+    // sides.
     Polygon polygon;
     const int n = 4 + static_cast<int>(random.below(30));
     for (int i = 0; i < n; ++i) {
@@ -206,7 +208,7 @@ TEST(Polygon, IsRefusedIfItCrossesItself) {
   for (int i = 0; i < 8; ++i)
     twice.push_back(std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}[static_cast<std::size_t>(i % 4)]);
   EXPECT_NE(refusal_of(twice).find("crosses itself"), std::string::npos);
-  // A figure of eight through one corner.
+  // Check a figure of eight through one corner.
   EXPECT_NE(refusal_of({{0, 0, 0}, {1, 1, 0}, {3, 3, 0}, {3, 1, 0}, {1, 1, 0}, {0, 2, 0}}).find("crosses itself"),
             std::string::npos);
 }
@@ -218,7 +220,7 @@ TEST(Polygon, IsRefusedIfItIsClearlyNotPlanar) {
   Polygon bent = kL;
   bent[4].z() = 3.0;
   EXPECT_NE(refusal_of(bent).find("is not planar"), std::string::npos);
-  // Quadrilaterals of a curved surface are still accepted.
+  // Quadrilaterals of a curved surface, which are nearly planar, are still accepted.
   const DividedPolygon curved = divided({{0, 0, 0}, {1, 0, 0}, {1, 1, 0.2}, {0, 1, 0}});
   EXPECT_TRUE(is_fan(curved));
   EXPECT_NEAR(curved.unevenness, 0.034, 0.002);

@@ -68,7 +68,7 @@ TEST(ForceGauge, ShowsAStepAsAFirstOrderLowPassDoes) {
   TargetTask task(with_gauge(cutoff, 0.1), 1);
   for (int i = 1; i <= kSecond; ++i) {
     task.advance(kOff, 2.0, 2.0, kStep);
-    // 1024 roundings of a number of at most 2; the low-pass reduces each of them with time.
+    // Rounding: 1024 roundings of a number of at most 2; the low-pass reduces each of them with time.
     ASSERT_NEAR(task.reading(), 2.0 * -std::expm1(-2.0 * pi * cutoff * i * kStep), 1e-13) << i;
   }
 }
@@ -116,7 +116,7 @@ TEST(Threshold, IsCheckedWhateverTheGaugeShows) {
   EXPECT_FALSE(task.active());
   for (int i = 0; i < kSecond - 1; ++i) task.advance(kOn, 0.0, 1.0, kStep);
   EXPECT_TRUE(task.active());
-  // A single sample interrupts the hold, whatever the grace time of the gauge is.
+  // A single sample below the threshold interrupts the hold, whatever the grace time of the gauge is.
   task.advance(kOn, 2.0, 0.999, kStep);
   for (int i = 0; i < kSecond - 1; ++i) task.advance(kOn, 0.0, 1.0, kStep);
   EXPECT_FALSE(task.finished());
@@ -128,8 +128,9 @@ TEST(Threshold, MayBeOnTheSpringForceThroughALowPassWithAGrace) {
   const int grace = 100;
   TargetRules rules = one_target();
   rules.threshold = Threshold{PressForce::spring, 30.0, grace * kStep};
-  // At 1.6 N the low-pass is below 1 N for ln(1.6 / 0.6) / (2 pi f) after a rise, 5 samples, and stays above 1 N for
-  // ln(1.6) / (2 pi f) after a fall, 2 samples: a dropout of n samples is below for n + 3.
+  // At 1.6 N the low-pass is below 1 N for ln(1.6 / 0.6) / (2 pi f) after a rise, 5 samples. It stays above 1 N for
+  // ln(1.6) / (2 pi f) after a fall, 2 samples. With a dropout of n samples the reading is therefore below 1 N for n +
+  // 3 samples.
   for (const int dropout : {grace - 3, grace - 2}) {
     TargetTask task(rules, 1);
     int samples = 0;
@@ -194,7 +195,7 @@ TEST(TargetTask, EveryPositionComesEquallyOftenInAnOrderOfTheSeed) {
     EXPECT_EQ(order_of(TargetTask(rules, seed)), order);
     orders.push_back(order);
   }
-  // There are 15! / 5!^3 = 756 756 orders, so twenty equal pairs are practically impossible.
+  // There are 15! / 5!^3 = 756 756 orders, so a pair of equal orders among twenty is practically impossible.
   std::sort(orders.begin(), orders.end());
   EXPECT_EQ(std::unique(orders.begin(), orders.end()), orders.end());
 }

@@ -27,14 +27,15 @@ class EveryTool : public testing::TestWithParam<test::ToolKind> {
 INSTANTIATE_TEST_SUITE_P(EveryKind, EveryTool, testing::ValuesIn(test::tool_kinds().begin(), test::tool_kinds().end()),
                          [](const auto& kind) { return kind.param.name; });
 
-/// Rounding error of coordinates up to 1 m: 1e-16 of their size, a few times.
+/// Rounding error of coordinates up to 1 m, in a few operations [m].
 constexpr double kRounding = 4e-15;
 
 double slack_at(const DefinedTool& tool, const ToolPose& pose, const Vec3& point) {
   return static_cast<double>(tool.slack(pose, point.cast<long double>()));
 }
 
-/// Returns contacts with random normals, half of them on the surface.
+/// Returns n contacts with random normals. Every second contact is on the tool's surface, the others are inside or near
+/// the tool.
 ContactBuffer contacts_around(const DefinedTool& tool, const ToolPose& pose, Random& random, std::size_t n) {
   ContactBuffer contacts(n);
   for (std::size_t i = 0; i < n; ++i) {
@@ -44,7 +45,7 @@ ContactBuffer contacts_around(const DefinedTool& tool, const ToolPose& pose, Ran
   return contacts;
 }
 
-/// Returns the marks of the contacts' points that a test of the tool sets.
+/// Calls `mark`, which sets one mark bit per point, and returns the marks of the contacts.
 template <class Mark>
 std::vector<bool> marked(const ContactBuffer& contacts, Mark mark) {
   const PackRange all{0, contacts.padded_size() / simd::lanes};
@@ -139,7 +140,7 @@ TEST_P(EveryTool, MarksAsNearWhateverLiesWithinTheMargin) {
     const std::vector<bool> near = marked(contacts, [&](auto points, auto ranges, auto marks) {
       tool.shape->mark_near(pose, margin + kRounding, points, ranges, marks);
     });
-    // A box around some of the points, as a search requests it for its grid.
+    // The box encloses the first two points, as a search requests it for its grid.
     const Box bounds{contacts.point(0).cwiseMin(contacts.point(1)), contacts.point(0).cwiseMax(contacts.point(1))};
     const Box box = tool.shape->box_near(pose, margin + kRounding, bounds);
     const ToolShape::Grown grown = tool.shape->grown(margin + kRounding);
@@ -222,8 +223,8 @@ TEST_P(EveryTool, KeepsPointsOutByConstraintsIfItIsConvex) {
     ++convex;
     ContactBuffer contacts(8);
     for (std::uint32_t i = 0; i < 8; ++i) {
-      // The face may be flush with the tip, the bottom or no surface. A move towards the surface makes faces replace
-      // edges.
+      // The normal may be parallel to the axis, so that the face is flush with the tip or the bottom, or it is random.
+      // A move towards the surface makes faces replace edges.
       const Vec3 normal =
           random.below(3) == 0 ? random.direction() : Vec3((random.below(2) == 0 ? 1.0 : -1.0) * pose.axis);
       contacts.push(i, tool.near_point(pose, random), normal);
@@ -239,7 +240,7 @@ TEST_P(EveryTool, KeepsPointsOutByConstraintsIfItIsConvex) {
   EXPECT_GE(moves, convex);
 }
 
-/// Returns all results of a tool about contacts: depths, gradients, exits, constraints and support points.
+/// Returns all results of a tool for these contacts: depths, gradients, exits, constraints and support points.
 std::vector<double> answers(const DefinedTool& tool, const ToolPose& pose, const ContactBuffer& contacts,
                             const Vec3& move, double slack) {
   ContactBuffer in = colliding(*tool.shape, pose, contacts);

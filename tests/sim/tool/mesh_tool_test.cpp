@@ -108,7 +108,7 @@ TEST_P(GridOfMesh, KnowsTheForemostPointInEveryDirection) {
 TEST(SignedDistanceGrid, FindsAPointOfAForemostEdgeOrFaceAcrossTheDirection) {
   const auto grid = grid_of(test::cube(1.0), 0.1);
   EXPECT_LT((grid->hull().foremost({0, 0, 1}, {0.3, -0.2, 4.0}) - Vec3(0.3, -0.2, 1.0)).norm(),
-            0.001);  // tolerance of two passes over the corners
+            0.001);  // tolerance [m]: the support point is found in two passes over the corners
   EXPECT_LT((grid->hull().foremost(Vec3(0, 1, 1).normalized(), {0.3, 3.0, 4.0}) - Vec3(0.3, 1, 1)).norm(), 1e-9);
 }
 
@@ -202,7 +202,7 @@ ContactBuffer contacts_at(const std::vector<Vec3>& points) {
   return contacts;
 }
 
-/// Returns phi_h at a point in the world frame.
+/// Returns phi_h, the signed distance field on the grid, at a point in the world frame [m].
 double field(const MeshTool& tool, const ToolPose& pose, const Vec3& point) {
   ContactBuffer contacts = contacts_at({point});
   tool.shortest_depths(pose, contacts);
@@ -241,7 +241,8 @@ TEST_P(MeshToolOf, IsWithinItsBoundOfTheExactDistance) {
     const double error = field(tool_, kHome, x) - exact;
     worst = std::max(worst, std::abs(error));
     ASSERT_LE(std::abs(error), grid_.error_bound()) << x.transpose();
-    // By Jensen's inequality, up to the rounding of distances that are computed by other operations.
+    // By Jensen's inequality, the error of a convex tool is not negative, up to the rounding of distances that are
+    // computed by other operations.
     ASSERT_TRUE(!tool_.convex() || error >= -1e-12) << error;
   }
   // The bound is not too large: at edges and in the middle of walls, the error is within a factor of three of the
@@ -270,7 +271,7 @@ TEST_P(MeshToolOf, FindsInEverySearchTheContactsOfBruteForceAndGivesThemDepths) 
       ASSERT_TRUE(test::same_contacts(all, of_list)) << "shell " << s << ", pose " << k;
       contacts += all.size();
       if (k % 50 != 0) continue;
-      // The sign of the field decides, to the last bit.
+      // The sign of the field decides whether a point is in contact, to the last bit.
       ContactBuffer points(shell.size());
       for (std::size_t i = 0; i < shell.size(); ++i) {
         points.push(static_cast<std::uint32_t>(i), shell.point(i).position, shell.point(i).normal);
@@ -379,7 +380,7 @@ TEST_P(MeshToolOf, LeavesItsBodyAtTheExitDistance) {
     for (double t = 0.0; t < exit - GetParam().spacing / 8.0; t += GetParam().spacing / 4.0) {
       ASSERT_LE(field(tool_, pose, x + t * u), 0.0) << t << " of " << exit;
     }
-    // At the exit, the surface is close.
+    // At the exit, the surface is close: the next exit distance is finite and at most twice the reach of the tool.
     ContactBuffer there = contacts_at({x + exit * u});
     there.set_gradient(0, gradient(tool_, pose, x + exit * u));
     tool_.exit_distances(pose, there, &exit);

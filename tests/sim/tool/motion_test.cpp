@@ -22,7 +22,7 @@ TEST(ToolPose, TurnsTheShortWayBeforeItRolls) {
     const Vec3 axis = random.direction();
     const double roll = random.uniform(-3.0, 3.0);
     const Mat3 shortest = Eigen::Quaterniond::FromTwoVectors(-Vec3::UnitZ(), axis).toRotationMatrix();
-    // Quaternions lose digits if the rotation is nearly half a turn.
+    // Quaternions lose digits if the rotation is nearly half a turn, that is if axis.z() is nearly 1.
     const double tolerance = 1e-14 / (1.0 - axis.z());
     EXPECT_LE((ToolPose{Vec3::Zero(), axis}.rotation() - shortest).norm(), tolerance);
     const Mat3 rolled = Eigen::AngleAxisd(roll, axis) * shortest;
@@ -70,7 +70,7 @@ TEST(ToolPose, WithoutRollTurnsAsItsAxisDoes) {
   }
 }
 
-// One rounding each in a sine, a cosine, two products and a sum of numbers of at most 1.
+// Tolerance: one rounding each in a sine, a cosine, two products and a sum of numbers of at most 1.
 constexpr double kScript = 4 * std::numeric_limits<double>::epsilon();
 
 ScriptedMotion motion(Orientation orientation) {
@@ -145,7 +145,7 @@ Quaterniond random_orientation(Random& random) {
   return Quaterniond(test::random_rotation(random));
 }
 
-/// A few roundings of unit quaternions and of the conversions between quaternions and rotations.
+/// Tolerance: a few roundings of unit quaternions and of the conversions between quaternions and rotations.
 constexpr double kQuaternion = 1e-14;
 
 TEST(RecordedMotion, TurnsFromSampleToSampleAtConstantRateTheShortWay) {
@@ -166,7 +166,8 @@ TEST(RecordedMotion, TurnsFromSampleToSampleAtConstantRateTheShortWay) {
 }
 
 TEST(RecordedMotion, SamplesOfAnOrientationHaveItsAxis) {
-  // Not as a list in braces, because g++ 14 then warns that the axis of its only element is uninitialised.
+  // The sample is not given as a list in braces, because g++ 14 then warns that the axis of its only element is
+  // uninitialised.
   const RecordedMotion motion(std::vector(1, oriented(0.0, Quaterniond(0.5, 0.5, 0.5, 0.5))));
   EXPECT_LE((motion.samples()[0].axis - Vec3(-1, 0, 0)).norm(), kQuaternion);
   EXPECT_TRUE(motion.scripts_roll());

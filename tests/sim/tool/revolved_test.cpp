@@ -17,7 +17,7 @@ namespace {
 
 using test::cases;
 
-// Tests properties of cylinders only; EveryTool tests the properties of all tools.
+// Tests properties that only cylinders and solids of revolution have; EveryTool tests the properties of all tools.
 
 TEST(LargestSquareWithin, IsTheLastSquareWhoseRootDoesNotExceedTheRadius) {
   Random random(3);
@@ -42,7 +42,7 @@ TEST(CylinderConstraints, OnTheAxisTakeSomeNearestPoint) {
   EXPECT_EQ(contacts.gradient(1), Vec3(-Vec3::UnitZ()));
 }
 
-/// Returns how many of the first sixteen points of the columns are inside.
+/// Returns the number of the first sixteen points that are inside the tool.
 std::size_t inside(const ToolShape& tool, const ToolPose& pose, const ContactBuffer& contacts) {
   ContactBuffer found(16);
   tool.push_inside(pose,
@@ -196,8 +196,8 @@ TEST(BurProfile, KeepsAThousandthOfTheDiameterToItsArcs) {
     EXPECT_NEAR(std::hypot(a.s, a.rho), 0.0005, 1e-18);
     EXPECT_GE(std::hypot(0.5 * (a.s + b.s), 0.5 * (a.rho + b.rho)), 0.0005 - 1e-6);
   }
-  // Smooth profile: after the shank, no corner of pear and flame turns by more than the angle of a chord, except the
-  // corners of the tip, of the shank and of the flame's largest diameter.
+  // Smooth profile: after the shank, no corner of pear and flame turns by more than the angle of a chord. The corners
+  // of the tip, of the shank and of the flame's largest diameter are exceptions.
   for (const BurFamily family : {BurFamily::pear, BurFamily::flame}) {
     const BurProfile bur = bur_profile(family, 0.001, 0.003, 0.0004);
     for (std::size_t i = 2; i + 1 < bur.profile.size(); ++i) {

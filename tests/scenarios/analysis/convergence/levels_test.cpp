@@ -37,7 +37,7 @@ Study convergence_study(const Json& json, std::size_t count = 5, const std::stri
 constexpr double kStep = 1e-3, kStiffness = 1000.0, kMass = 0.1, kStart = 1e-3;
 constexpr int kSteps = 40;
 
-/// Returns a mass on one bilateral spring.
+/// Returns the scenario of a mass on one bilateral spring.
 Json spring(double zeta, const char* integrator) {
   return {{"time", {{"step_s", kStep}, {"steps", kSteps}}},
           {"environment", {{"type", "springs"}, {"groups", {{{"direction", {1, 0, 0}}, {"count", 1}}}}}},
@@ -64,7 +64,7 @@ TEST(Converge, KnowsTheFormalOrderOfEveryIntegrator) {
   }
 }
 
-/// Amplitudes of leapfrog on an undamped spring are x0 / sqrt(1 - (w h / 2)^2): order 2.
+/// Checks the order of the amplitudes of leapfrog on an undamped spring, x0 / sqrt(1 - (w h / 2)^2): order 2.
 TEST(Converge, FindsSecondOrderInTheAmplitudeOfAnUndampedSpring) {
   Json scene = spring(0.0, "leapfrog");
   scene["time"]["steps"] = 4000;  // 64 periods, so that some steps are close to the peaks
@@ -76,9 +76,9 @@ TEST(Converge, FindsSecondOrderInTheAmplitudeOfAnUndampedSpring) {
   EXPECT_NEAR(*c.extrapolated, kStiffness * kStart, *c.errors.back());
 }
 
-/// The largest speed occurs in the last step before the landing. At some time step the landing moves to another counted
-/// step, and the largest speed changes by the speed gained in one step. The spread over the choices of counted steps
-/// shows this.
+/// Checks the spread of the largest speed over the choices of counted steps. The largest speed occurs in the last step
+/// before the landing. At some time step the landing moves to another counted step, and the largest speed changes by
+/// the speed gained in one step.
 TEST(Converge, EstimatesTheSpreadOfExtremesOverTheChoiceOfRows) {
   Json scene = {{"time", {{"step_s", 1e-3}, {"steps", 200}}},
                 {"environment", {{"type", "springs"}, {"bilateral", false}}},
@@ -94,7 +94,8 @@ TEST(Converge, EstimatesTheSpreadOfExtremesOverTheChoiceOfRows) {
   const Study study = convergence_study(scene, 4);
   const auto levels = study.levels_of("speed_max_m_per_s");
   EXPECT_EQ(levels.front().spread, 0.0) << "every row counts";
-  // 1 m/s^2 over a step of 1 ms; the last counted step before the landing is up to one step before it.
+  // Speed that is gained in a step of 1 ms at 1 m/s^2 [m/s]. The last counted step before the landing is up to one step
+  // before it.
   const double gain = 1e-3;
   for (std::size_t i = 1; i < levels.size(); ++i) {
     EXPECT_GT(levels[i].spread, 0.5 * gain) << i;
@@ -105,8 +106,8 @@ TEST(Converge, EstimatesTheSpreadOfExtremesOverTheChoiceOfRows) {
   EXPECT_NEAR(*levels.back().result, landing_speed, *c.errors.back());
 }
 
-/// All levels are measured at the same times. For a prescribed motion, the force steps therefore do not depend on the
-/// time step; a time step of a quarter would otherwise give a quarter of the force step.
+/// Checks that all levels are measured at the same times. For a prescribed motion, the force steps therefore do not
+/// depend on the time step; a time step of a quarter would otherwise give a quarter of the force step.
 TEST(Converge, MeasuresAtTheTimesOfTheCoarsestRows) {
   Json scene = spring(0.2, "leapfrog");
   scene["motion"] = {{"position",

@@ -18,7 +18,7 @@ Result run(const char* scene, std::vector<std::string> overrides) {
   return run_scenario(checked(load_scenario(find_scenario(scene), overrides)), std::nullopt, false);
 }
 
-/// A depth that is evaluated at every step changes the two depths and nothing else.
+/// Checks that evaluating the depth at every step changes only the two metrics that depend on the sampled depth.
 TEST(MetricErrors, TheDepthOfEveryStepChangesNoOtherMetric) {
   for (const char* scene : {"drag_molar", "tap_wall", "device_in_hole"}) {
     const Result sampled = run(scene, {"time.duration_s=0.3", "expect={}"}),

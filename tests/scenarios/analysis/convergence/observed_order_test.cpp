@@ -38,8 +38,8 @@ Convergence judged(const std::vector<LevelResult>& levels, double formal_order, 
   return convergence_of({{}, ratio, formal_order}, levels);
 }
 
-/// Checks that there is no order, with a reason that contains these words, and that numbers that require an order are
-/// empty.
+/// Checks that there is no order, that the reason contains the text `expected`, and that numbers that require an order
+/// are empty.
 void expect_no_order(const Convergence& c, const std::string& expected) {
   EXPECT_NE(c.reason.find(expected), std::string::npos) << c.reason;
   EXPECT_FALSE(c.order || c.extrapolated || c.gci || c.asymptotic) << c.reason;
@@ -120,7 +120,8 @@ TEST(ObservedOrder, CountsLevelsThatEndAsTheFinest) {
 
 constexpr MetricTraits kExtreme{.smooth = false, .either_sign = false};
 
-/// The speed before a landing. For some levels its error looks of first order, until the landing moves to another step.
+/// Checks the speed before a landing. For some levels its error looks of first order, until the landing moves to
+/// another step.
 TEST(ObservedOrder, OfExtremesNeedsFiveLevelsAndCountsTheirScatter) {
   const std::vector<double> halving = {1.0 + 1.0 / 4, 1.0 + 1.0 / 8, 1.0 + 1.0 / 16, 1.0 + 1.0 / 32, 1.0 + 1.0 / 64};
   for (const std::size_t count : {std::size_t{3}, std::size_t{4}}) {
@@ -155,7 +156,7 @@ TEST(ObservedOrder, OfAMetricThatCannotBeNegativeLeadsToNoNegativeValue) {
 }
 
 TEST(ObservedOrder, MayExceedTwiceTheFormalOrderByWhatAsymptoticLevelsMay) {
-  // d_1 / d_2 = 2^2 * 1.05 and 2^2 * 1.15; the asymptotic range allows a factor of 1.1.
+  // The ratios d_1 / d_2 of the differences are 2^2 * 1.05 and 2^2 * 1.15. The asymptotic range allows a factor of 1.1.
   EXPECT_TRUE(judged(levels_with({1.0 + 0.42 + 0.1, 1.0 + 0.1, 1.0}), 1.0).order);
   expect_no_order(judged(levels_with({1.0 + 0.46 + 0.1, 1.0 + 0.1, 1.0}), 1.0), "more than twice the formal order 1");
 }

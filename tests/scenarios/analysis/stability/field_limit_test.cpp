@@ -13,8 +13,8 @@
 namespace hapbench::field_limit_test {
 namespace {
 
-// tests/known_answers tests limits of springs by theory and by runs, limits of fields other than K, and bounds on
-// metrics.
+// Tests limits of fields in further cases. tests/known_answers tests limits of springs by theory and by runs, limits of
+// fields other than K, and bounds on metrics.
 
 using Words = std::vector<std::string>;
 
@@ -37,8 +37,8 @@ FieldLimit ask(const Asked& asked, const char* algorithm = "summation") {
   return field_limit(question);
 }
 
-/// A flat tip without damping and friction bounces forever under 1 N. If a single run is classified as decaying, this
-/// is by chance.
+/// Checks a flat tip without damping and friction, which bounces forever under 1 N. If a single run is classified as
+/// decaying, this is by chance.
 TEST(FieldLimit, OfWhatNeverRestsIsNone) {
   const FieldLimit limit = ask({"poke_plane",
                                 "rendering.stiffness_N_per_m",
@@ -48,11 +48,12 @@ TEST(FieldLimit, OfWhatNeverRestsIsNone) {
   EXPECT_FALSE(limit.end.value) << *limit.end.value;
 }
 
-/// 2000 steps: a decay by a tenth in a quarter of the run separates stable from vibrating runs 0.1 % below the limit.
+/// Number of steps with which runs 0.1 % below the limit are stable: the rule requires a decay by a tenth in a quarter
+/// of the run.
 const Words kLong = {"time.steps=2000"};
 
-/// A handle of 0.1 kg without friction, on an undamped spring with a delay, is unstable at every K, but slowly at small
-/// K: at K = 1 N/m the amplitude grows by 0.1 % per second.
+/// Scene that is unstable at every K: a handle of 0.1 kg without friction, on an undamped spring with a delay. At small
+/// K the amplitude grows slowly, at K = 1 N/m by 0.1 % per second.
 const Words kSlow = {"time={\"step_s\":0.001,\"steps\":1000}",
                      R"(device={"type":"impedance","handle_mass_kg":0.1,"viscous_N_s_per_m":0,"delay_samples":1})",
                      "rendering.damping_N_s_per_m=0"};
@@ -64,7 +65,7 @@ TEST(FieldLimit, IsNoneWhereGrowthIsSlow) {
   EXPECT_FALSE(limit.theory);
 }
 
-/// A heavy handle that taps a wall bounces below 30 Hz in every stable run, so no contact lasts.
+/// Checks a heavy handle that taps a wall. It bounces below 30 Hz in every stable run, so no contact lasts.
 TEST(FieldLimit, HasNoLinearLimitIfContactsComeAndGo) {
   const Words device = {R"(device={"type":"impedance","handle_mass_kg":3,"viscous_N_s_per_m":0.2,"delay_samples":3})"};
   const FieldLimit limit = ask({.scenario = "tap_wall",
@@ -78,14 +79,14 @@ TEST(FieldLimit, HasNoLinearLimitIfContactsComeAndGo) {
 }
 
 TEST(FieldLimit, OfAFieldOfIntegersIsOne) {
-  // n (2 B dt / M + K dt^2 / M) = 4 with B = 62.6 N s/m, K = 20 000 N/m: n = 5.9.
+  // The limit is n (2 B dt / M + K dt^2 / M) = 4 for n springs with B = 62.6 N s/m, K = 20 000 N/m: n = 5.9.
   const FieldLimit limit = ask({"single_spring", "environment.groups.0.count", kLong, Range{1.0, 100.0, false}});
   EXPECT_EQ(*limit.end.value, 5.0);
   EXPECT_EQ(limit.end.beyond->value, 6.0);
   EXPECT_EQ(*limit.theory, 5.0);
 }
 
-/// A passive hand on a handle with dry friction is stable, although the handle sticks and slips.
+/// Checks that a passive hand on a handle with dry friction is stable, although the handle sticks and slips.
 TEST(FieldLimit, DoesNotBlameDryFrictionForVibration) {
   const Words rubbing = {R"(device={"type":"impedance","handle_mass_kg":0.136,"coulomb_N":0.25,"delay_samples":1})",
                          "time.step_s=0.00035"};
@@ -95,8 +96,8 @@ TEST(FieldLimit, DoesNotBlameDryFrictionForVibration) {
   EXPECT_FALSE(limit.unstable_alone);
 }
 
-/// A wall that holds the handle from both sides has the same linear loop with dry friction and an encoder: both are not
-/// part of it. The handle may rest where no spring is deflected.
+/// Checks a wall that holds the handle from both sides. Dry friction and an encoder are not part of its linear loop, so
+/// they do not change the linear limit. The handle may rest where no spring is deflected.
 TEST(FieldLimit, OfAHandleWithFrictionHasTheLinearLimitWithoutFriction) {
   const std::string smooth = R"("type":"impedance","handle_mass_kg":0.35,"viscous_N_s_per_m":0.5,"delay_samples":1)";
   const auto limit_of = [](const std::string& device) {
@@ -117,8 +118,8 @@ TEST(FieldLimit, OfAHandleWithFrictionHasTheLinearLimitWithoutFriction) {
   }
 }
 
-/// The scene with hand and device but without contact has no points, but still has a stage that merges the points of a
-/// cell.
+/// Checks a scene with local average. The same scene without contact has no points, but still has the stage that merges
+/// the points of a cell.
 TEST(FieldLimit, OfASceneWithLocalAverageIsOne) {
   const Asked asked{"tap_corner", "rendering.stiffness_N_per_m", {"time.steps=200"}, Range{1e6, 1e8, true}};
   Asked averaged = asked;

@@ -12,8 +12,8 @@ namespace {
 
 using Stable = std::function<bool(double value)>;
 
-/// Returns the last stable value between 1e4 and 1e6 according to find_verified_interval. Returns 0 without a stability
-/// limit, and -1 if stable and unstable values alternate.
+/// Returns the last stable value in 1e4 … 1e6 that find_verified_interval finds. Returns 0 if no value is stable, and
+/// -1 if stable and unstable values alternate.
 double tried_limit(const Stable& stable) {
   const IntervalSearchOptions options{.range = {1e4, 1e6, true}};
   const auto holds = [&](double part) { return stable(options.value_at(part)); };
@@ -32,7 +32,7 @@ TEST(TriedLimit, IsBelowAnIslandThatBisectionDoesNotMeet) {
 }
 
 TEST(TriedLimit, IsOfAStretchOfTwoPercent) {
-  // 56 234 and 237 137 are values of the scan.
+  // 56 234 and 237 137 are values that the scan tests.
   EXPECT_EQ(tried_limit([](double K) { return K > 56000.0 && K < 56500.0; }), -1.0);
   EXPECT_NEAR(tried_limit([](double K) { return (K > 56000.0 && K < 56500.0) || (K > 2e5 && K < 3e5); }), 3e5, 300.0);
   EXPECT_EQ(tried_limit([](double K) { return std::fmod(std::sqrt(K) + 0.5, 1.0) < 0.5; }), -1.0) << "by chance";

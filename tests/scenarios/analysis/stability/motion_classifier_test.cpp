@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::uint64_t kSteps = 4000;
 
-/// Returns the class that a classifier gives to a tool with this velocity at step k.
+/// Returns the class of a tool whose velocity at step k is velocity(k) [m/s].
 MotionClass class_by(MotionClassifier classifier, const std::function<Vec3(double k)>& velocity) {
   StepRecord record;
   for (record.step = 0; record.step < kSteps; ++record.step) {
@@ -22,7 +22,7 @@ MotionClass class_by(MotionClassifier classifier, const std::function<Vec3(doubl
   return classifier.motion_class(Ending::completed);
 }
 
-/// Returns the class of a motion along x.
+/// Returns the class of a tool that moves along x with velocity(k) [m/s].
 MotionClass class_of(const std::function<double(double k)>& velocity) {
   return class_by(MotionClassifier(kSteps), [&](double k) { return Vec3(velocity(k), 0.0, 0.0); });
 }
@@ -35,7 +35,7 @@ TEST(MotionClassifier, OfNoMotionAndOfCreepingIsStable) {
   EXPECT_EQ(class_of([](double k) { return 1.0 + 0.001 * k; }), MotionClass::stable) << "falls, but does not oscillate";
 }
 
-// An encoder makes the measured velocity of a slowly moving handle jump.
+// Checks a handle that moves slowly and whose encoder makes the measured velocity jump.
 TEST(MotionClassifier, OfAHandleThatMovesTheToolTakesItsOwnVelocity) {
   MotionClassifier classifier(kSteps);
   StepRecord record;
@@ -66,7 +66,8 @@ TEST(MotionClassifier, SeparatesClassesByWhatIsLostInAQuarter) {
   EXPECT_EQ(class_of_oscillation(1.0 + 1.2 * (growth - 1.0)), MotionClass::diverged);
 }
 
-/// Returns the class of a tool that a hand moves back and forth, 20 mm/s at 1 Hz, and that also vibrates.
+/// Returns the class of a tool that a hand moves back and forth along x, at 1 Hz and up to 20 mm/s. The tool also
+/// vibrates along y with the velocity `amplitude` [m/s] and the frequency [Hz].
 MotionClass class_of_moved_tool(double amplitude, double frequency) {
   constexpr double kStep = 0.0005, kTurn = 2.0 * std::numbers::pi * kStep;
   return class_by(MotionClassifier::of_moved_tool(kSteps, kStep, kSteps), [&](double k) {
@@ -81,8 +82,8 @@ TEST(MotionClassifier, OfAMovedToolSeesWhatNoHandDoesAndWhatOneFeels) {
   EXPECT_EQ(class_of_moved_tool(0.01, 3.0), MotionClass::stable) << "a hand does that, too";
 }
 
-/// Returns the class of a tool that a hand moves to a position in a quarter of the run, where the tool oscillates at 12
-/// Hz.
+/// Returns the class of a tool that a hand moves to a position during the first quarter of the run. The tool oscillates
+/// at 12 Hz.
 MotionClass class_of_swinging_tool(double amplitude, double decay, double still) {
   constexpr double kStep = 0.0005, kTurn = 2.0 * std::numbers::pi * kStep;
   return class_by(MotionClassifier::of_moved_tool(kSteps, kStep, still), [&](double k) {

@@ -14,7 +14,8 @@
 namespace hapbench::run_stability_test {
 namespace {
 
-/// A tool that keeps bouncing below 30 Hz is not at rest, even if its vibration above 30 Hz is allowed by the rule.
+/// Checks that a tool that keeps bouncing below 30 Hz is not at rest, even if the rule allows its vibration above 30
+/// Hz.
 TEST(StabilityOf, OfSlowBouncesThatGoOnIsVibrating) {
   const ScenarioText plane = read_scenario_text(find_scenario("poke_plane"));
   const StabilityRule any_vibration{.max_vibration = 1.0};
@@ -31,7 +32,8 @@ TEST(StabilityOf, OfSlowBouncesThatGoOnIsVibrating) {
   }
 }
 
-/// A soft hand cannot pull the tool over a bump of the molar. The tool is at rest, so the loop is stable.
+/// Checks a soft hand that cannot pull the tool over a bump of the molar. The tool is at rest, so the loop is stable if
+/// progress is not judged.
 TEST(StabilityOf, OfAToolThatItsHandDoesNotMoveOnIsStableUnlessProgressIsJudged) {
   const std::vector<std::string> fields = {"hand.stiffness_N_per_m=100", "rendering.stiffness_N_per_m=66000"};
   const LoadedScenario loaded = load_scenario(read_scenario_text(find_scenario("drag_molar")), fields);

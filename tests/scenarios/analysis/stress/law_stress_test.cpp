@@ -30,11 +30,11 @@ TEST(LawStress, NoForceIsInfiniteOrOutOfBound) {
 }
 
 TEST(LawStress, ReachesTheBoundsThatCanBeReached) {
-  // Parallel springs of equal depth reach the bound of the sum, of the mean and of a shaped direction. Coupled laws
-  // reach s / (1 + s^2) at s = 1.
+  // Parallel springs of equal depth reach the bound of the sum, of the mean and of a shaped direction. Laws with a
+  // coupling reach s / (1 + s^2) at s = 1.
   for (const StressCounts& c : stress_laws(20'000, 2, {2, ""})) {
     if (!c.largest_share) continue;
-    // The bounds of these laws are worst cases of rounding.
+    // The bounds of these laws are worst cases of rounding, which no set reaches.
     if (c.algorithm == "tandpasta" || c.algorithm == "original_averaging") continue;
     // The bound of the proxy is its largest motion in a step, which no set reaches.
     if (c.algorithm == "proxy") continue;

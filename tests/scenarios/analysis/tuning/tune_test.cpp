@@ -29,14 +29,14 @@ TuneQuestion question(const char* scene, const Words& overrides) {
   return question;
 }
 
-/// Three per cent: the search ends at half a per cent of K. Near the limit, the runs need a range of less than 1 %
-/// below it to separate decay from vibration in 4000 steps (run_stability.hpp).
+/// Relative tolerance of a tuned K. The search ends at half a per cent of K. Within about 1 % of the limit, runs of
+/// 4000 steps do not separate decay from vibration (run_stability.hpp).
 constexpr double kWithin = 0.03;
 
-/// A hand holds a handle whose loop is stable up to twice K with the worst of the typical hands. A known answer for a
-/// handle without a hand tests that tune finds the largest K over damping ratios.
+/// Checks a handle that a hand holds: with the worst of the typical hands, its loop is stable up to twice the tuned K.
+/// A known answer for a handle without a hand tests that tune finds the largest K over damping ratios.
 TEST(Tune, OfAHeldHandleIsTheLimitOfTheWorstHand) {
-  constexpr double kMass = 0.1;  // mass of the scene, by which zeta is defined
+  constexpr double kMass = 0.1;  // mass of the scene, which defines zeta [kg]
   const Words device = {
       R"(device={"type":"impedance","handle_mass_kg":0.3,"viscous_N_s_per_m":0.5,"delay_samples":1.5})",
       "time.steps=4000",
@@ -55,8 +55,7 @@ TEST(Tune, OfAHeldHandleIsTheLimitOfTheWorstHand) {
   EXPECT_NEAR(K / worst_hand_stability_limit(loop), 1.0, kWithin);
 }
 
-/// Returns the smallest limit of the loop of virtual mass, wall and servo, over the scene's own hand and the typical
-/// hands.
+/// Returns the smallest limit [N/m] of the loop of virtual mass, wall and servo, over hands of 100, 300 and 1000 N/m.
 double worst_limit_at_wall(const Scenario& scenario, double zeta, double mass) {
   AdmittanceLoop loop;
   loop.servo = std::get<AdmittanceDeviceConfig>(scenario.device).servo;
@@ -72,9 +71,9 @@ double worst_limit_at_wall(const Scenario& scenario, double zeta, double mass) {
   return least;
 }
 
-/// A tool with little damping bounces off a wall that only pushes, and the bounces do not decay within the run. From
-/// zeta = 0.5 on, the result is the limit of the worst hand at the best zeta and mass. The run takes four seconds, so
-/// that the landing, which decays slowly near the limit, is a small part of the judged steps.
+/// Checks the device at a wall that only pushes. With little damping the tool bounces off, and the bounces do not decay
+/// within the run. From zeta = 0.5 on, the result is the limit of the worst hand at the best zeta and mass. The run
+/// takes four seconds, so that the landing, which decays slowly near the limit, is a small part of the judged steps.
 TEST(Tune, OfTheDeviceAtAWallIsTheLimitOfTheWorstHand) {
   TuneQuestion asked = question("device_at_wall", {"device.force_limit_N=null", "time.steps=8000"});
   asked.threads = 2;
@@ -109,8 +108,8 @@ TEST(Tune, KeepsLimitsAndNamesTheBindingConstraint) {
   for (const auto& [name, value] : quiet.choice->metrics) EXPECT_EQ(number_of(run.metrics, name), value) << name;
 }
 
-/// In the run at 2 K, a hand of 100 N/m cannot pull the tool on from K = 33,000 N/m on. Only stiffer settings keep both
-/// bounds.
+/// Checks that the search passes stiffnesses at which a hand is too soft. In the run at 2 K, a hand of 100 N/m cannot
+/// pull the tool on from K = 33,000 N/m on. Only stiffer settings keep both bounds.
 TEST(Tune, IsNotBoundByAHandThatIsTooSoftToPullTheToolOn) {
   TuneQuestion asked = question("drag_molar", {});
   asked.threads = 2;
@@ -146,7 +145,8 @@ bool grid_is_feasible(const TuneQuestion& asked, const std::string& algorithm) {
   return false;
 }
 
-/// A looser bound never makes a question infeasible, and tune finds a setting if a grid finds a setting.
+/// Checks that a looser bound never makes a question infeasible, and that tune finds a setting if a grid finds a
+/// setting.
 TEST(Tune, IsFeasibleIfAGridIsAndForEveryLooserBound) {
   struct Bounds {
     const char* scene;
@@ -175,8 +175,8 @@ TEST(Tune, IsFeasibleIfAGridIsAndForEveryLooserBound) {
   }
 }
 
-/// 0.8 N of dry friction hold the handle against a hand of 100 N/m that pulls by 4.5 mm: with this hand the tool never
-/// touches.
+/// Checks a handle that friction holds. 0.8 N of dry friction hold the handle against a hand of 100 N/m that pulls by
+/// 4.5 mm, so with this hand the tool never touches the wall.
 TEST(Tune, NamesTheRunThatFailsAndTheOptionThatLeavesItOut) {
   TuneQuestion asked = question("impedance_at_wall", {"device.coulomb_N=0.8"});
   asked.threads = 2;
@@ -190,7 +190,7 @@ TEST(Tune, NamesTheRunThatFailsAndTheOptionThatLeavesItOut) {
   EXPECT_TRUE(tuned_law(asked, "shaped_stiffness").choice);
 }
 
-/// A device with a force resolution of 1 kN renders nothing of the law's force of a few newtons.
+/// Checks a device with a force resolution of 1 kN, which renders nothing of the law's force of a few newtons.
 TEST(Tune, RecommendsNoStiffnessThatRendersNothing) {
   TuneQuestion asked = question("impedance_at_wall", {"device.force_step_N=1000"});
   const std::string law = "shaped_stiffness";  // must outlive the trials
@@ -202,8 +202,8 @@ TEST(Tune, RecommendsNoStiffnessThatRendersNothing) {
   }
 }
 
-/// The answers are those of a complete evaluation. The bounds lie within the metrics of the stiffnesses that are
-/// tried, so that trials violate none, each and both of them.
+/// Checks that partial evaluations give the results of complete evaluations. The two bounds are chosen so that some
+/// trials violate no bound, one of the bounds or both.
 TEST(Tune, EvaluatesATrialOnlyAsFarAsAnAnswerNeedsIt) {
   TuneQuestion asked = question("tap_wall", {"time.duration_s=0.6"});
   asked.threads = 2;
@@ -226,7 +226,7 @@ TEST(Tune, EvaluatesATrialOnlyAsFarAsAnAnswerNeedsIt) {
   EXPECT_LT(needed.runs(), complete.runs());
   EXPECT_GT(feasible, 0u);
   EXPECT_GT(soft, 0u);
-  // The order by excess is that of complete trials.
+  // The order of the trials by excess equals the order of complete trials.
   const std::vector<const TuneTrial*> nearest = needed.nearest(2), known = complete.nearest(2);
   ASSERT_EQ(nearest.size(), known.size());
   for (std::size_t i = 0; i < nearest.size(); ++i) {
@@ -235,8 +235,8 @@ TEST(Tune, EvaluatesATrialOnlyAsFarAsAnAnswerNeedsIt) {
   }
 }
 
-/// With 340 s/m, explicit integration of friction is unstable above 1.2 N. The hand presses with up to 2 N, and with
-/// less at the end of the run, where the linear loop is stable.
+/// Checks a run that friction makes unstable. With 340 s/m, explicit integration of friction is unstable above 1.2 N.
+/// The hand presses with up to 2 N, and with less at the end of the run, where the linear loop is stable.
 TEST(Tune, RecommendsNoRunThatIsAnArtefactOfFriction) {
   TuneQuestion asked = question("poke_plane", {"rendering.friction.mu_f_s_per_m=340"});
   const std::string law = "shaped_stiffness";  // must outlive the trials

@@ -15,7 +15,7 @@ namespace {
 constexpr double kStep = 1e-3, kStiffness = 1000.0, kMass = 0.1, kStart = 1e-3;
 constexpr int kSteps = 64;
 
-/// Returns a mass on one bilateral spring without damping: x(t) = x_0 cos(omega t).
+/// Returns the scenario of a mass on one bilateral spring without damping: x(t) = x_0 cos(omega t).
 ScenarioText oscillator() {
   return {test::data_directory() / "oscillator.json",
           Json{{"time", {{"step_s", kStep}, {"steps", kSteps}}},
@@ -90,7 +90,7 @@ TEST(WorkPrecision, TreatsEveryLawAsAProblem) {
 }
 
 TEST(WorkPrecision, StatesNoErrorOfATrajectoryThatCannotBePredicted) {
-  // Any growth of the shift is more than the requested error.
+  // Request an error so small that any growth of the shift exceeds it.
   const auto problems = study({"integrator.type=leapfrog"}, 1e-12);
   EXPECT_FALSE(problems[0].is_predictable);
   EXPECT_GT(problems[0].grown_shift, 0.1 * kInitialShift);
@@ -102,7 +102,8 @@ TEST(WorkPrecision, RefusesAnAxisOfTheTimeStep) {
   EXPECT_TRUE(test::input_error_of([] { study({R"(time={"step_s":1e-3,"steps":64})"}); }));
 }
 
-/// The curve of each integrator would replace the values of this axis, and its problems would be equal.
+/// Checks that an axis with the integrator is rejected: the curve of each integrator would replace the values of this
+/// axis, and the problems of the axis would be equal.
 TEST(WorkPrecision, RefusesAnAxisThatContainsTheIntegrator) {
   for (const char* axis : {"integrator=leapfrog,rk4", R"(integrator={"type":"rk4"})"}) {
     const auto error = test::input_error_of([axis] { study({axis}); });
