@@ -28,9 +28,9 @@ def value(assumption, part):
 
 
 def column(assumption, count, seed):
-    """Returns the values of an assumption in the `count` sets: a random value in each of `count` equal parts (strata)
-    of its range, in random order. Each assumption has a random generator of its own, so that a new assumption does not
-    change the values of the other assumptions."""
+    """Returns the values of an assumption in the `count` sets, in random order. The range is divided into `count` equal
+    parts (strata), and each part contributes one random value. Each assumption has a separate random generator, so that
+    a new assumption does not change the values of the other assumptions."""
     draw = random.Random(f"{seed} {assumption['id']}")
     strata = draw.sample(range(count), count)
     return [value(assumption, (stratum + draw.random()) / count) for stratum in strata]

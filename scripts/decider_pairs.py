@@ -28,7 +28,8 @@ def read(name):
 
 
 def deciding_values(claim, cases):
-    """The first value of each deciding assumption that changes the verdict, with this verdict."""
+    """Returns (value, verdict) for each assumption that changes the verdict of the claim: the first recorded value that
+    changes the verdict, and the verdict at this value. Values without a verdict are skipped."""
     values = {}
     for case in cases:
         changes = case["verdict"] not in (claim["verdict"], "not judged", "not measured")
@@ -38,10 +39,12 @@ def deciding_values(claim, cases):
 
 
 def judged(program, claim, values):
-    """The verdict and number with each pair of values."""
+    """Returns the verdict and the number of the claim for each pair of assumptions. `values`: result of
+    deciding_values()."""
     pairs = list(itertools.combinations(values, 2))
     with tempfile.TemporaryDirectory() as folder:
-        # A set has a value for every column, and a calibrated input must not be given one: a file for each pair.
+        # Each pair needs its own file of assumption sets: all sets of a file have the same columns, and a pair without
+        # a calibrated input must not set this input.
         found = []
         for pair in pairs:
             sets = Path(folder) / "sets.csv"
@@ -78,7 +81,8 @@ def judged(program, claim, values):
 
 
 def write(record):
-    """One line for each pair, so that changes of the record can be read."""
+    """Writes `record` to pairs.json, with one line for each pair, so that a comparison of two versions shows the
+    changed pairs."""
     lines = [
         f'    {{"id": "{one["id"]}", "verdict": "{one["verdict"]}", "pairs": [\n'
         + ",\n".join("      " + json.dumps(pair, ensure_ascii=False) for pair in one["pairs"])

@@ -1,4 +1,4 @@
-"""Assembles the live page: page.py ENGINE.wasm OUT.html. scripts/live/make calls this file."""
+"""Assembles the live page from a compiled engine: page.py ENGINE.wasm OUT.html. scripts/live/make runs this file."""
 import base64
 import gzip
 import json
@@ -21,7 +21,7 @@ REPLAY = (
 
 
 def packed_files(scenes):
-    """Returns the bundled scenarios and the files that the page's scenarios name, keyed by their path in the page."""
+    """Returns the bundled scenarios, and the files that the scenarios of the page name, by their path in the page."""
     bundled = {
         file.stem: file
         for file in sorted(SCENARIOS.glob("*/*.json"))
@@ -44,7 +44,7 @@ def packed_files(scenes):
 
 
 def values_of(schema, name):
-    """Every value that the schema has for a property of this name."""
+    """Yields the schema of each property of this name, at any depth of the scenario schema."""
     return (
         part["properties"][name]
         for part in objects_in(schema)
@@ -57,7 +57,7 @@ def first_value(schema, name, key):
 
 
 def choices(schema):
-    """Returns the names of laws, devices and stages in the schema."""
+    """Returns the choices of the page's menus: the names of laws, devices and force stages in the schema."""
     stages = [
         kind["const"] for kind in values_of(first_value(schema, "force_stage", "anyOf"), "type")
     ]
@@ -91,7 +91,7 @@ def choices(schema):
 
 
 def pressed(content):
-    """Returns the content compressed and encoded as text for the page. The same content gives the same text."""
+    """Returns the content (bytes) compressed and encoded as text. The same content always gives the same text."""
     return base64.b64encode(gzip.compress(content, mtime=0)).decode()
 
 

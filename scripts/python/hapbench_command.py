@@ -1,5 +1,5 @@
-"""Functions shared by the commands written in Python: error messages, suggested names, writing of files, and a progress
-notice for long work."""
+"""Functions that all commands written in Python share: error messages, suggestions of valid names, writing of files,
+and a notice during long work."""
 import argparse
 import atexit
 import difflib
@@ -26,22 +26,22 @@ from hapbench.errors import InputError
 SHARED = 'shared options; "hapbench --help" explains them'
 SUCCESS, FAILED, BAD_INPUT, DIFFERENT, INTERRUPTED = 0, 1, 2, 3, 130
 MAX_FAULTS = 20  # largest number of faults in one error message
-SILENCE = 2.0  # time before the first progress notice [s]
+SILENCE = 2.0  # time before the first notice about the elapsed time [s]
 SCHEMA = Path(__file__).resolve().parents[2] / "scenarios" / "library" / "scenario.schema.json"
 
-_unfinished = set()  # temporary files of write(), which are removed after Ctrl-C
-_written = []  # files that write() completed
+_unfinished = set()  # temporary files of write(), which Ctrl-C removes
+_written = []  # files that write() has completed
 
 
 def print_error(text):
-    """Prints one line on standard error, in the form of the program. Control characters, such as in file names, are
-    replaced by "?"."""
+    """Prints an error as one line on standard error, in the form of the program's errors. Control characters, for
+    example in file names, are replaced by "?"."""
     line = "".join("?" if c < " " or c == "\x7f" else c for c in str(text))
     print(f"hapbench: error: {line}", file=sys.stderr)
 
 
 class Arguments(argparse.ArgumentParser):
-    """A parser that prints errors in one line, without the usage."""
+    """An argument parser that prints an error as one line, without the usage."""
 
     def error(self, message):
         print_error(f"{message}; {self.prog} --help shows what there is")
@@ -49,8 +49,9 @@ class Arguments(argparse.ArgumentParser):
 
 
 class CommandLine(Arguments):
-    """The arguments after the name of a command of the program. Help and errors have the form of the other commands.
-    `notes`: paragraphs below the options. `examples`: command lines. `manual`: page and section."""
+    """Parser of the arguments after the name of a command. Its help and errors have the form of the commands written in
+    C++. `notes`: paragraphs below the options. `examples`: command lines. `manual`: page and section of the manual.
+    """
 
     def __init__(self, name, summary, notes, examples, manual):
         super().__init__(
@@ -64,11 +65,11 @@ class CommandLine(Arguments):
         self.add_argument("-h", "--help", action="help", help=SHARED)
 
     def text(self, name, metavar, meaning, **more):
-        """Adds an option with a value. `metavar`: the placeholder of the value in the help, such as "<file>"."""
+        """Adds an option with one value. `metavar`: placeholder of the value in the help, such as "<file>"."""
         self.add_argument(name, metavar=metavar, help=meaning, **more)
 
     def texts(self, name, metavar, meaning):
-        """Adds an option with several values in one argument, separated by commas."""
+        """Adds an option whose argument is a list of values, separated by commas."""
         self.text(
             name,
             metavar,
@@ -97,8 +98,8 @@ class CommandLine(Arguments):
             self.flag(name, SHARED)
 
     def parse(self, words):
-        """Parses the arguments. The argument after an option is its value, even if it begins with "-". Positional
-        arguments may stand before, between and after options."""
+        """Returns the parsed arguments. The word after an option with a value is its value, even if the word begins
+        with "-". Positional arguments may stand before, between and after options."""
         if not {"-h", "--help"}.isdisjoint(words):
             self.print_help()
             self.exit()
@@ -158,7 +159,8 @@ WHOLE_WORDS = {"break_long_words": False, "break_on_hyphens": False}
 
 
 def word_of(action):
-    """Returns an option with its placeholder, or the placeholder of an argument, as the help prints it."""
+    """Returns the name of an option with its placeholder, or the placeholder of a positional argument, as the help
+    prints them."""
     if action.option_strings:
         value = f" {action.metavar}" if action.nargs != 0 else ""
         return ",".join(action.option_strings) + value
@@ -166,7 +168,8 @@ def word_of(action):
 
 
 def entry(word, meaning, width):
-    """Returns a word with its meaning beside it, or below it if the word is too long."""
+    """Returns lines of the help: a word with its meaning beside it, or below it if the word is too long. `width`:
+    largest length of a line."""
     column = 28
     text = textwrap.fill(
         meaning, width, initial_indent=" " * column, subsequent_indent=" " * column, **WHOLE_WORDS
@@ -175,8 +178,8 @@ def entry(word, meaning, width):
 
 
 def the_program():
-    """Returns the file of the program that started this process, or else of the program in the path; None without
-    either."""
+    """Returns the file of the program hapbench: the program that started this process, or else the program in PATH.
+    Returns None if there is neither."""
     return os.environ.get("HAPBENCH_PROGRAM") or shutil.which("hapbench")
 
 
@@ -201,11 +204,12 @@ def output_of_program(what, *words):
 
 
 def stop_on_ctrl_c(name):
-    """Makes Ctrl-C end this process with status 130 and one line, and any other failure end it with one line.
+    """Makes Ctrl-C end this process with status 130 and a message of one line. Makes other uncaught exceptions end it
+    with one line, too.
 
-    The __main__ of a command calls it before it imports numpy and the like. The program starts
-    Python with Ctrl-C blocked; this function unblocks it. The handler ends the process itself:
-    a KeyboardInterrupt can be lost in a callback or a destructor, and prints a traceback in an import.
+    The __main__ of a command calls this function before it imports large modules such as numpy. The program starts
+    Python with Ctrl-C blocked; this function unblocks it. The handler ends the process itself, because a
+    KeyboardInterrupt can be lost in a callback or a destructor, and prints a traceback during an import.
     """
 
     def stop(*_):
@@ -213,7 +217,7 @@ def stop_on_ctrl_c(name):
         for scratch in list(_unfinished):
             with suppress(OSError):
                 os.unlink(scratch)
-        # Line end of notice(): erases the status line on a terminal.
+        # Line end that notice() also uses: on a terminal, it erases the status line.
         end_of_line = "\r\033[K" if sys.stderr.isatty() else ""
         with suppress(OSError):
             os.write(2, f"{end_of_line}hapbench: {name} {stopped()}\n".encode())
@@ -226,7 +230,7 @@ def stop_on_ctrl_c(name):
             print_error(error if isinstance(error, InputError) else internal_error(name, error))
 
     sys.excepthook = fail_in_one_line
-    # A shell starts background jobs with Ctrl-C ignored. Keep it ignored.
+    # A shell starts background jobs with Ctrl-C ignored. It then remains ignored.
     if signal.getsignal(signal.SIGINT) is not signal.SIG_IGN:
         signal.signal(signal.SIGINT, stop)
     signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
@@ -239,22 +243,23 @@ def stopped():
 
 
 def leave(status):
-    """Ends this process with a status of exit_status(). The interpreter does not finalize its modules, during which
-    Ctrl-C would print a traceback or be lost."""
+    """Ends this process with an exit status. The interpreter does not finalize its modules, because Ctrl-C during the
+    finalization would print a traceback or be lost."""
     with suppress(OSError, ValueError):
         sys.stderr.flush()
     _end(status)
 
 
 def _end(status):
-    """Calls the functions registered with atexit (matplotlib removes a folder) and ends the process."""
+    """Calls the functions that are registered with atexit, because matplotlib removes a folder by such a function. Then
+    ends the process."""
     with suppress(BaseException):
         atexit._run_exitfuncs()
     os._exit(status)
 
 
 def internal_error(name, error):
-    """Prints one line about an unexpected exception, with the source line."""
+    """Returns a message of one line about an unexpected exception, with the source line that raised it."""
     frames = traceback.extract_tb(error.__traceback__)
     location = f" ({Path(frames[-1].filename).name}, line {frames[-1].lineno})" if frames else ""
     if isinstance(error, MemoryError):
@@ -264,9 +269,9 @@ def internal_error(name, error):
 
 
 def exit_status(name, doing, work):
-    """Runs `work` of a command and returns the exit status. A notice about what it is `doing` appears unless `doing` is
-    empty. Rejected input is printed with one line for each fault; any other failure is printed in one line.
-    """
+    """Calls `work`, which does the work of the command `name`, and returns the exit status of the command. `doing`:
+    text of the notice during long work; empty for no notice. Rejected input is printed with one line for each fault,
+    and any other failure as one line."""
     try:
         with notice(doing):
             status = work()
@@ -277,7 +282,7 @@ def exit_status(name, doing, work):
             print_error(fault)
         return BAD_INPUT
     except BrokenPipeError:
-        # The reader of the pipe, such as `head`, has closed it.
+        # The reader of the pipe, such as `head`, has closed the pipe.
         sys.stderr.close()
         return SUCCESS
     except OSError as error:
@@ -291,7 +296,8 @@ def exit_status(name, doing, work):
 
 
 def answer(options, text, data):
-    """Prints the answer of a command: its warnings, then the text, the JSON, or nothing."""
+    """Prints the result of a command: its warnings on standard error, then the text, or the JSON with --json, or
+    nothing with --quiet."""
     for warning in data["warnings"] if isinstance(data, dict) else []:
         print(f"hapbench: warning: {warning}", file=sys.stderr)
     if not options.quiet:
@@ -299,7 +305,8 @@ def answer(options, text, data):
 
 
 def file_word(file):
-    """A file name as a word of a command: no option, even if it begins with "-"."""
+    """Returns a file name as a word of a command line. A name that begins with "-" is prefixed with "./", so that it is
+    not read as an option."""
     name = str(file)
     return f"./{name}" if name.startswith("-") else name
 
@@ -309,8 +316,8 @@ def shell_line(*words):
 
 
 def table_text(headings, rows, wide, numbers=False):
-    """Returns columns below their headings. The first columns are texts. If the terminal is too narrow, the last column
-    is wrapped."""
+    """Returns a table as text. The last column is wrapped if the terminal is too narrow, unless `wide`. `numbers`: true
+    aligns all columns except the first to the right."""
     widths = [max(map(len, column)) for column in zip(headings, *rows)]
     if sys.stdout.isatty() and not wide:
         widths[-1] = min(
@@ -332,10 +339,10 @@ def table_text(headings, rows, wide, numbers=False):
 
 
 def nearest(name, names):
-    """Returns the end of an error message about an unknown name: the most similar valid names, in the words of the
-    program; empty if no name is similar."""
+    """Returns the end of an error message about an unknown name: the most similar valid name, in the words of the
+    program. Returns an empty text if no name is similar."""
     lower = {candidate.lower(): candidate for candidate in reversed(names)}
-    # Prefer names that begin with the given name to names that are only similar.
+    # Names that begin with the given name, or else contain it, precede names that are only similar.
     longer = sorted((n for n in lower if n.startswith(name.lower())), key=len) or [
         n for n in lower if name.lower() in n
     ]
@@ -344,7 +351,7 @@ def nearest(name, names):
 
 
 class Faults(InputError):
-    """Several faults: a list of (location, problem)."""
+    """An error with several faults. `list`: (location, problem) of each fault."""
 
     def __init__(self, faults):
         super().__init__(faults)
@@ -371,8 +378,8 @@ def require_name(got, name, valid):
 
 
 def finite_number(word):
-    """Converts the whole word (bytes) to a finite number, or NaN. Stricter than float(), which accepts "1_0" and "
-    1"."""
+    """Returns the number in the whole word (bytes), or NaN if the word is not a finite number. Unlike float(), rejects
+    "1_0" and " 1"."""
     value = (
         float(word) if re.fullmatch(rb"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?", word) else math.nan
     )
@@ -380,7 +387,7 @@ def finite_number(word):
 
 
 def shown(value):
-    """Formats a JSON value for a message: in one line, truncated if long."""
+    """Returns a JSON value as text for a message: one line of at most about 80 characters."""
     text = json.dumps(value, separators=(",", ":")).replace("\x7f", "\\u007f")
     return text if len(text) <= 80 else text[:80] + "..."
 
@@ -402,7 +409,7 @@ def refuse_source(out, source, what):
 
 
 def write(file, data):
-    """Creates or replaces a file atomically. `data`: text or bytes. Raises OSError with the file's name."""
+    """Creates or replaces a file atomically. `data`: text or bytes. Raises OSError with the name of the file."""
     try:
         file.parent.mkdir(parents=True, exist_ok=True)
         scratch = file.with_name(f".{file.name}.{os.getpid()}.tmp")
@@ -421,11 +428,12 @@ def write(file, data):
 
 
 def unwritable(error):
-    """Prints why write() failed and returns the exit status: BAD_INPUT if the path cannot be a file, FAILED if the disk
-    is full or broken."""
+    """Prints why a file could not be written and returns the exit status: BAD_INPUT if the path cannot be a file,
+    FAILED if the disk is full or broken."""
     if error.filename is None:
         with suppress(OSError, ValueError):
-            os.dup2(os.open(os.devnull, os.O_WRONLY), 1)  # the remaining output cannot be printed
+            # Discards the remaining output, which cannot be printed.
+            os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
         print_error(f"cannot write to standard output: {error.strerror or error}")
         return FAILED
     if error.errno in (errno.ENOSPC, errno.EDQUOT, errno.EIO):
@@ -437,8 +445,9 @@ def unwritable(error):
 
 @contextmanager
 def notice(text):
-    """Prints elapsed seconds while work takes longer than 2 s: one updated line on a terminal, else lines after 2, 4, 8
-    s and so on. Prints nothing if the text is empty."""
+    """Prints the elapsed seconds while the work in the `with` statement takes longer than 2 s. A terminal has one
+    updated line; otherwise a line is printed after 2, 4, 8 s and so on. Prints nothing if the text is empty.
+    """
     ended = threading.Event()
     thread = threading.Thread(target=show_seconds, args=(text, ended), daemon=True)
     if text:

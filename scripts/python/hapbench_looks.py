@@ -1,11 +1,11 @@
-"""The palette of figures and pages: one colour, line style and marker for each algorithm everywhere, for each class of
-runs, and for other elements.
+"""Palette of figures and pages. Each algorithm has the same colour, line style and marker in all of them, and so have
+classes of runs and other elements.
 
-Every colour has a contrast of at least 4.5 to its ground (WCAG 2.1, AA), so that names can be printed in it: `colour`
-on white, `dark` on the dark page. For readers with deuteranopia, protanopia or tritanopia the colours of ALGORITHMS
-differ by at least 6 (CIEDE2000), and the colours of SERIES by at least 12; a test simulates their vision. Dashes and
-markers also distinguish curves. An algorithm without an entry gets a look that depends on its name, or another look if
-two algorithms of a picture would look alike (distinguish()).
+Each colour has a contrast of at least 4.5 to its background (WCAG 2.1, AA), so that names can be printed in it:
+`colour` on white, and `dark` on the dark page. For readers with deuteranopia, protanopia or tritanopia, the colours of
+ALGORITHMS differ by at least 6 (CIEDE2000), and the colours of SERIES by at least 12. A test simulates their vision.
+Dashes and markers also distinguish curves. An algorithm without an entry in ALGORITHMS has a look that follows from its
+name. If two algorithms of a picture would look alike, distinguish() chooses another look.
 """
 import colorsys
 import zlib
@@ -19,7 +19,7 @@ class Look:
     label: str
     colour: str
     dark: str
-    dash: tuple  # lengths of dashes and gaps in turn, in line widths; empty: a solid line
+    dash: tuple  # alternating lengths of dashes and gaps, in line widths; empty for a solid line
     marker: str  # marker of matplotlib
 
     @property
@@ -47,11 +47,11 @@ ALGORITHMS = {
     "merged_shaping": Look("merged shaping (ours)", "#961356", "#FF64D1", (4, 1, 1, 1), "p"),
     "proxy": Look("proxy (ours)", "#005701", "#49CF56", (8, 1), ">"),
 }
-# Colour of the thesis's numbers, which no algorithm has. Figures draw these numbers as hollow diamonds and dotted
-# lines.
+# Colour of the numbers that the thesis publishes; no algorithm has this colour. Figures draw these numbers as hollow
+# diamonds and dotted lines.
 PUBLISHED, PUBLISHED_DARK = "#C2261C", "#FF8A75"
 
-# For curves that do not belong to an algorithm, or that all belong to the same algorithm.
+# Looks of curves that do not belong to an algorithm, and of curves that all belong to the same algorithm.
 SERIES = (
     Look("", "#1F5FD6", "#63A7B5", (), "o"),
     Look("", "#945200", "#E1A902", (4, 1.2), "s"),
@@ -61,14 +61,15 @@ SERIES = (
     Look("", "#14794E", "#8EE288", (6, 2), "x"),
 )
 
-# Name, colour and hatching by class of a run. Brightness decreases, so that the classes differ in grey, too.
+# Name, colour and hatching of each class of runs. The brightness decreases along the list, so that the classes also
+# differ in grey.
 CLASSES = {
     "stable": ("stable", "#CFE6F5", ""),
     "decaying": ("decaying", "#E9F3FA", "/////"),
     "vibrating": ("vibrating", "#E0A030", ""),
     "thrown_out": ("thrown out", "#B05A1E", ""),
     "diverged": ("diverged", "#7A2E00", ""),
-    # Classes of runs without information about stability, and outcomes of a sweep's runs.
+    # Classes of runs that say nothing about stability, and outcomes of the runs of a sweep.
     "went_through": ("passed through", "#8E7CC3", "xxxxx"),
     "stuck": ("stuck", "#5B7F95", "....."),
     "lost_contact": ("lost contact", "#B05A1E", "\\\\\\\\\\"),
@@ -84,23 +85,25 @@ def look_of_class(name):
 
 
 def by_class(names):
-    """Returns names of classes in the order of the table."""
+    """Returns the distinct names of classes in the order of CLASSES; unknown names follow."""
     order = list(CLASSES)
     return sorted(
         set(names), key=lambda name: (order.index(name) if name in order else len(order), name)
     )
 
 
-# For algorithms without an entry.
+# Dashes and markers of algorithms without an entry in ALGORITHMS.
 FURTHER_DASHES = ((2, 2), (6, 1, 1, 1), (4, 2), (1, 2))
 FURTHER_MARKERS = ("8", "H", "3", "4", "+", "x", ".")
-# Largest and smallest relative luminance with a contrast of 4.5 to the light and to the dark ground, each with a second
-# limit at a larger contrast.
+# Pairs of limits: largest relative luminance of a colour on white, and smallest relative luminance of a colour on the
+# dark page. The first pair has a contrast of 4.5, the second pair a larger contrast.
 LUMINANCES = ((0.14, 0.30), (0.05, 0.60))
 HUES = 24
-# Distance in OKLab from which colours of lines in a figure can be distinguished: about 6 in CIEDE2000.
+# Smallest distance in OKLab at which the colours of two lines in a figure can be distinguished. It corresponds to about
+# 6 in CIEDE2000.
 MIN_DISTANCE = 0.08
-CHOSEN = {}  # look by name, for the current picture
+# Look by name of the algorithms for which distinguish() chose another look, for the current picture.
+CHOSEN = {}
 
 # Matrices of linear RGB that simulate types of colour vision: Machado, Oliveira and Fernandes (IEEE TVCG 15, 2009),
 # severity 1.
@@ -146,13 +149,13 @@ TO_OKLAB = np.array(
 
 
 def law_name(algorithm):
-    """Returns the name of a law in pictures and pages of the user's runs: the words of the program's tables."""
+    """Returns the name of a law as pictures and pages of the user's runs print it, like the tables of the program."""
     return algorithm.replace("_", " ")
 
 
 def look(algorithm):
-    """Returns the look of an algorithm. Without an entry above, it follows from the name, unless distinguish() chose
-    another look."""
+    """Returns the look of an algorithm: its entry in ALGORITHMS, or else the look that distinguish() chose, or else the
+    look that follows from its name."""
     return ALGORITHMS.get(algorithm) or CHOSEN.get(algorithm) or by_name(algorithm)
 
 
@@ -169,9 +172,9 @@ def by_name(algorithm):
 
 
 def distinguish(algorithms):
-    """Chooses the looks of the algorithms of one picture that have no entry: the look that follows from the name, or,
-    if it is too close to another look for some type of colour vision, the most distant colour of all hues.
-    """
+    """Chooses looks for those algorithms of one picture that have no entry in ALGORITHMS. Such an algorithm keeps the
+    look that follows from its name, unless the look is too close to another look for some type of colour vision. It
+    then gets the most distant colour of all hues."""
     CHOSEN.clear()
     names = sorted(set(algorithms))
     looks = [Look("", PUBLISHED, PUBLISHED_DARK, (), "")]
@@ -197,8 +200,8 @@ def free_marker(default, looks):
 
 
 def distance(pair, looks):
-    """Returns the smallest distance in OKLab between a pair of colours (on light and on dark ground) and the colours of
-    `looks`, over all types of colour vision."""
+    """Returns the smallest distance in OKLab between a pair of colours (on white and on the dark page) and the colours
+    of `looks`, over all types of colour vision."""
     return min(
         (
             np.linalg.norm(
@@ -212,15 +215,15 @@ def distance(pair, looks):
 
 
 def oklab(colour):
-    """Returns the OKLab coordinates of a colour, with a row for each of VISIONS."""
+    """Returns the OKLab coordinates of a colour. Each row is the colour as seen by one type of VISIONS."""
     rgb = np.array([int(colour[i : i + 2], 16) / 255 for i in (1, 3, 5)])
     seen = np.array([matrix @ linear(rgb) for matrix in VISIONS.values()])
     return np.cbrt(np.clip(seen, 0, 1) @ TO_CONES.T) @ TO_OKLAB.T
 
 
 def in_hue(hue, luminances=LUMINANCES[0]):
-    """Returns the most vivid colours of a hue (0 to 1): one no lighter than the first relative luminance for the light
-    ground, and one no darker than the second for the dark ground."""
+    """Returns two colours of a hue (0 to 1): the lightest colour with at most the first relative luminance, for white,
+    and the darkest colour with at least the second relative luminance, for the dark page."""
     shades = [colorsys.hls_to_rgb(hue, percent / 100, 0.65) for percent in range(101)]
     light = max((s for s in shades if luminance(s) <= luminances[0]), key=luminance)
     dark = min((s for s in shades if luminance(s) >= luminances[1]), key=luminance)
@@ -228,11 +231,11 @@ def in_hue(hue, luminances=LUMINANCES[0]):
 
 
 def linear(rgb):
-    """Converts sRGB to linear RGB; components from 0 to 1."""
+    """Converts sRGB components (0 to 1) to linear RGB."""
     rgb = np.asarray(rgb)
     return np.where(rgb <= 0.04045, rgb / 12.92, ((rgb + 0.055) / 1.055) ** 2.4)
 
 
 def luminance(rgb):
-    """Returns the relative luminance of WCAG 2.1; components from 0 to 1."""
+    """Returns the relative luminance by WCAG 2.1 of a colour with sRGB components from 0 to 1."""
     return float(linear(rgb) @ (0.2126, 0.7152, 0.0722))

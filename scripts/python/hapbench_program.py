@@ -1,5 +1,5 @@
-"""The command hapbench of an environment into which pip installed it. This process is replaced by the program in the
-package. The package itself is not imported, because its import takes longer than most commands."""
+"""The command hapbench of a Python environment into which pip installed the package. It replaces this process by the
+program in the package. It does not import the package, because that import takes longer than most commands."""
 import os
 import signal
 import sys
@@ -9,7 +9,7 @@ PROGRAM = Path(__file__).parent / "hapbench" / "bin" / "hapbench"
 
 
 def main():
-    # Python for plot, report, import and audit
+    # Python with which the program runs plot, report, import and audit.
     os.environ.setdefault("HAPBENCH_PYTHON", sys.executable)
     signal.signal(
         signal.SIGPIPE, signal.SIG_DFL

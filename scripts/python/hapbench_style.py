@@ -1,5 +1,5 @@
-"""The base of every picture: sizes and colours (the palette is in hapbench_looks), fewer rows for curves with more rows
-than can be shown, stripes for coinciding curves, and the conversion of a figure to a file."""
+"""Settings shared by all pictures: sizes and colours (hapbench_looks has the palette). Also reduces curves that have
+more rows than a picture can show, draws coinciding curves as stripes, and converts figures to files."""
 import io
 import re
 import sys
@@ -15,7 +15,7 @@ from hapbench_looks import (
 )  # noqa: F401  (style.look is how figures name it)
 from hapbench_looks import PUBLISHED as PUBLISHED_COLOUR
 
-if "matplotlib.pyplot" not in sys.modules:  # a notebook keeps its backend
+if "matplotlib.pyplot" not in sys.modules:  # otherwise a notebook keeps its backend
     matplotlib.use("agg")
 from matplotlib import pyplot as plt  # noqa: E402  (the backend comes first)
 from matplotlib.text import Text  # noqa: E402
@@ -31,7 +31,7 @@ MM = 1 / 25.4  # [inch]
 
 @dataclass(frozen=True)
 class Sheet:
-    """Size of a picture. Its fonts of 7 to 9 pt are for this size."""
+    """Size of a picture. Fonts of 7 to 9 pt are designed for this size."""
 
     width: float  # [inch]
     columns: int  # largest number of panels side by side
@@ -39,25 +39,25 @@ class Sheet:
     tallest: float | None = None  # largest height of a panel [inch]
 
     def panel(self, height):
-        """Returns the height of a row of panels [inch]: `height`, but at most `tallest`."""
+        """Returns the height of a row of panels [inch]: `height`, or `tallest` if that is smaller."""
         return min(height, self.tallest or height)
 
     def grid(self, count):
-        """Returns the numbers of rows and columns for `count` panels, with few empty cells."""
+        """Returns (rows, columns) of a grid for `count` panels. Prefers few rows, then few empty cells."""
         columns = min(
             range(1, min(count, self.columns) + 1), key=lambda n: (-(-count // n), -count % n)
         )
         return -(-count // columns), columns
 
     def panels(self, rows, columns, height, **keywords):
-        """Returns a figure with a grid of axes, always a 2-D array. `height`: height of a row [inch], unless the sheet
-        sets the height of the picture."""
+        """Returns a figure and its axes, always a 2-D array. `height`: height of the figure [inch], unless the sheet
+        sets it."""
         return plt.subplots(
             rows, columns, figsize=(self.width, self.height or height), squeeze=False, **keywords
         )
 
 
-# One and two columns of a journal, and a slide of 160 mm x 90 mm, the size of a 16:9 slide in LaTeX (beamer).
+# Sheets: one and two columns of a journal, and a slide of 160 mm x 90 mm, the size of a 16:9 slide in LaTeX (beamer).
 SHEETS = {
     "single": Sheet(89 * MM, 1, tallest=45 * MM),
     "double": Sheet(183 * MM, 3),
@@ -65,9 +65,9 @@ SHEETS = {
 }
 SHEET, PAGE = SHEETS["double"], Sheet(WIDTH, 3)
 
-# Lines and texts have a contrast of at least 4.5 to white. These colours are for measured quantities, forces and
-# contacts, not for algorithms. Amber and petrol can be distinguished with every type of colour vision; a third colour
-# has an additional line style or marker. Red is for the thesis's numbers.
+# Colours of measured quantities, forces and contacts; algorithms have other colours. Each has a contrast of at least
+# 4.5 to white. Amber and petrol can be distinguished with every type of colour vision. A third colour has another line
+# style or marker in addition. Red is for the thesis's numbers.
 BLACK, GREY, AMBER, PETROL, PLUM, RED = (
     "#000000",
     "#5F5F5F",
@@ -78,7 +78,7 @@ BLACK, GREY, AMBER, PETROL, PLUM, RED = (
 )
 SAND, SOIL = "#EFE8DC", "#8C7A58"  # colour of an area, and of its border
 
-# Numbers of the thesis are hollow diamonds in every figure.
+# Style of the thesis's numbers in every figure: hollow diamonds.
 PUBLISHED = {
     "marker": "D",
     "mfc": "white",
@@ -94,10 +94,10 @@ PUBLISHED = {
 }
 PUBLISHED_LINE = {"color": RED, "lw": 1, "ls": (0, (1, 1.5))}
 
-# Background of a label that may lie on a line.
+# Background of a label that may overlap a line.
 PLATE = {"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 0.8}
 
-# Settings of matplotlib by group.
+# Settings of matplotlib (rcParams), by group.
 SETTINGS = {
     f"{group}.{name}": value
     for group, settings in {
@@ -126,12 +126,13 @@ SETTINGS = {
 
 
 def panels(rows, columns, height, **keywords):
-    """Returns a figure of the page's width with a grid of axes, always a 2-D array."""
+    """Returns a figure of the page's width and its axes, always a 2-D array. `height`: height of the figure [inch]."""
     return plt.subplots(rows, columns, figsize=(WIDTH, height), squeeze=False, **keywords)
 
 
 def number_ticks(axis, subs=()):
-    """Adds tick labels to a logarithmic axis with too few powers of ten, or at the multiples `subs` of each power."""
+    """Adds tick labels to a logarithmic axis that shows too few powers of ten. With `subs`, adds labels at these
+    multiples of each power of ten."""
     low, high = axis.get_view_interval()
     if axis.get_scale() == "log" and (subs or high / low < 60):
         axis.set_major_locator(LogLocator(subs=subs or ((1, 2, 5) if high / low < 20 else (1, 3))))
@@ -139,10 +140,10 @@ def number_ticks(axis, subs=()):
         axis.set_minor_formatter(NullFormatter())
 
 
-LINE = 0.17  # height of a line of a legend [inch]
+LINE = 0.17  # height of one line of a legend [inch]
 
 
-LETTER = 0.062  # mean width of a letter of a legend or label [inch]
+LETTER = 0.062  # mean width of a letter in a legend or a label [inch]
 
 
 def legend_columns(labels, width, max_columns=4):
@@ -154,13 +155,13 @@ def legend_columns(labels, width, max_columns=4):
 
 
 def legend_height(labels, width):
-    """Returns the height of a legend above panels, as wide as the figure [inch]."""
+    """Returns the height [inch] of a legend above the panels that is as wide as the figure."""
     return 0.08 + LINE * -(-len(labels) // legend_columns(labels, width, 6))
 
 
 def legend_above(figure, handles, labels, columns=4):
-    """Adds a legend over all panels and reserves room for it; does nothing without labels. `columns`: None for as many
-    columns as fit."""
+    """Adds a legend above all panels and reserves room for it. Does nothing without labels. `columns`: number of
+    columns; None for as many columns as fit."""
     if not labels:
         return
     columns = columns or legend_columns(labels, figure.get_figwidth(), 6)
@@ -185,8 +186,8 @@ def note(ax, x, y, text, colour=BLACK, ha="left", va="top"):
 
 
 def fix_layout(figure):
-    """Computes the layout once: matplotlib would compute it again for every file format. The last digits of the layout
-    differ between runs, because they depend on memory addresses, and would change the identifiers in an SVG.
+    """Computes the layout of a figure once. Matplotlib would compute it again for each file format. The last digits of
+    the layout depend on memory addresses, and would change the identifiers in an SVG between runs.
     """
     engine = figure.get_layout_engine()
     if engine is None:
@@ -194,13 +195,14 @@ def fix_layout(figure):
     engine.execute(figure)
     for axes in figure.axes:
         axes.set_position(Bbox(axes.get_position(original=True).get_points().round(12)))
-    # No layout engine: with one, matplotlib would traverse the figure again before drawing.
+    # Removes the layout engine. With an engine, matplotlib would traverse the figure again before drawing.
     with matplotlib.rc_context({"figure.constrained_layout.use": False}):
         figure.set_layout_engine(None)
 
 
 def show_dollars(figure):
-    """Makes names that contain "$" texts instead of formulas. Only the ticks of logarithmic axes have formulas."""
+    """Draws texts that contain "$" literally instead of as formulas. Only tick labels of logarithmic axes remain
+    formulas."""
     formulas = {
         label
         for axes in figure.axes
@@ -213,14 +215,15 @@ def show_dollars(figure):
             text.set_parse_math(False)
 
 
-# Texts in an SVG stay texts. A PDF embeds TrueType fonts (Type 42), because journals refuse fonts of Type 3.
+# Settings for files: texts in an SVG remain texts, and a PDF embeds TrueType fonts (Type 42). Journals reject fonts of
+# Type 3.
 FILES = {"svg.fonttype": "none", "pdf.fonttype": 42, "ps.fonttype": 42}
 
 
 def picture(figure, kind, salt="hapbench", dpi=DPI):
-    """Returns the bytes of the figure as "svg", "pdf" or "png". Equal figures give equal bytes: there are no dates, and
-    identifiers in an SVG follow from `salt`. `dpi`: pixels per inch of a PNG and of rasterised parts of a PDF.
-    """
+    """Returns the bytes of the figure as "svg", "pdf" or "png". Equal figures give equal bytes, because the file
+    contains no date and `salt` determines the identifiers in an SVG. `dpi`: pixels per inch of a PNG and of the
+    rasterised parts of a PDF."""
     show_dollars(figure)
     fix_layout(figure)
     drawn = io.BytesIO()
@@ -235,7 +238,7 @@ def picture(figure, kind, salt="hapbench", dpi=DPI):
 
 COORDINATES = re.compile(r'( (?:d|x|y)=")([^"]*)')  # attributes of an SVG that contain coordinates
 DISC = re.compile(r'<path id="(\w+)" d="M 0 ([\d.]+) \nC[^"]*z\n"')
-# Matplotlib gives the style to the group or, in newer versions, to each disc.
+# Matplotlib writes the style into the group of discs or, in newer versions, into each disc.
 DISCS = re.compile(
     r'<g( clip-path="[^"]*")?(?: style="([^"]*)")?>\s*'
     r'((?:<use xlink:href="#(\w+)" x="[^"]*" y="[^"]*"(?: style="([^"]*)")?/>\s*)+)</g>'
@@ -243,7 +246,7 @@ DISCS = re.compile(
 
 
 def as_dots(svg):
-    """Replaces consecutive discs by one path of dots with round ends."""
+    """Replaces consecutive discs of an SVG by one path of dots with round ends."""
     radii = dict(DISC.findall(svg))
 
     def dots(group):
@@ -271,8 +274,8 @@ def as_dots(svg):
 
 
 def compact(svg):
-    """Returns the same drawing with half the bytes: coordinates rounded to a tenth of a point, repeated styles as
-    classes, short identifiers, and no parts that are visible only in the source."""
+    """Returns the same drawing in half the bytes. Coordinates are rounded to a tenth of a point, repeated styles become
+    classes, identifiers are short, and parts that are not drawn are removed."""
     svg = as_dots(re.sub(r"<!--.*?-->|<metadata>.*?</metadata>|<g[^>]*/>", "", svg, flags=re.S))
     svg = COORDINATES.sub(
         lambda found: found[1]
@@ -295,7 +298,7 @@ def compact(svg):
     rules = "".join(f".{name}{{{style}}}" for style, name in often.items())
     svg = re.sub(r"(<defs>\s*<style[^>]*>)", lambda d: d[1] + rules, svg, count=1)
     svg, inner = re.sub(r">\s+<", "><", svg), re.compile(r"<g>((?:<(?!/?g[ >])[^>]*>[^<]*)*)</g>")
-    while inner.search(svg):  # groups that have no effect on their contents
+    while inner.search(svg):  # removes groups that have no effect on their contents
         svg = inner.sub(r"\1", svg)
     svg = re.sub(
         r' d="([^"]*)"',
@@ -309,9 +312,9 @@ def compact(svg):
 
 
 def reduced(time, low, high, spans):
-    """Returns the smallest of `low` and the largest of `high` in each of `spans` equal time spans that contain a row,
-    and the start of the span. Returns the rows unchanged if there are not more rows than values. A value is NaN only if
-    its span has no other values."""
+    """Divides the time into `spans` equal intervals. Returns (start, smallest of `low`, largest of `high`) of each
+    interval that contains a row. Returns the rows unchanged if there are at most 2 `spans` rows. A value is NaN only if
+    all values of its interval are NaN."""
     if len(time) <= 2 * spans:
         return time, low, high
     length = (time[-1] - time[0]) or 1.0
@@ -321,19 +324,20 @@ def reduced(time, low, high, spans):
 
 
 def curve(time, low, high, spans):
-    """Returns the result of reduced() as one line that goes down and up within each span."""
+    """Returns (times, values) of one line through the result of reduced(). Within each interval, the line connects the
+    smallest and the largest value."""
     t, smallest, largest = reduced(time, low, high, spans)
     if len(t) == len(time):
         return time, low
     return np.repeat(t, 2), np.column_stack([smallest, largest]).ravel()
 
 
-STRIPE = 6  # [points]
+STRIPE = 6  # length of a stripe [points]
 
 
 def equal_curves(curves):
-    """Returns for each curve (arrays) its index among the curves that are equal to it, and the number of these
-    curves."""
+    """Returns for each curve (a tuple of arrays) its index among the curves that equal it, and the number of curves
+    that equal it. The curve itself counts."""
     keys = [b"".join(np.ascontiguousarray(part).tobytes() for part in curve) for curve in curves]
     return [(keys[:i].count(key), keys.count(key)) for i, key in enumerate(keys)]
 

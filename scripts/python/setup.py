@@ -22,13 +22,14 @@ from setuptools.command.build_ext import build_ext
 HERE = Path(__file__).resolve().parent
 SOURCE = HERE.parents[1]
 BUILD = Path(os.environ.get("HAPBENCH_BUILD_DIR") or SOURCE / "build" / "pip").absolute()
-FILES = BUILD / "pip"  # output of setuptools, which would otherwise write into the source tree
-CPU_SECONDS = 420  # processor time of a build from scratch [s], divided among the processors
+# Folder of the files that setuptools writes; by default it would write them into the source tree.
+FILES = BUILD / "pip"
+CPU_SECONDS = 420  # processor time of a build from scratch [s], which the processors share
 OPTIONS = ("HAPBENCH_BUILD_TESTS=OFF", "HAPBENCH_BUILD_RENDERER=OFF", "HAPBENCH_BUILD_PYTHON=ON")
 
 
 def print_progress(text):
-    """Prints a line on the terminal. pip shows no output of a build, but leaves the terminal accessible."""
+    """Prints a line on the terminal. pip hides the output of a build, but the file /dev/tty is still available."""
     print(f"hapbench: {text}", file=sys.stderr, flush=True)
     if sys.stderr.isatty():
         return
@@ -64,7 +65,8 @@ def compile_program():
 
 
 class Compiled(build_ext):
-    """Replaces the build of the extension by CMake, which also installs the files beside it."""
+    """Builds the compiled module with CMake, in place of setuptools. Also installs the program and its files beside the
+    module."""
 
     def run(self):
         stage = compile_program()
@@ -95,7 +97,7 @@ if not (SOURCE / "CMakeLists.txt").is_file():
     sys.exit(
         f"hapbench: error: {SOURCE} is not hapbench's source tree; allowed: pip install SOURCE/scripts/python"
     )
-shutil.rmtree(FILES, ignore_errors=True)  # removes modules of an older version
+shutil.rmtree(FILES, ignore_errors=True)  # removes the modules that an earlier version left there
 FILES.mkdir(parents=True)
 os.chdir(HERE)
 setup(

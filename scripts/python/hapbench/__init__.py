@@ -66,10 +66,10 @@ __all__ = [
 _MODULES = {"Parameter": "laws", "audit": "auditing", "force_law": "laws"}
 
 
-if not TYPE_CHECKING:  # the type checker knows the names from the imports above
+if not TYPE_CHECKING:  # the imports above already provide the names for a type checker
 
     def __getattr__(name):
-        """Imports a name when it is first used, because most names need the compiled module or scipy."""
+        """Imports a name at its first use, because most names require the compiled module or scipy."""
         if name not in __all__:
             raise AttributeError(f"module 'hapbench' has no attribute {name!r}")
         from importlib import import_module

@@ -1,4 +1,4 @@
-"""The compiled part of hapbench: use the package around it."""
+"""Types of the compiled module of hapbench. Programs should import the package hapbench instead."""
 from collections.abc import Callable, Sequence
 from typing import Any
 

@@ -1,4 +1,4 @@
-"""hapbench.audit: what a log of any haptic or contact engine shows."""
+"""hapbench.audit(): analyses the log of any haptic or contact engine."""
 import os
 from collections.abc import Mapping
 from typing import Any

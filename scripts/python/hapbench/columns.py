@@ -1,4 +1,5 @@
-"""Reads CSV files: columns of numbers with numpy, in chunks, so that a million rows take seconds; and rows of texts."""
+"""Reads CSV files. Columns of numbers are read with numpy in chunks, so that a million rows take only seconds. Other
+tables are read as rows of texts."""
 import csv
 
 import numpy as np
@@ -6,12 +7,12 @@ import numpy as np
 from .errors import ResultError
 
 PIECE_BYTES = 1 << 25
-# Columns that hold texts, although some of these texts look like numbers.
+# Names of columns that always hold texts, although some of their texts look like numbers.
 TEXTS = ("state_hash",)
 
 
 def header(file):
-    """The names in the first line."""
+    """Returns the names of the columns, from the first line of a table."""
     try:
         with file.open(encoding="utf-8") as stream:
             return stream.readline().strip().split(",")
@@ -20,8 +21,8 @@ def header(file):
 
 
 def read_columns(file, names=None, may_be_empty=False):
-    """Returns arrays by name, of all columns or of the columns `names`. An empty field becomes NaN, such as the ratio
-    of a row without contact."""
+    """Returns arrays of numbers by column name: all columns, or the columns `names`. An empty field, such as the
+    stiffness ratio of a row without contact, becomes NaN."""
     every = header(file)
     names = every if names is None else list(names)
     absent = [name for name in names if name not in every]
@@ -42,7 +43,9 @@ def read_columns(file, names=None, may_be_empty=False):
 
 
 def numbers_in(lines, columns, wanted):
-    """Returns the `wanted` columns of complete lines, with one row for each line. Raises ValueError."""
+    """Returns the numbers in the `wanted` columns, with one row for each line. `lines`: bytes of complete lines.
+    `columns`: number of columns. Raises ValueError if a line has another number of columns or a field is not a number.
+    """
     lines = lines.rstrip(b"\n")
     if lines.count(b",") != (lines.count(b"\n") + 1) * (columns - 1):
         raise ValueError
@@ -56,7 +59,7 @@ def numbers_in(lines, columns, wanted):
 
 
 def fault_of(file, names):
-    """Returns the error message for a table whose columns `names` are not numbers."""
+    """Returns the error message for a table in which a field of the columns `names` is not a number."""
     every, rows = read_rows(file)
     for line, row in enumerate(rows, start=2):
         for name in names:
@@ -75,12 +78,12 @@ def is_number(text):
 
 
 def plain_text(text):
-    """A cell's text without the apostrophe that hapbench writes before a text that resembles a formula."""
+    """Returns the text of a cell without the apostrophe that hapbench writes before a text that resembles a formula."""
     return text[1:] if text[:1] == "'" and text.lstrip("'")[:1] in tuple("=+-@\t\r") else text
 
 
 def read_rows(file):
-    """The names in the first line, and the other rows as lists of texts."""
+    """Returns (names in the first line, other rows as lists of texts)."""
     try:
         with file.open(encoding="utf-8", newline="") as stream:
             rows = [[plain_text(text) for text in row] for row in csv.reader(stream) if row]
@@ -97,13 +100,14 @@ def read_rows(file):
 
 
 def read_records(file):
-    """Rows as dictionaries of texts, for tables that hold names or gaps."""
+    """Returns the rows as dictionaries of texts, for tables that contain names or empty fields."""
     names, rows = read_rows(file)
     return [dict(zip(names, row)) for row in rows]
 
 
 def read_mixed(file):
-    """Returns all columns by name: as numbers if every field is a number or empty, else as texts."""
+    """Returns all columns by name. A column becomes an array of numbers if each of its fields is a number or empty.
+    Other columns remain texts."""
     try:
         return read_columns(file, may_be_empty=True)
     except ResultError:
@@ -120,5 +124,5 @@ def numbers_or_texts(name, texts):
 
 
 def numbers(records, name):
-    """Returns a column of `records` as numbers; a missing value becomes NaN."""
+    """Returns the column `name` of `records` as numbers. An empty field becomes NaN."""
     return np.array([float(row[name]) if row[name] else np.nan for row in records])

@@ -1,4 +1,4 @@
-"""Runs the program's commands with results in memory."""
+"""Functions that run the commands of the program and return their results in memory."""
 import json
 import os
 import shutil
@@ -32,7 +32,7 @@ use_this_python()
 Scenario = str | os.PathLike[str] | dict[str, Any]
 Overrides = Mapping[str, object] | None
 Names = str | Sequence[str] | None
-Mounted = tuple[Sequence[float], Sequence[float]]  # position [m] and quaternion w, x, y, z
+Mounted = tuple[Sequence[float], Sequence[float]]  # (position [m], quaternion w, x, y, z)
 OutputFolder = str | os.PathLike[str] | None
 Progress = Callable[[str, int, int], object] | bool | None
 
@@ -198,7 +198,7 @@ def command(*words: object, progress: Progress = None) -> Any:
 
 
 class Text(str):
-    """Text that a notebook and an interactive Python print without quotes and escapes."""
+    """A text that a notebook and an interactive Python print without quotes and escapes."""
 
     def __repr__(self) -> str:
         return str(self)
@@ -215,7 +215,8 @@ def describe(name: str = "") -> Text:
 
 @cache
 def columns_of(file: str) -> list[dict[str, str]]:
-    """Name, unit and meaning of each column of a result file; an empty list if the program does not know the file."""
+    """Returns name, unit and meaning of each column of a result file. Returns an empty list if the program does not
+    know the file."""
     try:
         found = command("describe", file)
     except ScenarioError:
@@ -225,7 +226,7 @@ def columns_of(file: str) -> list[dict[str, str]]:
 
 
 def algorithms() -> list[str]:
-    """The names of all algorithms, including user-defined laws."""
+    """Return the names of all algorithms, including user-defined laws."""
     return _hapbench.algorithms()
 
 
@@ -265,7 +266,7 @@ class Report(Folder):
     ) -> None:
         super().__init__(folder)
         self.status, self.report = status, report
-        self._scratch = scratch  # deleted with this object
+        self._scratch = scratch  # temporary folder; deleted together with this object
 
 
 class Simulation(_hapbench.Simulation):
@@ -357,14 +358,14 @@ class Renderer(_hapbench.Renderer):
         clutch: bool = False,
         rearm: bool = False,
     ) -> dict[str, Any]:
-        """Render one measurement of the handle, in the device's frame."""
+        """Render the force for one measurement of the handle. The measurement is in the device's frame."""
         given = [velocity_m_per_s, angular_velocity_rad_per_s, hand_force_N, applied_force_N]
         bits = (16 if clutch else 0) | (32 if rearm else 0)
         return super().step(time_ns, position_m, orientation_wxyz, given, bits)
 
 
 class _Scratch:
-    """A folder that is deleted with this object, for scenarios that are dicts and for results."""
+    """A temporary folder for results and for scenarios that are dicts. It is deleted together with this object."""
 
     def __init__(self):
         self.path = Path(tempfile.mkdtemp(prefix="hapbench-"))
@@ -377,7 +378,8 @@ class _Scratch:
         self._remove()
 
     def file_of(self, scenario):
-        """Returns the argument by which the engine finds a scenario."""
+        """Returns the argument that names the scenario for the engine: its file or name, or for a dict a file in this
+        folder."""
         if not isinstance(scenario, dict):
             return os.fspath(scenario)
         scenario = json.loads(json.dumps(scenario, default=_plain))
@@ -393,8 +395,8 @@ class _Scratch:
         return str(file)
 
     def call(self, function, *arguments):
-        """Calls a function of the engine. For a scenario that is a dict, errors name only the field, because the
-        temporary file no longer exists."""
+        """Calls a function of the engine. If the scenario is a dict, an error names only the field, because the file of
+        the scenario is temporary."""
         try:
             return function(*arguments)
         except ScenarioError as error:
@@ -406,7 +408,7 @@ class _Scratch:
 
 
 def _name_files(part):
-    """Makes the paths in a scenario absolute. Exactly the fields named "file", at any depth, hold paths."""
+    """Makes the paths in a scenario absolute. All fields named "file", at any depth, are paths; no other field is."""
     for key, value in part.items() if isinstance(part, dict) else enumerate(part):
         if key == "file" and isinstance(value, str):
             part[key] = str(Path(value).absolute())
@@ -451,12 +453,12 @@ def _words(overrides):
 
 
 def _value(value):
-    """Returns the argument of --set for a value: a text unchanged, everything else as JSON."""
+    """Returns the argument of --set for a value: a string unchanged, any other value as JSON."""
     return value if isinstance(value, str) else json.dumps(value, default=_plain)
 
 
 def _plain(value):
-    """Converts numbers and arrays of numpy to values that JSON can hold."""
+    """Converts numbers and arrays of numpy to values that JSON can represent."""
     return value.tolist()
 
 

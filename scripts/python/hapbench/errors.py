@@ -1,13 +1,14 @@
-"""Exceptions."""
+"""Exceptions and warnings of the package."""
 import re
 
 
 class InputError(Exception):
-    """Bad input: a scenario, an argument, a file. The message is one line that names the place and what is allowed."""
+    """Invalid input, such as a scenario, an argument or a file. The message is one line that states where the fault is
+    and what is allowed."""
 
 
 class ResultError(InputError):
-    """A result file that is missing or that cannot be parsed."""
+    """A result file is missing or cannot be parsed."""
 
 
 class ScenarioError(InputError):

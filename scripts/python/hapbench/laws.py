@@ -13,7 +13,7 @@ _ARGUMENTS = ("depths", "gradients", "points", "normals", "stiffness")
 
 @dataclass(frozen=True)
 class Parameter:
-    """A parameter of a law, which scenarios set as rendering.parameters.LAW.NAME."""
+    """A parameter of a force law. A scenario sets it as rendering.parameters.LAW.NAME."""
 
     default: float
     least: float
@@ -31,27 +31,31 @@ def force_law(
     source: str | None = None,
     known_failure: str | None = None,
 ) -> Callable[[Law], Law]:
-    """Make a function a force law, known by its name to every scenario, study and map of this process.
+    """Register a function as a force law. Every scenario and command of this process then knows the law by `name`.
 
         @hapbench.force_law("mine", parameters={"share": hapbench.Parameter(0.5, 0, 1)})
         def mine(depths, gradients, share):
             return share * numpy.ones(len(depths))
 
-    The function is called in every step with contact. It takes, by the names of its arguments and in any order:
-    `depths` (n) [m], `gradients` (n × 3, unit vectors along which a point leaves the tool),
-    `points` (n × 3) [m], `normals` (n × 3, out of the environment), `stiffness`, K of one spring
-    [N/m], and its own `parameters`, floats. Arrays are views that the next call fills anew: copy
-    what is to be kept.
+    The function is called in every step with contact. Its arguments are selected by their names and may be in any
+    order: `depths` (n) [m]; `gradients` (n × 3), unit vectors along which a point leaves the tool; `points` (n × 3)
+    [m]; `normals` (n × 3), out of the environment; `stiffness`, K of one spring [N/m]; and the `parameters` of the
+    law, as floats. The next call overwrites the arrays: copy the values that you keep.
 
-    It returns the weights c_i of the springs, one for each contact or one for all: f = -K Σ c_i d_i u_i and
-    S = Σ c_i u_i u_iᵀ; or a tuple of the force [N] and the symmetric stiffness tensor S in units of K (3 × 3), with
-    which damping and friction are computed; its energy and moment are those of one spring of
-    stiffness K in the middle of the contacts. A class in place of a function: an object of it is
-    called, a new one for each run, so that a law can have a state.
+    The function returns the weights c_i of the springs, either one for each contact or one for all contacts. The force
+    is f = -K Σ c_i d_i u_i, with the depths d_i and the gradients u_i, and the stiffness tensor is S = Σ c_i u_i u_iᵀ.
+    Alternatively, the function returns a tuple of the force [N] and the symmetric 3 × 3 tensor S in units of K.
+    Damping and friction are computed with S. The energy and the moment of such a force are those of one spring of
+    stiffness K in the middle of the contacts.
 
-    An exception in the law ends what is computed and is raised there. A law of the same name gives way to a new one.
-    `parameters`: names with a Parameter, or with a number, its default, which may then be 0 … 1e12.
-    `depth_model`: the only one the law is for. The first line of the docstring is the law's summary.
+    A class can replace the function. Each run then creates an object of the class and calls it, so that a law can have
+    a state.
+
+    An exception in the law stops the computation, and the call that started the computation raises it. Registering a
+    second law of the same name replaces the first law. `parameters`: by name, a Parameter or a number; a number is the
+    default of a parameter in the range from 0 (or from the number, if it is negative) to 1e12. `depth_model`: the only
+    depth model for which the law is defined; None for all. The first line of the function's docstring is the summary
+    of the law.
     """
 
     def add(law):
@@ -108,7 +112,8 @@ def _arguments(name, law, specified):
 
 
 def _origin(law):
-    """Returns the file and the source text of a law, for the provenance of results."""
+    """Returns (file name, source text) of a law, for the provenance of results. Returns ("Python", "") if the source is
+    not available."""
     try:
         return Path(inspect.getsourcefile(law) or "").name or "Python", inspect.getsource(law)
     except (OSError, TypeError):

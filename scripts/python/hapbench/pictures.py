@@ -1,4 +1,4 @@
-"""Figures of results: the pictures of `hapbench plot` as matplotlib Figures."""
+"""Draws results as matplotlib Figures, with the same content as the pictures of `hapbench plot`."""
 import argparse
 import json
 import tempfile
@@ -25,7 +25,8 @@ def plot(
     where: str | Iterable[str] = (),
     width: str = "double",
 ) -> Any:
-    """Returns the figure that `hapbench plot` draws of a result. The options are the options of the command."""
+    """Returns the figure that `hapbench plot` draws of a result. Each argument is the option of the same name of the
+    command."""
     if width not in WIDTHS:
         raise ValueError(f"width: got {width!r}; allowed: {', '.join(WIDTHS)}")
     find_packages()
@@ -48,7 +49,7 @@ def plot(
 
 
 def plot_table(table: "Table", y: Iterable[str], x: str | None, width: str) -> Any:
-    """Draws columns of a table over another column."""
+    """Returns a figure of the columns `y` of a table over the column `x`."""
     if width not in WIDTHS:
         raise ValueError(f"width: got {width!r}; allowed: {', '.join(WIDTHS)}")
     find_packages()
@@ -61,7 +62,7 @@ def plot_table(table: "Table", y: Iterable[str], x: str | None, width: str) -> A
         raise ValueError(f"{table.name} has no column of numbers")
     x = x or ("time_s" if "time_s" in of_numbers else of_numbers[0])
     others = [name for name in of_numbers if name != x and name != "step"]
-    # Without names, draw the columns that have the same unit as the first column.
+    # Without names in `y`, draws all columns that have the same unit as the first column.
     shown = list(y) or [n for n in others if table.units[n] == table.units[others[0]]]
     units = {table.units[name] for name in shown}
 
@@ -89,13 +90,14 @@ def _names(given: str | Iterable[str]) -> list[str]:
 
 
 def _import_pyplot() -> None:
-    """Imports pyplot. The pictures choose a backend without windows, unless pyplot is already imported: a notebook has
-    then chosen its own backend."""
+    """Imports pyplot before the modules of the pictures. These modules select a backend without windows, unless pyplot
+    is already imported. A notebook thus keeps its own backend."""
     import matplotlib.pyplot  # noqa: F401
 
 
 def _for_notebooks(draw: Callable[[], Any]) -> Any:
-    """Draws a figure that a notebook shows exactly once, as the value of a cell."""
+    """Draws a figure, closes it for pyplot, and returns it. A notebook then shows the figure exactly once, as the value
+    of a cell."""
     from hapbench_style import SCREEN_DPI, picture, plt
 
     figure = draw()
@@ -105,7 +107,8 @@ def _for_notebooks(draw: Callable[[], Any]) -> Any:
 
 
 def _write(run: "Run", folder: Path) -> Path:
-    """Writes those files of a run in memory that the pictures read."""
+    """Writes a run that exists only in memory into a folder, as the files that the pictures read. Returns the folder of
+    the run."""
     if run.trials:
         raise ValueError(
             f"{run.name} has {len(run.trials)} trials; allowed: a table of one, as run.trials[0].trajectory.plot()"

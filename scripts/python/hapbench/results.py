@@ -1,4 +1,5 @@
-"""Results: a run, a folder of runs, and single files below a folder. Does not need the compiled module."""
+"""Classes for results: a run, a folder of runs, and single files in a folder. This module does not need the compiled
+module."""
 import html
 import json
 import math
@@ -14,12 +15,13 @@ from .errors import ResultError
 from .table import Table, joined, unit_of
 
 SUMMARY, SCENARIO = "summary.json", "scenario.effective.json"
-COMPARISON, RANKING = "comparison", "ranking"  # tables of compare
+COMPARISON, RANKING = "comparison", "ranking"  # names of the tables that `compare` writes
 KINDS = {dict: "an object", list: "an array", str: "a string"}
 
 
 def read_json(file, **how):
-    """Returns the content of a JSON file; `how` are keyword arguments of json.loads. Raises ResultError."""
+    """Returns the content of a JSON file. `how`: keyword arguments of json.loads. Raises ResultError if the file cannot
+    be read or parsed."""
     try:
         return json.loads(file.read_text(encoding="utf-8"), **how)
     except (OSError, UnicodeDecodeError) as error:
@@ -29,7 +31,8 @@ def read_json(file, **how):
 
 
 def read_object(file, **how):
-    """Returns the object in a JSON file; `how` are keyword arguments of json.loads. Raises ResultError."""
+    """Returns the object in a JSON file. `how`: keyword arguments of json.loads. Raises ResultError if the file cannot
+    be read or holds no object."""
     value = read_json(file, **how)
     if not isinstance(value, dict):
         raise ResultError(f"{file}: /: got {shown(value)}; allowed: an object")
@@ -42,8 +45,8 @@ def shown(value):
 
 
 def member(value, key, kind, file, pointer="", default=None):
-    """Returns value[key], or `default` if the key is missing. Raises ResultError if the member is not of this kind
-    (object, array, string)."""
+    """Returns value[key], or `default` if the key is missing. Raises ResultError if value[key] does not have the type
+    `kind` (dict, list or str)."""
     found = value.get(key, default)
     if found is not default and not isinstance(found, kind):
         raise ResultError(f"{file}: {pointer}/{key}: got {shown(found)}; allowed: {KINDS[kind]}")
@@ -51,7 +54,8 @@ def member(value, key, kind, file, pointer="", default=None):
 
 
 def objects(value, key, file):
-    """Returns value[key], which must be an array of objects; empty if the key is missing."""
+    """Returns the array value[key], or an empty list if the key is missing. Raises ResultError if an element is not an
+    object."""
     found = member(value, key, list, file, default=[])
     for i, entry in enumerate(found):
         if not isinstance(entry, dict):
@@ -60,7 +64,7 @@ def objects(value, key, file):
 
 
 def at(value, pointer):
-    """Returns the value at a JSON pointer, or None."""
+    """Returns the value at a JSON pointer, or None if the pointer leads nowhere."""
     for key in pointer.strip("/").split("/"):
         if isinstance(value, list):
             value = value[int(key)] if key.isdecimal() and int(key) < len(value) else None
@@ -90,7 +94,7 @@ def number_or_none(value):
 
 
 class Tables(Mapping[str, Table]):
-    """Tables by name; each table is read at its first use."""
+    """A mapping from names to tables. Each table is read from its file at its first use."""
 
     def __init__(self, readers: Mapping[str, Callable[[], Table]]) -> None:
         self._readers = {name: cache(read) for name, read in readers.items()}
@@ -125,14 +129,14 @@ class _WithTables:
 
 
 class Run(_WithTables):
-    """One run.
+    """Results of one run.
 
-    `summary`, `scenario` (with every default filled in) and `timing` are dicts, the contents of summary.json,
+    `summary`, `scenario` (with every default filled in) and `timing` are dicts: the contents of summary.json,
     scenario.effective.json and timing.json. The recorded tables are attributes: `trajectory`, and if the scenario
     requests them `contacts`, `stiffness_tensor`, `ratios`, `energy`, `ideal_trajectory`, `force_reference`, `six_dof`,
-    `targets`; `tables` has them by name. In a scenario with several trials, each element of `trials` has its own
-    tables. `folder` is None for a run in memory. `unmet` lists the expectations of the scenario that a run in memory
-    did not meet.
+    `targets`. The mapping `tables` also contains them, by name. If a scenario has several trials, each element of
+    `trials` holds the tables of one trial. `folder` is None for a run in memory. `unmet` lists the expectations of the
+    scenario that a run in memory did not meet.
     """
 
     def __init__(
@@ -184,8 +188,8 @@ class Run(_WithTables):
     def plot(
         self, y: str | Iterable[str] = (), metric: str | Iterable[str] = (), width: str = "double"
     ) -> Any:
-        """Returns the matplotlib Figure that `hapbench plot` draws of this run. `y`: quantities, `metric`: metrics,
-        `width`: "single" or "double" column of a journal, or "slide"."""
+        """Returns the matplotlib Figure that `hapbench plot` draws of this run. `y`: names of quantities. `metric`:
+        names of metrics. `width`: "single" or "double" (column width of a journal), or "slide"."""
         from .pictures import plot
 
         return plot(self, metric=metric, y=y, width=width)
@@ -224,11 +228,12 @@ class Run(_WithTables):
 
 
 class Folder(_WithTables):
-    """A folder that a command such as sweep, compare or limit wrote.
+    """Results in a folder that a command such as sweep, compare or limit wrote.
 
-    `tables` has its CSV files by path, without the files of its runs. `runs` has the runs below it by path. `json` has
-    its other files. `folder.sweep` is the table of sweep.csv. A comparison of several scenarios has a table for each
-    scenario; `folder.comparison` joins these tables and adds a column for the scenario.
+    `tables` contains the CSV files of the folder by path, except the files of its runs. `runs` contains the runs below
+    the folder by path. `json` contains the JSON files of the folder. `folder.sweep` is the table of sweep.csv. A
+    comparison of several scenarios has one table for each scenario; `folder.comparison` joins these tables and adds a
+    column with the name of the scenario.
     """
 
     def __init__(self, folder: str | os.PathLike[str]) -> None:
@@ -254,7 +259,7 @@ class Folder(_WithTables):
             file.parent.relative_to(self.folder).as_posix(): load_run(file.parent) for file in files
         }
         for run in found.values():
-            # Keeps this folder alive, because its files may be deleted with this object.
+            # Keeps this folder object alive, because its files may be deleted together with it.
             run.part_of = self
         return found
 
@@ -269,16 +274,16 @@ class Folder(_WithTables):
         where: str | Iterable[str] = (),
         width: str = "double",
     ) -> Any:
-        """Returns the matplotlib Figure that `hapbench plot` draws of this folder. `metric`: metrics by law, or one
-        column of a sweep; `y`: quantities over time; `where`: rows of a sweep; `width` as of Run.plot.
-        """
+        """Returns the matplotlib Figure that `hapbench plot` draws of this folder. `metric`: metrics of the laws, or
+        one column of a sweep. `y`: quantities over time. `where`: conditions that select rows of a sweep. `width`: see
+        Run.plot()."""
         from .pictures import plot
 
         return plot(self, metric=metric, y=y, where=where, width=width)
 
     def _repr_html_(self) -> str:
-        """Returns the ranking, or the first table if there is no ranking, and the names of the other tables, as HTML
-        for a notebook."""
+        """Returns the ranking as HTML for a notebook, or the first table if there is no ranking. The names of the other
+        tables follow."""
         first = next(
             (name for name in (RANKING, COMPARISON, *self.tables) if name in self.tables), None
         )
@@ -293,8 +298,8 @@ class Folder(_WithTables):
 
 
 def load(folder: str | os.PathLike[str]) -> "Run | Folder":
-    """Reads a folder of results. Returns a Run if the folder holds a run, else a Folder of tables and runs. Raises
-    ResultError."""
+    """Reads a folder of results. Returns a Run if the folder holds one run, otherwise a Folder of tables and runs.
+    Raises ResultError if the folder or a file cannot be read."""
     folder = Path(folder)
     if not folder.is_dir():
         raise ResultError(
@@ -347,8 +352,8 @@ def _tables_of(folder, described=None):
 
 
 def _columns_of(file):
-    """Returns what `hapbench describe` says about the columns of a file with this name; an empty list without the
-    compiled module."""
+    """Returns the descriptions of columns that `hapbench describe` prints for a file of this name. Returns an empty
+    list without the compiled module."""
     try:
         from .engine import columns_of
     except ImportError:
@@ -357,8 +362,9 @@ def _columns_of(file):
 
 
 def _reader(file, described=None):
-    """Returns a function that reads a table. `described`: name, unit and meaning of each column, or a function of the
-    file that returns them; the table may then contain texts."""
+    """Returns a function that reads the table of `file`. `described`: name, unit and meaning of each column, or a
+    function that returns them for a file. Only without `described`, or with a function, may the table contain texts.
+    """
 
     def read():
         if not described or callable(described):
@@ -393,8 +399,8 @@ class MissingResult(Exception):
 
 
 class Files:
-    """Tables and JSON files below a directory, by path. `sources` are the files that were read since `sources` was last
-    cleared."""
+    """Reads tables and JSON files below a directory. Files are named by their path. `sources`: the files that were read
+    since `sources` was last cleared."""
 
     def __init__(self, directory):
         self.directory, self.sources = Path(directory), set()
@@ -403,11 +409,12 @@ class Files:
         return (self.directory / path).is_file()
 
     def table(self, path):
-        """Columns of numbers by name."""
+        """Returns the columns of a table of numbers, by name."""
         return self._read(path, _columns)
 
     def records(self, path):
-        """Rows as dictionaries of texts, for tables that hold names or gaps."""
+        """Returns the rows of a table as dictionaries of texts, for tables with names or empty fields. Raises
+        ResultError if there are no rows."""
         rows = self._read(path, read_records)
         if not rows:
             raise ResultError(f"{self.directory / path}: no rows")
@@ -423,5 +430,5 @@ class Files:
         return read(self.directory / path)
 
 
-# Cached, because several figures draw the same table.
+# The columns are cached, because several figures draw the same table.
 _columns = lru_cache(maxsize=16)(read_columns)

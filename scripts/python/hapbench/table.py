@@ -1,4 +1,4 @@
-"""A table of results, and the units of its columns, which follow from the names of the columns."""
+"""A table of results. The unit of a column follows from the name of the column."""
 import html
 import textwrap
 from collections.abc import ItemsView, Iterable, Iterator, KeysView, Mapping, ValuesView
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 Column = npt.NDArray[Any]
 
-# Units by ending of a name; the longest ending that fits decides.
+# Unit by ending of a column name. If several endings match, the longest ending decides.
 UNITS = {
     "N_per_m": "N/m",
     "N_s_per_m": "N s/m",
@@ -35,12 +35,12 @@ UNITS = {
     "bytes": "bytes",
 }
 MAX_NAMED = 16
-# Largest numbers of rows and of characters per line in a printed table.
+# Largest number of rows, and largest number of characters per line, of a printed table.
 MAX_PRINTED, WIDEST = 20, 100
 
 
 def ending_of(name: str) -> str:
-    """Returns the ending of a name that states its unit; "" if it has no such ending."""
+    """Returns the ending of a name that states the unit of the column; "" if the name has no such ending."""
     return max((ending for ending in UNITS if name.endswith("_" + ending)), key=len, default="")
 
 
@@ -92,7 +92,7 @@ class Table(Mapping[str, Column]):
         return iter(self._columns)
 
     def __len__(self) -> int:
-        """The number of rows, as of a DataFrame. The number of columns is `len(table.keys())`."""
+        """Returns the number of rows, like len() of a DataFrame. The number of columns is `len(table.keys())`."""
         return self.rows
 
     def keys(self) -> KeysView[str]:
@@ -109,8 +109,8 @@ class Table(Mapping[str, Column]):
         return len(next(iter(self._columns.values()), ()))
 
     def to_pandas(self) -> "pandas.DataFrame":
-        """Returns a DataFrame with these columns. `frame.attrs["units"]` has the units, `frame.attrs["meanings"]` the
-        meanings."""
+        """Returns a DataFrame with the columns of this table. `frame.attrs["units"]` holds the units, and
+        `frame.attrs["meanings"]` the meanings of the columns."""
         import pandas
 
         frame = pandas.DataFrame(dict(self._columns))
@@ -142,7 +142,8 @@ class Table(Mapping[str, Column]):
         return f"<{self.name}: {self.rows} rows of {', '.join(names[:MAX_NAMED])}{more}>"
 
     def __str__(self) -> str:
-        """Returns the first rows, aligned, with as many columns as fit, and a note about what was omitted."""
+        """Returns the first rows as aligned text, with as many columns as fit, and a note on the omitted rows and
+        columns."""
         shown, width = [], 0
         for name, values in self._columns.items():
             cells = [name, *map(_cell, values[:MAX_PRINTED])]
@@ -175,8 +176,8 @@ class Table(Mapping[str, Column]):
 
 
 def joined(tables: Mapping[str, Table], column: str, name: str) -> Table:
-    """Concatenates the rows of several tables. The first column holds the key of each table. If a table lacks a column,
-    its rows have NaN in this column."""
+    """Concatenates the rows of several tables. The first column of the result, named `column`, holds the key of each
+    row's table. If a table lacks a column, its rows have NaN in this column."""
     names = list(dict.fromkeys(column_name for table in tables.values() for column_name in table))
     keys = [key for key, table in tables.items() for _ in range(len(table))]
     columns: dict[str, Column] = {column: np.array(keys, dtype=object)}
@@ -190,7 +191,7 @@ def joined(tables: Mapping[str, Table], column: str, name: str) -> Table:
 
 
 def _cell(value: Any) -> str:
-    """Formats a number with few digits, an integer with all digits, and NaN as an empty text."""
+    """Formats a value for printing: a number with few digits, an integer with all digits, and NaN as an empty text."""
     if isinstance(value, str):
         return value
     return (

@@ -1,5 +1,4 @@
-"""Statistics of the times of a log: rate, jitter, missing rows, and the number of rows that repeat a position or a
-force."""
+"""Statistics of the times of a log: rate, jitter and missing rows, and how many rows repeat each position or force."""
 import numpy as np
 
 from .log import LONG_INTERVALS

@@ -36,9 +36,9 @@ def work(force, displacement):
 
 
 def stored_at(log, contacts, row, spring):
-    """Returns the energy in the contact's spring [J] at a row in contact whose touch is unknown: the first row of the
-    log, or the first row after a gap of the clock. Returns 0 for any other row, and None if the stiffness is
-    unknown."""
+    """Returns the energy [J] in the contact's spring at a row. It is not zero only if the touch is unknown: at the
+    first row of the log, or at the first row after a gap of the clock, if the row is in contact. Returns None if the
+    stiffness is unknown."""
     if not contacts.in_contact[row] or (row > 0 and not contacts.gap[row - 1]):
         return 0.0
     stiffness = (spring or {}).get("stiffness_N_per_m", 0.0)

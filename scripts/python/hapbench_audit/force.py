@@ -17,8 +17,8 @@ LOWEST_PEAK = 10.0  # lowest frequency of a peak [Hz]; voluntary motion of a han
 # Relative tolerance of the frequencies that count as multiples of another frequency.
 HARMONIC = 0.02
 MIN_PEAK = 0.01  # smallest amplitude of the strongest peak, as a fraction of the mean force
-SHORTEST_SPECTRUM = 64  # smallest number of rows of a spectrum
-# Smallest number of periods of an oscillation in a contact: two in its middle third.
+SHORTEST_SPECTRUM = 64  # smallest number of rows from which a spectrum is computed
+# Smallest number of periods of an oscillation in a contact, which leaves two periods in its middle third.
 MIN_PERIODS = 6.0
 # Smallest amplitude in the middle third of a contact, as a fraction of the amplitude in the whole contact.
 LASTING = 0.5

@@ -259,11 +259,11 @@ def neighbours_of(model, kinds):
 class Residual:
     """The part of the force that a model leaves unexplained. Mean squares are per row [N^2]."""
 
-    mean_square: float  # of the residuals
+    mean_square: float  # mean square of the residuals
     rounding: float  # mean square that the resolution of the position may cause
     sampling: float  # mean square that the sampling of the velocity may cause
     total: float  # mean square of the force minus its mean
-    damping: float  # of the least-squares fit [N s/m]
+    damping: float  # damping of the least-squares fit [N s/m]
 
 
 def residuals_of(motion):

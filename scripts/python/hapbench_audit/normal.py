@@ -7,22 +7,23 @@ from scipy.optimize import least_squares
 
 from .models import Motion, residuals
 
-FEWEST_COUNTS = 10  # smallest travel, in steps of the position's resolution
-# Largest unexplained fraction of the variance for which the model is the exact law of the engine.
+FEWEST_COUNTS = 10  # smallest travel of the tool, in steps of the position's resolution
+# Largest unexplained fraction of the variance of the force at which the model counts as the exact law of the engine.
 EXACTLY = 1e-9
 TILTS = 8  # largest number of iterations of the search for the normal
 MAX_ROWS = 500  # largest number of rows of the search
-SEARCHED = ("logged", "backward", "central", "low-pass 4")  # kinds of velocities in the search
-# Smallest number of rows with a new force that is above 0 and below the largest force.
+# Kinds of velocities (see models.py) that the search for the normal uses.
+SEARCHED = ("logged", "backward", "central", "low-pass 4")
+# Smallest number of rows of a contact with a new force that is above 0 and below the largest force of the log.
 FEWEST_NEW = 15
-BLOCKS = 10  # number of residuals that count as independent
+BLOCKS = 10  # number of residuals of normal_by_friction() that count as independent
 AS_GOOD = 0.5  # a normal is better if it reduces the unexplained fraction below this factor
 # Fraction of the median speed below which the direction of sliding is uncertain.
 SLOW = 0.2
 MAX_FRICTION = 1.0  # largest coefficient of friction
 # Largest error of a normal, as the tangent of an angle. Such an error changes a stiffness by 1 - cos = 0.1 %.
 KNOWN_TILT = 0.05
-# Largest fraction of the sum of squared tangential forces that friction leaves unexplained.
+# Largest fraction of the sum of squared tangential forces that friction may leave unexplained.
 EXPLAINED_REST = 0.25
 MAX_EVALUATIONS = 50  # largest number of evaluations in the search by friction
 

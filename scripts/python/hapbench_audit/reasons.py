@@ -1,8 +1,8 @@
 """Texts that state why the log does not determine the stiffness of a contact."""
 import numpy as np
 
-EXTREMES = 10.0  # standard deviations between the extremes of a million normal errors
-MIN_CHANGE = 0.01  # smallest change of the force, as a fraction of the largest force
+EXTREMES = 10.0  # ratio of the range of a million normal errors to their standard deviation
+MIN_CHANGE = 0.01  # smallest significant change of the force, as a fraction of the largest force
 
 
 def no_travel_text(travel, resolution, force, noise):

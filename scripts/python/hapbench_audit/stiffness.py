@@ -18,7 +18,7 @@ from .normal import (
 )
 from .reasons import no_travel_text, why_unknown
 
-FEWEST = 20  # smallest number of rows of a contact
+FEWEST = 20  # smallest number of rows of a contact for which a stiffness is estimated
 # Largest ratio of rms residuals, landing to settled contact, for a landing that the model explains. An impact has a
 # larger ratio.
 LANDING = 10.0
@@ -40,7 +40,7 @@ SIMILAR = 0.1
 # Largest factor above the smallest mean square that the sampling of a velocity can explain.
 MAX_EXCUSED = 2.0
 NEGLIGIBLE = 1e-12  # fraction of the variance that rounding may leave unexplained
-# Largest unexplained fraction of a well explained contact, relative to the fraction of a typical contact.
+# Largest unexplained fraction of a well explained contact, divided by the median unexplained fraction of all contacts.
 TYPICAL = 10.0
 DRY_GAIN = 0.7  # dry friction must reduce the sum of squared residuals below this fraction
 DRY_SHARE = 0.02  # smallest dry friction, as a fraction of the mean force

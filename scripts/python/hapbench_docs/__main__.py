@@ -1,4 +1,4 @@
-"""The command line of scripts/docs."""
+"""Command line of scripts/docs."""
 import difflib
 import re
 import shlex
@@ -20,7 +20,7 @@ from .manuals import (
 )
 
 GALLERY = ROOT / "results" / "reference" / "gallery"
-# Matches commands, of which the last one plots, followed by the picture.
+# Matches the command lines in a manual, the last of which plots, and the picture that follows.
 ILLUSTRATED = re.compile(r"((?:^    hapbench .*\n)+)\n!\[[^]]*\]\([^)]*/gallery/(\w+\.svg)\)", re.M)
 
 DESCRIPTION = """Renews what is generated in the manuals: sessions (commands with their output),
@@ -53,7 +53,8 @@ def arguments(words):
 
 
 def draw_gallery(program, scratch):
-    """Draws the pictures that manuals show below the commands."""
+    """Draws the pictures that the manuals show below their commands. Executes these commands in the folder
+    `scratch`."""
     pictures = [
         found for manual in map(Manual, manuals()) for found in ILLUSTRATED.findall(manual.text)
     ]

@@ -1,6 +1,6 @@
-"""The manuals: their files, the commands that they document, their links, and their generated parts between `<!--
-generated: NAME -->` and `<!-- /generated -->`. Generated parts are sessions, and tables of the ledger (claims.json) and
-of its robustness in results/reference."""
+"""Functions for the manuals: their files, their commands, their links, and their generated blocks between `<!--
+generated: NAME -->` and `<!-- /generated -->`. A generated block is a session (a command and its output), or a table
+from results/reference, such as the ledger (claims.json) and its robustness."""
 import csv
 import datetime
 import json
@@ -19,7 +19,7 @@ NOT_OURS = ("build", "results/out")
 COMMAND = re.compile(r"^\s*(?:\$ )?((?:build/\S+/hapbench|hapbench|scripts/[a-z]+)(?:\s.*)?)$")
 LINK = re.compile(r"\]\(([^)\s]+)\)")
 HEADING = re.compile(r"^#{1,6} (.+)$", re.M)
-# Matches words that end a command of the shell.
+# Matches a word at which the arguments of a command in a shell line end: a pipe, a redirection, && or ;.
 ENDS = re.compile(r"^(?:\||&&|;|\d?>.*|<.*)$")
 BLOCK = re.compile(r"(<!-- generated: (\S+)[^\n]*-->\n)(.*?)(<!-- /generated -->)", re.S)
 BEGIN = "<!-- generated:"
@@ -32,7 +32,7 @@ TASKS = {
     "D3": "turning, 3 mm high",
     "D4": "turning, 4 mm high",
 }
-# Matches the line of Program.provenance().
+# Matches a line of the form that Program.provenance() returns.
 STAMP = re.compile(r"hapbench \d[\w.]*, \d{4}-\d\d-\d\d, [^\n]+\.")
 PAIR = re.compile(r"success(?: rate)? (.+?) vs ([^;(]+)")
 
@@ -50,7 +50,7 @@ def manuals():
 class Command:
     manual: Path
     line: int
-    words: tuple  # without comments, redirections and pipes
+    words: tuple  # words of the command, without comments, redirections and pipes
 
     def __str__(self):
         return f"{self.manual.relative_to(ROOT)}:{self.line}: {' '.join(self.words)}"
@@ -62,7 +62,8 @@ class Manual:
         self.text = self.file.read_text(encoding="utf-8")
 
     def code(self):
-        """Yields number and text of the code lines: in fences, or indented by four or more blanks."""
+        """Yields (line number, line) of each line of code: lines in fences, and lines indented by at least four
+        blanks."""
         fenced = False
         for number, line in enumerate(self.text.splitlines(), 1):
             if line.lstrip().startswith("```"):
@@ -71,8 +72,8 @@ class Manual:
                 yield number, line
 
     def commands(self):
-        """Returns the commands that begin with hapbench, build/…/hapbench or scripts/…. A backslash at the end joins
-        the next line."""
+        """Yields the Command of each line of code that begins with hapbench, build/…/hapbench or scripts/…. A backslash
+        at the end of a line joins the next line."""
         lines = list(self.code())
         while lines:
             number, line = lines.pop(0)
@@ -85,7 +86,7 @@ class Manual:
                 yield Command(self.file, number, tuple(words[:end]))
 
     def anchors(self):
-        """Returns the anchors of the headings in GitHub's form."""
+        """Returns the anchors that GitHub gives the headings."""
         return {
             re.sub(r"[^\w\- ]", "", title.strip().lower()).replace(" ", "-")
             for title in HEADING.findall(self.text)
@@ -93,7 +94,7 @@ class Manual:
 
 
 def broken_links(manual):
-    """Returns the relative links whose target does not exist."""
+    """Yields the relative links of a manual whose file or anchor does not exist."""
     for link in LINK.findall(manual.text):
         if re.match(r"^[a-z]+:", link):
             continue
@@ -109,8 +110,8 @@ def broken_links(manual):
 
 
 def renewed(text, makers):
-    """Returns the text with each generated block replaced by `makers[NAME](old)`. Blocks without a maker are
-    unchanged."""
+    """Returns the text with each generated block NAME replaced by `makers[NAME](old)`, where `old` is the block's
+    current content. A block without an entry in `makers` is unchanged."""
     if text.count(BEGIN) != len(BLOCK.findall(text)):
         raise InputError(
             'a block that begins with "<!-- generated: NAME -->" lacks its end "<!-- /generated -->"'
@@ -124,8 +125,8 @@ def renewed(text, makers):
 
 
 def session(old, program, directory):
-    """Returns a block with a command and its output, which ends with version, date and processor. The command is the
-    first command of the old block."""
+    """Returns a session: a command and its output, followed by version, date and processor. `old`: the current block,
+    whose first command is executed."""
     line = next(
         (line.strip() for line in old.splitlines() if line.strip().startswith("$ hapbench ")), None
     )
@@ -139,7 +140,8 @@ def session(old, program, directory):
 
 
 def write_files_of_getting_started(folder):
-    """Writes the files that the tutorial creates without hapbench: a mesh my.obj and a compiled law mine.so."""
+    """Writes the files that the tutorial GETTING_STARTED creates without hapbench: the mesh my.obj and the compiled law
+    mine.so."""
     shutil.copy(ROOT / "scenarios/library/examples/data/molar.obj", folder / "my.obj")
     text = STARTED.read_text(encoding="utf-8")
     law = re.search(r"^```c\n(.*?)^```$", text, re.M | re.S)[1]
@@ -154,14 +156,14 @@ def read(name):
 
 
 def main_results(_old=""):
-    """Returns the sentences of the abstract at the beginning of the ledger, with links into the ledger."""
+    """Returns the table of the sentences of the thesis's abstract from claims.md, with links into the ledger."""
     page = (REFERENCE / "claims.md").read_text(encoding="utf-8")
     return next(part for part in page.split("\n\n") if part.startswith("| the abstract claims |"))
 
 
 def experiments(_old=""):
-    """Returns the table of success in the thesis's experiments: measured with simulated subjects, and published with
-    people."""
+    """Returns a table of the success rates in the thesis's experiments: measured with simulated subjects, and published
+    with people."""
     by_id = {claim["id"]: claim for claim in read("claims.json")["claims"]}
     lines = [
         "| task and target | original algorithm, ours (published) | stiffness shaping, ours (published) |",
@@ -176,7 +178,7 @@ def experiments(_old=""):
 
 
 def robustness(_old=""):
-    """Returns the assumptions that decide verdicts, each with its claims."""
+    """Returns a table of the assumptions that decide verdicts, with the claims that each assumption decides."""
     claims = read("claims.json")["claims"]
     what = {entry["id"]: entry["what"] for entry in read("assumptions.json")["assumptions"]}
     decided = {}
@@ -191,7 +193,7 @@ def robustness(_old=""):
 
 
 def controls(_old=""):
-    """For each claim, the wrong laws of controls.json with which its verdict changes."""
+    """Returns a table with a row for each claim: the wrong laws of controls.json that change its verdict."""
     changes, judged, meanings = {}, {}, []
     for control in read("controls.json")["controls"]:
         meanings.append(f"- `{control['name']}`: {control['meaning']}.")
@@ -212,7 +214,9 @@ def controls(_old=""):
 
 
 def pairs(_old=""):
-    """For each claim that several assumptions decide, what pairs of them do to its verdict."""
+    """Returns a table with a row for each claim that several assumptions decide. It counts the pairs of these
+    assumptions by the verdict that they cause: the recorded verdict, the verdict of one of both assumptions alone, or
+    another verdict."""
     lines = [
         "| claim | verdict | pairs | recorded verdict | verdict of one of both | another verdict |",
         "|---|---|---|---|---|---|",
@@ -234,9 +238,9 @@ def pairs(_old=""):
 
 
 def six_dof(_old=""):
-    """Returns the table of the study six_dof, whose sweep.csv is stored as six_dof.csv. It has a row for each scene
-    and, in the edge and the slot, for each hand, grip and pivot: force and torque of the device with torque, and for
-    each law the force error and the energy that the law creates in a cycle."""
+    """Returns the table of the study six_dof, whose sweep.csv is stored as six_dof.csv. It has a row for each scene,
+    and in the scenes edge and slot for each hand, grip and pivot. A row has force and torque of the device with torque,
+    and for each law the force error and the energy that the law creates in a cycle."""
     with open(REFERENCE / "six_dof.csv", newline="", encoding="utf-8") as lines:
         rows = list(csv.DictReader(lines))
     laws = list(dict.fromkeys(row["six_dof.law"] for row in rows))
@@ -291,9 +295,9 @@ class Program:
         self.file = file.resolve()
 
     def run(self, words, directory):
-        """Runs the program and returns its standard output. A run with an unexpected outcome (status 3) also has
-        output."""
-        # Print the tables for the algorithms of this source tree.
+        """Runs the program in a directory and returns its standard output. A run with an unexpected outcome (status 3)
+        is no failure."""
+        # Without additional modules, so that tables contain only the algorithms of this source tree.
         environment = {
             name: value for name, value in os.environ.items() if name != "HAPBENCH_MODULE_PATH"
         }
@@ -313,8 +317,8 @@ class Program:
         return done.stdout
 
     def stamped(self, text, old):
-        """Returns the text with its provenance. Returns the old block if its text differs only in times
-        and its provenance has today's form."""
+        """Returns the text with its provenance below. Returns the old block if its text differs only in run times and
+        its provenance matches STAMP."""
         known, _, stamp = old.strip("\n").rpartition("\n\nPrinted by ")
         if STAMP.fullmatch(stamp) and same_but_for_times(text, known):
             return old
@@ -328,7 +332,7 @@ class Program:
 
 
 def same_but_for_times(a, b):
-    """Returns True if two outputs are equal except for times in microseconds, which differ from run to run."""
+    """Returns True if two outputs are equal except for times in microseconds, which differ between runs."""
     return _words(a) == _words(b)
 
 

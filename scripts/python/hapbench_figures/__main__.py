@@ -32,7 +32,7 @@ why.
 
 @dataclass(frozen=True)
 class Figure:
-    """A figure as described by captions.txt."""
+    """One figure, as captions.txt describes it."""
 
     id: str
     # Number of the thesis's figure that this figure redraws; empty for figures of this project.
@@ -42,8 +42,8 @@ class Figure:
     argument: str | None
     title: str
     caption: str
-    differs: str  # difference from the thesis's figure, with the reason
-    # Further claims that the figure draws, besides the claims located in the thesis's figure.
+    differs: str  # text about the difference from the thesis's figure, with the reason
+    # Claims that the figure draws in addition to the claims that are located in the thesis's figure.
     rows: tuple
 
     @property
@@ -51,14 +51,14 @@ class Figure:
         return "figure_" + self.id.replace("-", "_")
 
     def draw(self, results):
-        """Returns the drawing and the values of its caption. Raises MissingResult if data is missing."""
+        """Returns (figure, values that its caption prints). Raises MissingResult if a result file is missing."""
         function = getattr(import_module(f".{self.module}", __package__), self.function)
         return function(results, self.argument) if self.argument else function(results)
 
 
 def catalogue():
-    """Returns every figure in the order of captions.txt. A figure without a caption shares the caption of the figure
-    before it."""
+    """Returns all figures in the order of captions.txt. An entry without a caption has the caption of the previous
+    entry."""
     found = []
     for text in CAPTIONS.read_text(encoding="utf-8").split("\n\n[")[1:]:
         head, *lines = text.strip().split("\n")
@@ -113,7 +113,9 @@ def arguments(argv):
 
 
 def selection(only):
-    """Returns the requested figures."""
+    """Returns the figures that `only` names, a list of identifiers separated by commas; all figures if `only` is empty.
+    An identifier such as A.4 also selects A.4-root-locus. Raises InputError for an unknown figure.
+    """
     chosen = []
     for id_ in only.split(",") if only else ():
         found = [f for f in FIGURES if f.id == id_ or f.id.startswith(id_ + "-")]
@@ -126,7 +128,7 @@ def selection(only):
 
 
 def draw(figure, results, directory):
-    """Draws and saves one figure; returns its entry in figures.json."""
+    """Draws one figure and writes its files. Returns the entry of the figure in figures.json."""
     drawing, values = figure.draw(results)
     files = [f"{figure.stem}.{kind}" for kind in FORMATS]
     for kind, name in zip(FORMATS, files):
@@ -143,7 +145,7 @@ def draw(figure, results, directory):
 
 
 def write_index(directory, entries):
-    """Writes figures.json. Entries of earlier runs are kept for figures that still exist and were not drawn again."""
+    """Writes figures.json. Keeps the entries of figures that still exist and were not drawn this time."""
     file = directory / "figures.json"
     known = {entry["id"]: entry for entry in read_json(file)["figures"]} if file.is_file() else {}
     known |= {entry["id"]: entry for entry in entries}
@@ -157,8 +159,8 @@ def write_index(directory, entries):
 
 
 def measured(figure, claims):
-    """Returns the measured numbers of each claim that a figure draws, without times. If these numbers change, the
-    figure is outdated."""
+    """Returns the measured numbers, except run times, of each claim that a figure draws. If these numbers have changed
+    since the figure was drawn, the figure is outdated."""
     numbers = set(NUMBER.findall(figure.thesis))
     drawn = {}
     for claim in claims:
@@ -174,8 +176,8 @@ def measured(figure, claims):
 
 
 def record(directory, page, drawn, claims):
-    """Copies figures into the directory `page`. Writes figures.md about all figures there, and rows.json with the
-    measured numbers of the claims that they draw."""
+    """Copies the drawn figures into the directory `page`. Writes figures.md about all figures in this directory, and
+    rows.json with the measured numbers of the claims that they draw."""
     text, rows = PAGE, {}
     for figure in FIGURES:
         on_record = page / f"{figure.stem}.svg"
@@ -211,7 +213,7 @@ def run(chosen):
         except ResultError as error:
             bad[str(error)] = None
         except (KeyError, IndexError, TypeError, ValueError) as error:
-            # A readable file without the columns, rows or members that hapbench writes.
+            # The file can be parsed, but lacks columns, rows or members that hapbench writes.
             bad[
                 f"figure {figure.id}: {', '.join(sorted(results.sources))}: {type(error).__name__}: {error}"
             ] = None

@@ -1,5 +1,5 @@
-"""Directions of the damping forces with one contact and with distributed contact (figures B.4 and B.5), and the limit
-of the input force (figure 6)."""
+"""Figures of the directions of damping forces with one contact and with many contacts (thesis Fig. B.4 and B.5), and of
+the limit of the input force (Fig. 6)."""
 import numpy as np
 
 import hapbench_style as style
@@ -9,7 +9,8 @@ from .tasks import thin
 
 DP, HS = "tilt_sweep_original_averaging", "tilt_sweep_shaped_stiffness"
 VELOCITY = np.array([0.006, -0.012])  # velocity of the drawn motion, chosen by this project [m/s]
-FRICTION = (5.0, 10.0)  # mu_s [N s/m], mu_f [s/m] of thesis Table A.1
+# Viscous friction mu_s [N s/m] and its increase per spring force mu_f [s/m], from thesis Table A.1.
+FRICTION = (5.0, 10.0)
 TILT = 0.2
 MM_PER_N = 0.9
 
@@ -20,8 +21,9 @@ def damping_coefficient(scenario):
 
 
 def draw_forces(ax, at, direction, spring, damping, named_at):
-    """Draws the implicit plane, its name, the velocity, and the damping forces of the original algorithm (B.2: one
-    direction for all contacts) at the tip. The scene is in millimetres."""
+    """Draws the implicit plane, its name, the velocity, and the damping forces at the tip. The forces are those of the
+    original algorithm (B.2), which has one direction for all contacts. Coordinates are in millimetres.
+    """
     along = np.array([-direction[1], direction[0]])
     ends = np.stack([at - 2 * along, at + 2 * along])
     ax.plot(*ends.T, color=style.PLUM, lw=1.6, zorder=4)
@@ -42,7 +44,7 @@ def draw_forces(ax, at, direction, spring, damping, named_at):
 
 
 def draw_flat(ax, scenario):
-    """Draws the peg standing on a flat surface: all gradients point down."""
+    """Draws the peg that stands on a flat surface, with its damping forces. All gradients point down."""
     damping = damping_coefficient(scenario)
     tool = scenario["tool"]
     peg = scene.Peg(np.zeros(2), np.array([0, -1.0]), tool["diameter_m"], tool["length_m"])
@@ -85,7 +87,7 @@ def draw_distributed(ax, sweep):
 
 
 def wall_damping(ax, results):
-    """Draws the damping force against motion along the wall's normal, in units of B."""
+    """Draws over the tilt the damping coefficient for a motion along the normal of the wall, in units of B."""
     dp, hs = scene.Sweep(results, DP), scene.Sweep(results, HS)
     pick = np.arange(1, len(dp.tilt))
     forces = np.stack([dp.rows["fspring_x_N"], dp.rows["fspring_y_N"]], 1)[pick]

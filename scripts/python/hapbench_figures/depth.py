@@ -1,5 +1,5 @@
-"""Depth models: gradients across the median line of the tool, depths that are too small (figures 8,
-B.3 and C.1), and normal projection at a corner of the hole (figure F.4)."""
+"""Figures of depth models: gradients on both sides of the median line of the tool, depths that are too small (thesis
+Fig. 8, B.3 and C.1), and normal projection at a corner of the hole (Fig. F.4)."""
 import numpy as np
 from matplotlib.colors import ListedColormap
 
@@ -8,12 +8,13 @@ import hapbench_style as style
 from . import scene
 
 SHORTEST, NORMAL = "tilt_sweep_original_averaging", "tilt_sweep_shaped_stiffness"
-DEEP = 0.42  # tilt at which many points lie beyond the median line [rad]
+DEEP = 0.42  # tilt of the tool at which many contacts lie beyond the median line [rad]
 SHALLOW = 0.12
 FRAME = (-1.9, 1.9), (-4.3, 1.0)  # drawn region of the contacts [mm]
-# Omits the yellow end of the colour map, which is hardly visible on white paper.
+# The colour map without its yellow end, which is hardly visible on white paper.
 TILT_COLOURS = ListedColormap(style.plt.get_cmap("viridis")(np.linspace(0, 0.75, 256)))
-# Directory, algorithm, and name of its depth. The wide curve remains visible below the curve that covers it.
+# (folder, algorithm, name of its depth model, line style) of each curve. A wide curve remains visible below a curve
+# that covers it.
 STROKES = (
     ("thesis/corner_normal_projection", "normal_projection", "normal projection", {"lw": 1.1}),
     (
@@ -23,7 +24,7 @@ STROKES = (
         {"lw": 3.2, "alpha": 0.35},
     ),
 )
-# This depth model is not in the thesis, so the figure is also drawn without it.
+# This depth model is not in the thesis. The figure is therefore also drawn without it.
 CONTINUOUS = (
     "run_beyond/corner_continuous_normal_projection",
     "continuous_normal_projection",
@@ -81,7 +82,8 @@ def draw_flip_count(ax, sweep):
         contacts = sweep.contacts(step)
         tilt.append(sweep.tilt[step])
         share.append(contacts.flipped().mean())
-        # A gradient along the outward normal pulls the tool in. Contacts are weighted by depth.
+        # A gradient along the outward normal pulls the tool into the surface. The mean over the contacts is weighted by
+        # depth.
         along = np.einsum("ij,ij->i", contacts.gradient, contacts.normal)
         pull.append(np.average(along, weights=np.maximum(contacts.depth, 1e-12)))
     ax.plot(tilt, share, color=style.PETROL, marker="s", markevery=8)

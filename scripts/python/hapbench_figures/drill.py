@@ -1,4 +1,4 @@
-"""The drill turned in the hole, against the ideal trajectory (figure 7)."""
+"""Figure of the drill that is turned in the hole, compared with the ideal trajectory (thesis Fig. 7)."""
 import numpy as np
 from matplotlib.patches import Polygon
 
@@ -8,13 +8,15 @@ from hapbench.results import MissingResult
 from . import scene
 
 RUN = "thesis/task2_pressed"  # the run that decides claim J1
-MARKS = 120  # largest number of marks for each range of force: more could not be distinguished
-SETTLED = 0.5  # start of the drawn time [s]: the drill starts above its position in the hole
+# Largest number of marks for each range of hand force; more marks could not be distinguished.
+MARKS = 120
+SETTLED = 0.5  # start of the drawn time [s]; before it, the drill moves from above into the hole
 
 
 def samples(results):
-    """Returns the rows of the run in two groups, with a hand force below 2 N and from 2 N on. Only settled rows within
-    the compared tilts are included. Lengths in millimetres."""
+    """Returns the rows of the run in two groups: hand force below 2 N, and hand force of at least 2 N. Only rows after
+    SETTLED and within the tilts that the thesis compares are included. Lengths are in millimetres.
+    """
     rows = results.table(f"{RUN}/ideal_trajectory.csv")
     range_ = scene.PUBLISHED["J1.tilt"]
     selected = (
@@ -36,7 +38,7 @@ def samples(results):
 
 
 def ideal(rows_list):
-    """Returns the ideal position over the tilt, sorted [mm]."""
+    """Returns (tilt [rad], lateral position [mm], height [mm]) of the ideal trajectory, sorted by the tilt."""
     tilt = np.concatenate([rows["tilt_rad"] for rows in rows_list])
     order = np.argsort(tilt)
     column = lambda key: np.concatenate([rows[key] for rows in rows_list])[order]  # noqa: E731

@@ -1,5 +1,5 @@
-"""The man-machine experiments of the thesis with simulated subjects, compared with the published means (thesis Fig. D.7
-and D.8), and the dependence of the success rate on how the task checks the force (a figure of this project)."""
+"""Figures of the thesis's man-machine experiments: simulated subjects beside the published means (thesis Fig. D.7 and
+D.8). A figure of this project shows how the success rate depends on the way in which the task checks the force."""
 import json
 import warnings
 
@@ -26,7 +26,8 @@ METHODS = ((DP, "DP"), (HS, "HS"))
 
 
 def subject_means(records, target, column):
-    """Returns the mean of each subject over its targets at a position, if any value was measured."""
+    """Returns the mean of a column over the targets of each subject at one target position; NaN for a subject without a
+    value."""
     selected = [row for row in records if row["place"] == str(target)]
     subjects = numbers(selected, "subject")
     values = numbers(selected, column)
@@ -38,7 +39,7 @@ def subject_means(records, target, column):
 
 
 def significance(first, second):
-    """Returns the text of the paired t-test over the subjects that have both values."""
+    """Returns a text with the result of the paired t-test. Only subjects with both values are used."""
     both = np.isfinite(first) & np.isfinite(second)
     difference = (first - second)[both]
     if len(difference) < 2 or np.ptp(difference) == 0:
@@ -57,7 +58,7 @@ def significance(first, second):
 
 
 def signed(number):
-    """Formats a number with at most three digits and the typographic minus sign."""
+    """Formats a number with at most three significant digits and a typographic minus sign."""
     return f"{number:.3g}".replace("-", "−")
 
 
@@ -68,7 +69,7 @@ def published_test(claim):
 
 
 def questionnaires(results):
-    """Returns the figure of the published efforts (thesis Fig. D.6), which the ledger stores as claim D5."""
+    """Returns the figure of the efforts that the thesis publishes (Fig. D.6). The ledger stores them as claim D5."""
     results.json("claims.json")
     figure, axes = style.panels(1, 2, 2.2, gridspec_kw={"width_ratios": [2, 1]})
     effort, relative = axes[0]
@@ -126,7 +127,7 @@ def draw_measure(ax, tables, target, claim, measure):
     ax.set_xlim(-0.5, 1.5)
     ax.set_xticks([0, 1], [short for _, short in METHODS])
     ax.grid(axis="x", visible=False)
-    # Placed above the frame, because marks would cover the text inside.
+    # The text stands above the frame, because marks inside the frame would cover it.
     test = {"transform": ax.transAxes, "fontsize": 7, "va": "bottom"}
     ax.text(0, 1.09, f"ours: {significance(*both)}", **test)
     ax.text(0, 1.01, f"publ.: {published_test(f'{claim}.{name}')}", color=style.RED, **test)
@@ -147,7 +148,7 @@ def experiment(results, task):
     for column in axes.T[:3]:
         top = 1.05 * max(ax.dataLim.y1 for ax in column)
         column[0].set_ylim(-0.03 * top, top)
-    # One unstable subject is a hundred times as fast as the others.
+    # One unstable subject is a hundred times as fast as all other subjects.
     axes[0, 3].set_yscale("log")
     style.number_ticks(axes[0, 3].yaxis, (1, 2, 5))
     return style.lettered(figure, axes[0]), {}
@@ -162,9 +163,9 @@ CHECKED = (
 
 
 def recorded(results, task, target, method):
-    """Returns the success rate at a target position in the recorded runs: the fraction of the targets that the subjects
-    removed, over all subjects. In these runs the task compares the force of every step with the threshold, without
-    low-pass filter and grace period."""
+    """Returns the success rate at a target position in the recorded runs: the fraction of targets that were removed,
+    over all subjects. In these runs, the task compares the force of every step with the threshold, without a low-pass
+    filter and without a grace period."""
     rows = results.records(f"thesis/{task}_peg_in_hole_{method}/targets.csv")
     return numbers([row for row in rows if row["place"] == str(target)], "removed").mean()
 

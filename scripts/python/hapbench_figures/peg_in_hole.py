@@ -1,4 +1,4 @@
-"""The planar peg-in-hole simulations (figures A.1, A.2, F.5 and B.3.3)."""
+"""Figures of the planar peg-in-hole simulations (thesis Fig. A.1, A.2, F.5 and B.3.3)."""
 import numpy as np
 
 import hapbench_style as style
@@ -30,7 +30,7 @@ RUNS = (("original_averaging", "original algorithm"), ("shaped_stiffness", "stif
 
 
 def draw_snapshots(axes, scenario, rows, colour):
-    """Draws the peg at equally spaced times, each with the path of its tip until this time."""
+    """Draws the peg at equally spaced times, one in each of `axes`, with the path of its tip up to this time."""
     steps = np.linspace(0, len(rows["px_m"]) - 1, len(axes)).astype(int)
     for ax, step in zip(axes, steps):
         scene.draw_hole(ax, scenario["environment"])
@@ -51,7 +51,7 @@ def trajectories(results):
     figure, axes = style.panels(
         2, SNAPSHOTS + 1, 5.2, gridspec_kw={"width_ratios": [1] * SNAPSHOTS + [2.7]}
     )
-    # Leaves room for the titles of the rows.
+    # Leaves room for the titles above the rows of panels.
     figure.get_layout_engine().set(rect=(0, 0, 1, 0.96), hspace=0.12)
     for line, (algorithm, title), letters in zip(axes, RUNS, ("ab", "cd")):
         look = style.look(algorithm)
@@ -114,7 +114,7 @@ def draw_forces(ax, sweep, step, weight):
     scene.draw_peg(ax, sweep.peg(step), edgecolor=style.GREY)
     k = sweep.scenario["rendering"]["stiffness_N_per_m"]
     forces = -k * (weight * contacts.depth)[:, None] * contacts.gradient
-    out = contacts.gradient[:, 1] < -0.1  # contacts whose force has an upward component
+    out = contacts.gradient[:, 1] < -0.1  # True for contacts whose force has an upward component
     for point, force, outward in zip(scene.MM * contacts.point, forces, out):
         scene.draw_arrow(
             ax,

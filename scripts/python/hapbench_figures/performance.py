@@ -1,4 +1,4 @@
-"""Run time against error."""
+"""Figures of run time against error."""
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,8 +10,8 @@ from hapbench_command import output_of_program
 from hapbench_pictures.over_axes import with_room
 
 ACCURACY = "accuracy/accuracy.json"  # written by hapbench_accuracy
-# For each panel: title, prefixes of the settings' names, error, its label and scale, and the time: per simulated
-# second, per step or per call.
+# Panels: title, prefixes of the names of the settings, name of the error, label and scale of the error, and the unit of
+# work to which the run time refers ("second" of simulated time, "step" or "call").
 PANELS = (
     (
         "integrators and their step",
@@ -55,9 +55,9 @@ PANELS = (
         "second",
     ),
 )
-# The order of these settings is not the order of their costs, so their marks are not joined.
+# Prefixes of settings whose marks are not joined by a line, because their order is not the order of their run times.
 UNORDERED = ("reduction/",)
-# Largest drawn error [mm]: the block is 15 mm wide, so with a larger error the drill has left it.
+# Largest drawn error [mm]. The block is 15 mm wide: a drill with a larger error has left it.
 LARGEST_ERROR_MM = 10
 
 
@@ -79,8 +79,8 @@ class Setting:
 
 
 def settings_of(results, beginnings, column, scale, per):
-    """Returns the settings that a logarithmic plot can show: they completed, and have a positive and plausible
-    error."""
+    """Returns the settings that a logarithmic plot can show: their runs completed, and their error is positive. An
+    error in mm must also be below LARGEST_ERROR_MM."""
     found = []
     for row in results.json(ACCURACY)["benchmarks"]:
         if (
@@ -105,8 +105,9 @@ def settings_of(results, beginnings, column, scale, per):
 
 
 def knee(settings):
-    """Returns the knee of the front of run time and error, as `hapbench plot` of `converge --over` marks it; the
-    program finds it. Returns None if the front is straight or has fewer than four settings."""
+    """Returns the setting at the knee of the front of run time and error. The program finds the knee, as in `hapbench
+    plot` of `converge --over`. Returns None if the front is straight or has fewer than four settings.
+    """
     points = [f"{setting.time!r}:{setting.error!r}" for setting in settings]
     found = output_of_program("finds the knee of a front", "plot", "--knee", *points).strip()
     return settings[int(found)] if found else None
@@ -150,8 +151,8 @@ def draw_panel(ax, results, title, beginnings, column, label, scale, per):
 
 
 def draw_series(ax, name, settings, look, joined):
-    """Draws the settings of a sequence, joined by a line. A setting without a number, such as "exact", is drawn as a
-    mark only."""
+    """Draws the settings of a series, joined by a line. A setting whose name has no number, such as "exact", has a mark
+    outside of the line."""
     label = name.replace("_", " ")
     ordered = [s for s in settings if joined and any(map(str.isdigit, s.short))]
     alone = [s for s in settings if s not in ordered]
@@ -175,8 +176,8 @@ def draw_series(ax, name, settings, look, joined):
 
 
 def legends_below(axes, drawn):
-    """Places the names of the curves below all panels, where they cover no mark. Panel (f) has the same curves as panel
-    (a)."""
+    """Draws the legends of all panels below the panels, where they cover no mark. Panels (a) and (f) share a legend,
+    because they have the same curves."""
     add_legend(axes[0], "a, f", drawn[0], "upper left", 1)
     add_legend(axes[1], "b", drawn[1], "upper center", 3)
     add_legend(axes[2], "d", drawn[3], "upper right", 1)

@@ -1,5 +1,5 @@
-"""Elements shared by several figures: the numbers that the thesis publishes, and the planar peg-in-hole scene with its
-contacts in millimetres."""
+"""Elements that several figures share: the numbers that the thesis publishes, and the planar peg-in-hole scene with its
+contacts. Drawings are in millimetres."""
 import json
 from dataclasses import dataclass
 from pathlib import Path
@@ -21,18 +21,18 @@ LEDGER = "claims.json"  # measured numbers of each claim, stored beside the resu
 
 
 def published(id_):
-    """Returns the published number of an entry that has a single number or a mean."""
+    """Returns the published number of an entry of PUBLISHED: its value, or else its mean."""
     return PUBLISHED[id_].get("value", PUBLISHED[id_].get("mean"))
 
 
 def spread(id_):
-    """Returns the standard deviation or the standard error of an entry."""
+    """Returns the published standard deviation of an entry of PUBLISHED, or else its standard error."""
     return PUBLISHED[id_].get("std", PUBLISHED[id_].get("standard_error"))
 
 
 @dataclass(frozen=True)
 class Contacts:
-    """Contacts of one step. All coordinates lie in the plane and are in SI units."""
+    """Contacts of one step. Coordinates are in the plane of the scene, in SI units."""
 
     point: np.ndarray
     normal: np.ndarray
@@ -41,13 +41,15 @@ class Contacts:
     weight: np.ndarray
 
     def flipped(self):
-        """Returns True for contacts whose gradient points against the inverse surface normal: they pull the tool in."""
+        """Returns for each contact True if its gradient points along the outward normal. Such a contact pulls the tool
+        into the surface."""
         return np.einsum("ij,ij->i", self.gradient, self.normal) > 0
 
 
 @dataclass(frozen=True)
 class Peg:
-    """Pose and size of a round-tipped tool in SI units. The axis points out of the tip."""
+    """Pose and size of a tool with a round tip, in the plane of the scene and in SI units. `axis` points out of the
+    tip."""
 
     tip: np.ndarray
     axis: np.ndarray
@@ -69,8 +71,8 @@ class Peg:
         return (distance <= self.diameter / 2) & (s >= -self.length)
 
     def exit_distance(self, points, directions):
-        """Returns the exit distance of each point along its direction [m]. The tool is convex, so bisection finds
-        it."""
+        """Returns the distance [m] that each point moves along its direction until it leaves the tool. The tool is
+        convex, so that bisection finds the distance."""
         low, high = np.zeros(len(points)), np.full(len(points), 2 * (self.length + self.diameter))
         for _ in range(40):
             middle = (low + high) / 2
@@ -80,7 +82,7 @@ class Peg:
 
 
 def peg_of(tool, rows, step):
-    """Returns the tool of a scenario in one row of its trajectory."""
+    """Returns the Peg with the pose in row `step` of a trajectory. `tool`: the tool of the scenario."""
     tip, axis = (
         np.array([rows[name][step] for name in names])
         for names in (("px_m", "py_m"), ("axis_x", "axis_y"))
@@ -89,7 +91,7 @@ def peg_of(tool, rows, step):
 
 
 class Sweep:
-    """A run that recorded its contacts."""
+    """Results of a run of which the contacts were recorded."""
 
     def __init__(self, results, name, group="thesis"):
         self.scenario = results.json(f"{group}/{name}/scenario.effective.json")
@@ -159,12 +161,13 @@ def draw_peg(ax, peg, median=False, **keywords):
 
 
 def draw_segments(ax, contacts, colours):
-    """Draws a segment from each contact along its gradient, as long as its depth. It ends where the depth model assumes
-    that the point leaves the tool."""
+    """Draws a segment from each contact along its gradient, as long as the depth of the contact. By the depth model,
+    the point leaves the tool at the end of the segment."""
     ends = contacts.point + contacts.depth[:, None] * contacts.gradient
     for colour in dict.fromkeys(colours):
         same_colour = [c == colour for c in colours]
-        # One line with gaps and one row of marks, because the SVG of single elements would be much larger.
+        # All segments of a colour are one line with gaps, and all marks are one line, because single elements would
+        # make the SVG much larger.
         lines = (
             np.stack(
                 [
@@ -183,7 +186,7 @@ def draw_segments(ax, contacts, colours):
 
 
 def draw_arrow(ax, start, vector, colour, label=None, at=(3, 3), **keywords):
-    """Draws an arrow with both ends in the units of the axes, and the label at its head."""
+    """Draws an arrow from `start` to `start + vector`, in the units of the axes, with the label at its head."""
     head = np.asarray(start) + vector
     style_ = {
         "arrowstyle": "-|>",
@@ -214,8 +217,8 @@ def frame(ax, x, y):
 
 
 def draw_contacts(ax, sweep, step, x, y, flips=False):
-    """Draws hole, peg and contacts with their depths in this region of the scene, and returns the contacts. With
-    `flips`, the median line replaces the hole's points, and flipped gradients are drawn in petrol.
+    """Draws hole, peg and contacts with their depths in the region `x`, `y` [mm], and returns the contacts. With
+    `flips`, draws the median line of the peg instead of the points of the hole, and draws flipped gradients in petrol.
     """
     contacts = sweep.contacts(step)
     draw_hole(ax, sweep.scenario["environment"], points=not flips)

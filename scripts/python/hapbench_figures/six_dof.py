@@ -1,4 +1,5 @@
-"""The force of laws on a device without torque against the force of a device with torque (figures of this project)."""
+"""Figures of this project: the force of laws on a device without torque, compared with the force of a device with
+torque."""
 import json
 
 import numpy as np
@@ -21,14 +22,14 @@ HAND, HAND_ROTATION, COUPLING, COUPLING_ROTATION = (
     20000.0,
     0.4,
 )  # values of the hand and of six_dof in the scenes
-SMALLEST = 1e-3  # smaller errors are drawn at this value [N]
-# Distance from the force point to the edge of the plane, which is 4 mm above the tip [m].
+SMALLEST = 1e-3  # smallest drawn force error [N]; smaller errors are drawn at this value
+# Distance from the force point to the contact at the edge of the plane [m]. The edge is 4 mm above the tip.
 LEVER = 0.026
 
 
 def look(law):
-    """Returns the look of a law. The proxies share a colour; the proxy that is matched to the hand is hollow and
-    dotted."""
+    """Returns (plot style, label) of a law. Both proxies have the same colour. The proxy that is matched to the hand
+    has hollow marks and a dotted line."""
     if law == "matched_proxy":
         appearance = style.look("proxy")
         return {
@@ -46,7 +47,8 @@ def look(law):
 
 
 def rows_of(results):
-    """Returns every run of the study: scene, law, values of six_dof, index, and metrics by short names."""
+    """Returns each run of the study as a dict: scene, law, the values of the field six_dof, index, and metrics by short
+    names."""
     rows = []
     for index, record in enumerate(results.records(f"{STUDY}/sweep.csv")):
         fields = json.loads(record["six_dof"])
@@ -68,8 +70,9 @@ def rows_of(results):
 
 
 def chosen(rows, **wanted):
-    """Returns the rows with these values. A field that a row does not name has its default value. Only the fields of
-    `wanted` and the force point may be named in a row."""
+    """Returns the rows with the values `wanted`. The rotational stiffness of the hand, the grip and the pivot must have
+    their default values, unless they are in `wanted`. Raises MissingResult if there is no such row.
+    """
     usual = ("hand_rotational_stiffness_N_m_per_rad", "grip_m", "pivot_m")
     found = [
         row
@@ -83,9 +86,9 @@ def chosen(rows, **wanted):
 
 
 def ratio_of_closed_form(grip, matched):
-    """Returns the ratio of the proxy's force to the force of the device with torque, at one contact. K' is the series
-    stiffness of coupling and hand. The proxy is either matched to a grip at the force point, or does not rotate.
-    """
+    """Returns the force of the proxy divided by the force of the device with torque, for one contact. `grip`: distance
+    of the grip from the force point [m]. `matched`: true for a proxy that is matched to a hand with its grip at the
+    force point, false for a proxy that does not rotate."""
     series = 1 / COUPLING + 1 / HAND
     turning = 1 / COUPLING_ROTATION + 1 / HAND_ROTATION if matched else 0.0
     with_torque = series + (LEVER - grip) ** 2 / HAND_ROTATION + LEVER**2 / COUPLING_ROTATION
@@ -93,7 +96,7 @@ def ratio_of_closed_form(grip, matched):
 
 
 def draw_cycle(ax, results, rows):
-    """Draws the force along the cycle in the slot."""
+    """Draws the magnitude of the force over the cycle of motion in the slot, for each law."""
     shown = 0
     for row in chosen(rows, scene="six_dof_slot"):
         table = results.table(f"{STUDY}/runs/{row['index']:06d}/six_dof.csv")
@@ -124,7 +127,8 @@ def draw_cycle(ax, results, rows):
 
 
 def draw_by_scene(ax, rows, metric, scale, smallest=None):
-    """Draws a mark for each scene and law. Values below `smallest` are drawn at `smallest`."""
+    """Draws one mark for each scene and law. Values below `smallest` are drawn at `smallest`. `scale`: factor of the
+    metric."""
     for i, law in enumerate(LAWS):
         at, values = [], []
         for k, scene in enumerate(SCENES):
@@ -138,7 +142,7 @@ def draw_by_scene(ax, rows, metric, scale, smallest=None):
 
 
 def draw_error(ax, rows):
-    """Draws the force error of each law, and the error without any force."""
+    """Draws the force error of each law in each scene, and as a grey line the error of a zero force."""
     draw_by_scene(ax, rows, "force_error_rms_N", 1.0, SMALLEST)
     for k, scene in enumerate(SCENES):
         value = chosen(rows, scene=scene, law=LAWS[0])[0]["reference_force_rms_N"]
@@ -147,7 +151,8 @@ def draw_error(ax, rows):
 
 
 def draw_grip(ax, rows):
-    """Draws the force error over the grip distance at the edge of a plane, and the closed form for one contact."""
+    """Draws the force error of the proxies over the grip distance at the edge of a plane, and the closed form for one
+    contact."""
     grips = np.linspace(-0.012, 0.012, 49)
     for law in ("proxy", "matched_proxy"):
         style_of, label = look(law)
@@ -172,8 +177,8 @@ def draw_grip(ax, rows):
 
 
 def draw_pivot(ax, rows):
-    """Draws lost torque (left axis) and unresisted rotation (right axis, dashed) over the pivot, with a line for each
-    scene."""
+    """Draws the lost torque (left axis) and the unresisted rotation (right axis, dashed) over the position of the
+    pivot, with one line for each scene."""
     other = ax.twinx()
     for i, (scene, title) in enumerate(SCENES.items()):
         of_pivot = [
@@ -253,7 +258,7 @@ def comparison(results):
 
 
 def chosen_everywhere(rows, law=None):
-    """Returns the runs with the default hand, of one law or of all laws."""
+    """Returns the runs with the default hand in all scenes, of one law or of all laws."""
     return [
         row
         for scene in SCENES

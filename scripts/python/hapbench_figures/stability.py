@@ -1,6 +1,6 @@
-"""Stability: every algorithm on many springs (figures A.4 and A.5), the root locus of A.3, the largest stable stiffness
-over other fields (`limit --over`) and on each device (`limit --device`), and the largest stable stiffness of a real
-paddle."""
+"""Figures about stability: every algorithm on many springs (thesis Fig. A.4 and A.5), the root locus (A.3), the largest
+stable stiffness over other fields (`limit --over`) and on each device (`limit --device`), and the largest stable
+stiffness of a real paddle."""
 import json
 
 import numpy as np
@@ -32,7 +32,8 @@ def settling(rows):
 
 
 def paths(results, kind):
-    """Returns damping and force; `kind` is "limited" or "unlimited"."""
+    """Returns the figure of the mass's path with each algorithm, beside the path with stiffness shaping, and no values
+    for the caption. `kind`: "limited" or "unlimited"."""
     figure, axes = style.panels(2, 4, 4.3, sharex=True, sharey=True)
     proposed = results.table(f"thesis/springs_{kind}_shaped_stiffness/trajectory.csv")
     names = [
@@ -58,7 +59,7 @@ def paths(results, kind):
             if time is not None
             else "has not settled"
         )
-        # Placed above the frame, because some curves fill it.
+        # The title stands above the frame, because some curves fill the frame.
         ax.set_title(look.label, color=look.colour, pad=14)
         ax.text(0, 1.03, text, transform=ax.transAxes, fontsize=7)
     style.plt.setp(axes[-1], xlabel="x [mm]")
@@ -67,7 +68,7 @@ def paths(results, kind):
 
 
 def spaced(number):
-    """Formats a number with spaces between thousands, and with decimals if it has few digits before them."""
+    """Formats a number with spaces between thousands. A number below 1000 that is not an integer has three decimals."""
     return f"{number:,.{0 if number >= 1000 or number == round(number) else 3}f}".replace(",", " ")
 
 
@@ -125,7 +126,7 @@ def root_locus(results):
 
 
 def over(results, study):
-    """Returns the limits that the study of this name found."""
+    """Returns the figure of the limits that a study of `limit --over` found, and the values of its caption."""
     found = Limits(results, f"stability_{study}/")
     return draw_over(found), {
         "field": axis(found.field),
@@ -144,7 +145,8 @@ def of_all_devices(results):
 
 
 MEASURED = scene.ROOT / "scenarios" / "library" / "validation" / "measured.csv"
-SCATTER = 1.3  # factor between sessions in which the same setting was measured
+# Factor by which the measured limit of the same setting differed between two sessions.
+SCATTER = 1.3
 
 
 def hardware(results):

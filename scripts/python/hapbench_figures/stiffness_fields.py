@@ -1,4 +1,4 @@
-"""Directional stiffness of several laws (figures 2 and C.3, and a figure of all algorithms)."""
+"""Figures of the directional stiffness of several laws (thesis Fig. 2 and C.3), and a figure of all algorithms."""
 from textwrap import wrap
 
 import numpy as np
@@ -11,23 +11,23 @@ import hapbench_style as style
 from . import scene
 
 SWEEP = "tilt_sweep_shaped_stiffness"
-PEG = "stiffness_peg"  # folder of the same sweep with every algorithm
+PEG = "stiffness_peg"  # folder of the results of a sweep over the tilt with every algorithm
 TITLES = {
     "summation": "sum",
     "mean": "mean",
     "virtual_coupling": "coupling",
     "shaped_stiffness": "shaping",
 }
-PEG_TILT = 0.12  # tilt in figure 2 and in the figure of all algorithms [rad]
+PEG_TILT = 0.12  # tilt of the peg in figure 2 and in the figure of all algorithms [rad]
 DIRECTIONS = np.linspace(0, 2 * np.pi, 73)
-FRAME = (-1.3, 1.3), (-4.2, 0.9)  # drawn region of the contacts [mm]
-# Half width of a panel and its ticks, in units of K.
+FRAME = (-1.3, 1.3), (-4.2, 0.9)  # drawn region of the contacts: x and y from and to [mm]
+# Half width of a panel of k(e) and positions of its ticks, in units of K.
 REACH, TICKS = 1.6, (-1, 0, 1)
 SUMMATION_REACH, SUMMATION_TICKS = 45, (-40, 0, 40)
 
 
 def rendered_tensor(results, directory, step):
-    """Returns the rendered tensor S of one row, restricted to the plane."""
+    """Returns the x and y part (2 × 2) of the stiffness tensor S that was rendered in one row."""
     row = {
         name: column[step]
         for name, column in results.table(f"{directory}/stiffness_tensor.csv").items()
@@ -36,13 +36,14 @@ def rendered_tensor(results, directory, step):
 
 
 def field(tensor):
-    """Returns the ratio k(e) = e^T S e in each direction as a curve."""
+    """Returns points of the curve k(e) e, with the stiffness ratio k(e) = e^T S e in each direction e."""
     e = np.stack([np.cos(DIRECTIONS), np.sin(DIRECTIONS)], 1)
     return e * np.einsum("ij,jk,ik->i", e, tensor, e)[:, None]
 
 
 def draw_field(ax, name, tensor, contacts, reach, ticks):
-    """Draws k(e) in the algorithm's colour and the ratio along each contact. Returns these ratios."""
+    """Draws k(e) in the algorithm's colour, and a mark for the ratio along each contact. Returns the ratios along the
+    contacts."""
     curve, colour = field(tensor), style.look(name).colour
     limit = scene.PUBLISHED["C4.ratio"]["at_most"]
     ax.fill(*curve.T, facecolor=(*to_rgb(colour), 0.22), edgecolor=colour, lw=1.1)
@@ -60,8 +61,8 @@ def draw_field(ax, name, tensor, contacts, reach, ticks):
 
 
 def of_four_laws(results, tilts, height):
-    """Draws a row for each tilt: the contacts, and k(e) of four laws. The sum has its own scale. Also returns the drawn
-    elements of each law."""
+    """Draws for each tilt a row of panels: the contacts, and k(e) of four laws. The law `summation` has its own scale.
+    Returns the figure and the drawn elements of each law."""
     sweep, drawn = scene.Sweep(results, SWEEP), []
     figure, axes = style.panels(
         len(tilts), 5, height, gridspec_kw={"width_ratios": [0.62, 1, 1, 1, 1]}
@@ -118,7 +119,8 @@ def fields_over_tilt(results):
 
 
 def own_scale(tensor):
-    """Returns the common scale, or a larger scale if k(e) does not fit into it."""
+    """Returns (half width of the panel, ticks): the scale of all panels, or a larger scale if k(e) does not fit into
+    it."""
     greatest = np.linalg.eigvalsh(tensor)[-1]
     if greatest < REACH:
         return REACH, TICKS
@@ -127,7 +129,8 @@ def own_scale(tensor):
 
 
 def of_all_algorithms(results):
-    """Draws a panel for each algorithm, with its ratios below. The first panel is the scene."""
+    """Draws one panel of k(e) for each algorithm, with the ratios along the contacts as text below. The first panel
+    shows the scene."""
     names = [row["algorithm"] for row in results.records(f"{PEG}/comparison.csv")]
     columns = 6
     lines = -(-(1 + len(names)) // columns)

@@ -1,5 +1,5 @@
-"""The three evaluation tasks of 3.2 (figures 4, 5, C.2, C.4 and E.1 to E.4), and the effect of the density of points on
-task 2 (a figure of this project)."""
+"""Figures of the three evaluation tasks of thesis 3.2 (Fig. 4, 5, C.2, C.4 and E.1 to E.4), and a figure of this
+project about the effect of the point density on task 2."""
 import numpy as np
 
 import hapbench_style as style
@@ -13,8 +13,8 @@ TASKS = (
 )
 DENSITIES = (("signed_distance", "signed distance"), ("binary", "binary"))
 ITERATIONS = (1, 2, 3, 4, 5, 10, 20, 40, 80, 160)
-BINS = 240  # number of bins of a time axis; more could not be distinguished at column width
-FEW_BINS = 38  # number of bins if thirty panels share a page
+BINS = 240  # number of bins of a time axis; more bins could not be distinguished at column width
+FEW_BINS = 38  # number of bins of a time axis if thirty panels share a page
 
 
 def trajectory(results, task, density="signed_distance"):
@@ -22,27 +22,28 @@ def trajectory(results, task, density="signed_distance"):
 
 
 def ratios(results, task, iteration, density="signed_distance"):
-    """Returns the rows of one iteration that have contacts."""
+    """Returns the rows of ratios.csv after `iteration` iterations in which contacts were rendered. `density`: the depth
+    model in the name of the run."""
     table = results.table(f"thesis/{task}_{density}/ratios.csv")
     selected = (table["iteration"] == iteration) & (table["rendered"] > 0)
     return {name: column[selected] for name, column in table.items()}
 
 
 def cases(results, id_):
-    """Returns the cases of a claim in the ledger: name and numbers of each case."""
+    """Returns the cases of a claim from the ledger. Each case has a name and numbers."""
     return next(
         claim["cases"] for claim in results.json(scene.LEDGER)["claims"] if claim["id"] == id_
     )
 
 
 def thin(*columns, count=80):
-    """Returns `count` evenly spaced rows."""
+    """Returns each column reduced to at most `count` evenly spaced rows."""
     pick = np.unique(np.linspace(0, len(columns[0]) - 1, count).astype(int))
     return [column[pick] for column in columns]
 
 
 def published_count(ax, x, task, what):
-    """Draws mean and standard deviation at the right edge of a time axis."""
+    """Draws the published mean and standard deviation of a number at the right end of a time axis."""
     id_ = f"{task}.{what}"
     ax.errorbar(
         [x],
@@ -54,7 +55,7 @@ def published_count(ax, x, task, what):
 
 
 def span(time, values, bins=BINS):
-    """Returns for each time span its start, and the smallest and largest value in it."""
+    """Returns (start, smallest value, largest value) of each of `bins` time intervals, by style.reduced()."""
     return style.reduced(time, values, values, bins)
 
 
@@ -62,8 +63,8 @@ PERIOD = 1 / 2048  # period of the trainer's loop [s]
 
 
 def loop_load(ax, results, task, duration):
-    """Draws the fraction of the loop's period that a step takes, over time, on a separate axis. Returns None if no
-    times were measured."""
+    """Draws on a second y axis the fraction of the loop's period that a step takes, over time. Returns None if no times
+    were measured."""
     path = f"step_latency/{task}_signed_distance/timing.json"
     timing = results.json(path) if results.has(path) else {}
     medians = np.array((timing.get("step_latency") or {}).get("over_time_s", []))
@@ -72,7 +73,7 @@ def loop_load(ax, results, task, duration):
     load = ax.twinx()
     time = (np.arange(len(medians)) + 0.5) * duration / len(medians)
     load.plot(*thin(time[::3], 100 * medians[::3] / PERIOD), ".", color=style.BLACK, ms=1.8)
-    # Placed above the points, which share the panel.
+    # The curve is drawn above the points that share the panel.
     load.set(yscale="log", ylim=(1e-9, 400), yticks=[0.1, 1, 10, 100])
     load.set_yticklabels(["0.1", "1", "10", "100"])
     if task == "task3_spin" and results.has(scene.LEDGER):
@@ -168,8 +169,8 @@ def draw_distribution(ax, y, values, marker, label):
 
 
 def quantiles(results, column, tasks, density):
-    """Returns percentiles 0, 5, 50, 95 and 100 of a ratio over all rows of the tasks, with a row for each number of
-    iterations."""
+    """Returns the percentiles 0, 5, 50, 95 and 100 of a stiffness ratio over all rows of all tasks, with one row for
+    each number of iterations."""
     values = (
         np.concatenate([ratios(results, task, iteration, density)[column] for _, task, _ in tasks])
         for iteration in ITERATIONS
@@ -178,8 +179,8 @@ def quantiles(results, column, tasks, density):
 
 
 def draw_quantiles(ax, results, tasks, density="signed_distance"):
-    """Draws the percentiles of the largest and of the smallest ratio, with the published range after one iteration at
-    the left edge."""
+    """Draws the percentiles of the largest and of the smallest stiffness ratio over the number of iterations. The
+    published range after one iteration is drawn at the left edge."""
     for column, colour, marker, extreme in (
         ("ratio_max", style.PETROL, "o", 4),
         ("ratio_min", style.AMBER, "s", 0),
@@ -249,7 +250,8 @@ def convergence(results):
 
 
 def over_time(draw, label, height=2.6, rows=1):
-    """Creates panels over the time of the three tasks and calls `draw(ax, row, task)` for each."""
+    """Creates a grid of panels over time, with one column for each of the three tasks. Calls `draw(ax, row, task)` for
+    each panel."""
     figure, axes = style.panels(rows, 3, height, sharey="row", sharex="col")
     for j, (_, task, title) in enumerate(TASKS):
         for i in range(rows):
@@ -293,7 +295,7 @@ def model_force(results):
         ax.axhline(scene.published("L1.threshold"), color=style.RED, ls="--", lw=0.9)
 
     figure, axes = over_time(draw, ["model force [N]"])
-    # The tapping forces of task 2 are ten times as large as all other forces.
+    # The forces of the taps in task 2 are ten times as large as all other forces.
     axes[0, 0].set_yscale("symlog", linthresh=0.5, linscale=1.2)
     axes[0, 0].set_ylim(0, 1.15 * max(ax.dataLim.y1 for ax in axes[0]))
     axes[0, 0].set_yticks(
@@ -310,7 +312,8 @@ def model_force(results):
 
 
 def ratio_over_time(results, extreme):
-    """Draws the "greatest" or the "least" ratio of a step's contacts after each number of iterations."""
+    """Draws the largest ("greatest") or smallest ("least") stiffness ratio over the contacts of each step, after each
+    number of iterations."""
     above = extreme == "greatest"
     column, colour, published_end = (
         ("ratio_max", style.PETROL, "at_most") if above else ("ratio_min", style.AMBER, "at_least")
@@ -321,7 +324,7 @@ def ratio_over_time(results, extreme):
         time, low, high = span(rows["time_s"], rows[column], FEW_BINS)
         ax.fill_between(time, low, high, color=colour, alpha=0.75, lw=0.4, edgecolor=colour)
         ax.axhline(1, color=style.BLACK, lw=0.7, ls="--")
-        # Prints the extreme value, because the curve may coincide with the dashed line.
+        # The extreme value is also printed, because the curve may coincide with the dashed line.
         bound = f"≤ {rows[column].max():.4g}" if above else f"≥ {rows[column].min():.4g}"
         style.note(ax, 0.5, 0.8 if above else 0.15, bound, colour, ha="center", va="center")
         if ITERATIONS[i] == 1:
@@ -346,12 +349,13 @@ def ratio_over_time(results, extreme):
     return figure, {"first": ", ".join(labels[:-1]), "last": labels[-1], "spans": FEW_BINS}
 
 
-TIMES = (40, 10, 4)  # factors by which the number of points is increased; each has a curve
+TIMES = (40, 10, 4)  # factors by which the number of points is increased, one curve for each
 
 
 def decoupling(results):
-    """Draws how far stiffness shaping decouples the force from the density of points (P1; a figure of this project):
-    error over the updates."""
+    """Draws the change of the force that is caused by more points, over the number of weight updates of stiffness
+    shaping (claim P1; a figure of this project). The smaller the change, the less the force depends on the density of
+    points."""
     shaped = [
         case["values"]
         for case in cases(results, "P1")

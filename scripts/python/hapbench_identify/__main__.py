@@ -1,5 +1,5 @@
-"""python -m hapbench_identify WORDS…: fits a device to its log, or creates the signal to play. The program calls it for
-`hapbench import device`."""
+"""Command line of `hapbench import device`, which runs python -m hapbench_identify WORDS…. It fits a device to its log,
+or creates the force signal to play."""
 import json
 import math
 import sys
@@ -66,8 +66,8 @@ UNITS = {
     "offset_N": "N",
 }
 UNTRUSTED = "The true values can lie outside of the intervals: do not read them as 95 % intervals"
-NEGLIGIBLE = 1e-3  # offset force that counts as negligible, relative to the largest force
-# Largest number of drawn samples, which limits the size of the picture of a long log.
+NEGLIGIBLE = 1e-3  # largest offset that counts as zero, as a fraction of the largest force
+# Largest number of samples in the picture, which limits the size of the picture of a long log.
 MAX_DRAWN = 6000
 IN_DEVICE = (
     "handle_mass_kg",
@@ -151,8 +151,8 @@ def run(options):
 
 
 def not_in_log():
-    """Returns the fields of an impedance device that no fit of a log sets: the fields of the schema without the fitted
-    fields."""
+    """Returns the names of the fields of an impedance device that no fit sets: the fields in the schema, except the
+    fitted fields."""
     schema = json.loads(SCHEMA.read_text(encoding="utf-8"))
     devices = [of["properties"] for of in schema["else"]["properties"]["device"]["oneOf"]]
     (fields,) = [of for of in devices if of.get("type") == {"const": "impedance"}]
@@ -160,7 +160,8 @@ def not_in_log():
 
 
 def log_text(data):
-    """Returns text about the columns that were read, the clock, and the fields that the log does not determine."""
+    """Returns a text about the columns that were read, the clock of the log, and the fields that the log does not
+    determine."""
     return (
         f"not in the log: {', '.join(data['not_in_log'])}; add them to {data['device']} if your device has them "
         "(hapbench describe device)\n"
@@ -229,8 +230,8 @@ def identify(options, out):
 
 
 def parameters_of(log, found):
-    """Returns value and interval of each parameter by name, in the order of UNITS. A value is None if the log does not
-    determine it, and an end of an interval is None if it is infinite."""
+    """Returns the value and the interval of each parameter by name, in the order of UNITS. The value is None if the log
+    does not determine it. An infinite end of an interval is None."""
     parameters = {
         name: {"value": None if name in found.undetermined else value, "interval": ends}
         for name, value, ends in zip(NAMES, found.values.tolist(), found.intervals.tolist())
@@ -266,8 +267,8 @@ def parameters_of(log, found):
 
 
 def value_text(name, one, largest_force):
-    """Formats a parameter for the table. An offset is printed as zero within its error if it is not significantly
-    different from 0 and the corresponding force is negligible."""
+    """Formats a parameter for the printed table. An offset that is not significantly different from 0 and negligible
+    beside the largest force is printed as zero within its error."""
     if one["value"] is not None:
         return f"{one['value']:.4g}"
     if name == "offset_N" and None not in one["interval"]:
@@ -278,8 +279,8 @@ def value_text(name, one, largest_force):
 
 
 def unless_wide(value, interval):
-    """Returns no value if the interval is wider than the value. The interval is still printed and excludes some
-    values."""
+    """Returns a parameter without a value if its interval is wider than the value. The interval is still printed,
+    because it excludes some values."""
     low, high = interval
     return {
         "value": value if high - low <= abs(value) or low == high else None,
@@ -288,7 +289,7 @@ def unless_wide(value, interval):
 
 
 def require_right_sign(options, log, found):
-    """Refuses a log that only a force with the opposite sign explains."""
+    """Fails if a force of the opposite sign explains the log, and the logged force does not."""
     other = turned_round(log, found)
     if other is None:
         return
@@ -301,8 +302,8 @@ def require_right_sign(options, log, found):
 
 
 def refuse_units(options, log, problem, found=None):
-    """Refuses a log whose units are probably not s, N and m, and names the likely units. A log in milliseconds and
-    millimetres fits equally well, with a handle mass of tons."""
+    """Fails with the likely units of a log whose units are probably not s, N and m. A log in milliseconds and
+    millimetres fits equally well, but gives a handle mass of tons."""
     advice = units_text(options, log, found)
     if not advice and found is not None and found.misfit:
         fail(
@@ -320,7 +321,7 @@ def refuse_units(options, log, problem, found=None):
 
 
 def units_text(options, log, found):
-    """Returns a sentence about the likely units of a log, or ""."""
+    """Returns a text about the likely units of a log; empty if other units do not explain the log."""
     given = given_scales(options)
     text = " or ".join(
         f"{text}: {scale_option(factors, given)}"
@@ -411,7 +412,8 @@ def draw(file, log, found):
 
 
 def design_of(words):
-    """Returns the kind of signal and its numbers, parsed from words such as chirp and force=2."""
+    """Returns (kind of the signal, numbers by name) from words such as chirp and force=2. Missing numbers have
+    defaults."""
     kind, *given = words
     require_name("--design: got", kind, list(KINDS))
     numbers = {"force": 1.0, "travel": 0.05, "rate": 1000.0, "duration": 5.0, "mass": 0.05}

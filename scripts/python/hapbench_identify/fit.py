@@ -1,4 +1,4 @@
-"""Least squares on the simulated position, with 95 % intervals."""
+"""Fits the parameters of a handle to a log by least squares on the simulated position, with 95 % intervals."""
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -18,17 +18,18 @@ SCORED, PIECE, SHORT_PIECE = (
 KEPT, DISTINCT, BLOCKS = 8, 3, 12
 LONGEST = 20.0  # largest delay in the search [samples]
 FEWEST_COUNTS = 10.0
-DELAYS = np.arange(0.0, 8.5, 0.5)  # delays of the starting values [samples]
+DELAYS = np.arange(0.0, 8.5, 0.5)  # delays of the starting values of the search [samples]
 SMOOTHINGS = (0.02, 0.05, 0.1)  # full widths of the smoothing kernel [s]
 GRID = [
     (m, c, d) for m in (0.05, 0.2, 0.8) for c in (0.02, 0.2, 0.5) for d in (1.0, 4.0)
-]  # mass [kg], dry friction as a fraction of the peak force, delay [samples]
+]  # mass [kg], dry friction as a fraction of the peak force, delay [samples] of further starting values
 # Window lengths over which the residual is averaged to find its slow part [s].
 WINDOWS = (0.005, 0.02, 0.05, 0.2)
-# Size of the slow part, in standard deviations, above which the intervals are widened, and above which the intervals
-# are not trusted.
+# Thresholds for the result of slow_part() [standard deviations]: above the first, the intervals are widened; above the
+# second, they are not trusted.
 WIDENED, DISTRUSTED = 1.5, 4.0
-# Smallest decrease of the sum of squares, in units of the variance, for which a non-zero initial speed is fitted.
+# Smallest decrease of the sum of squares, in units of the variance of the noise, for which a non-zero initial speed is
+# fitted.
 FROM_REST = 12.0
 
 
@@ -39,7 +40,7 @@ class Fit:
     # Measured minus simulated position of each sample [m]; NaN for missing samples.
     residual: np.ndarray
     rms: float  # root mean square of the residual [m]
-    # Number of samples of the residual that count as one independent sample, from its autocorrelation.
+    # Number of consecutive residuals that count as one independent sample, from memory_of().
     memory: float
     # True if the residual exceeds noise and encoder error: the device has effects that the model lacks.
     misfit: bool
@@ -50,8 +51,8 @@ class Fit:
 
 
 class Cost:
-    """Residual of a simulation over the first rows of a log. The mean over each piece is subtracted, so that positions
-    before a piece have no effect on it."""
+    """Residual of a simulation over the first part of a log (`seconds`). The mean over each piece (`piece` [s]) is
+    subtracted, so that motion before a piece has no effect on the residuals in it."""
 
     def __init__(self, simulate, log, seconds=np.inf, piece=np.inf):
         self.rows = int(min(len(log.time), max(100.0, seconds / log.step)))
@@ -69,8 +70,8 @@ class Cost:
         return values - np.repeat(np.add.reduceat(values, self.starts) / self.counts, self.counts)
 
     def simulated(self, parameters):
-        """Returns the simulated positions. The latest result is cached, because derivatives are evaluated at the same
-        parameters as the residual."""
+        """Returns the simulated positions [m]. The latest result is cached, because the derivatives are needed at the
+        same parameters as the residual."""
         if not np.array_equal(parameters, self._last_parameters):
             positions = self._simulate(parameters, self.rows)
             self._last_parameters, self._answer = (
@@ -111,9 +112,9 @@ class Found:
 
 
 def least_squares(cost, start, scale, steps, tolerance, held=()):
-    """Levenberg-Marquardt method. Mass stays positive; friction and delay stay non-negative. SciPy's solver with bounds
-    decomposes the whole Jacobian: it finds the same minimum and takes 1.3 times as long for a log of 60 s at 4 kHz.
-    """
+    """Minimises the sum of squares by the Levenberg-Marquardt method. The mass stays positive; friction and delay stay
+    non-negative. SciPy's bounded solver decomposes the whole Jacobian. It finds the same minimum but takes 1.3 times as
+    long for a log of 60 s at 4 kHz."""
     low = np.array([1e-6, 0.0, 0.0, 0.0, -np.inf, -np.inf])
     high = np.array([1e6, np.inf, np.inf, LONGEST * scale[DELAY], np.inf, np.inf])
     x = np.clip(start, low, high)
@@ -130,7 +131,7 @@ def least_squares(cost, start, scale, steps, tolerance, held=()):
         J, free = J[moves], np.flatnonzero(free)[moves]
         H, g = J @ J.T, gradient[free]
         # The lower bound limits the steps of parameters with little effect, such as the initial speed of a handle that
-        # sticks.
+        # does not move.
         weight = np.maximum(np.diag(H), 1e-9 * np.trace(H) + 1e-300)
         before = squares
         for _ in range(12):
@@ -151,7 +152,7 @@ def least_squares(cost, start, scale, steps, tolerance, held=()):
 
 
 def fit(log):
-    """Returns the parameters whose simulated position is closest to the logged position."""
+    """Returns the Fit of the handle's parameters: the simulated positions are closest to the logged positions."""
     with Simulator(log.time, log.force) as simulate:
         return _fit(log, simulate)
 
@@ -186,7 +187,7 @@ def _fit(log, simulate):
     if resting.squares <= found.squares * (1.0 + FROM_REST / samples):
         found = resting
     misfit = found.squares / samples > 2.0 * (noise**2 + log.encoder_step**2 / 12.0)
-    # The forces of missing rows are guesses, and their errors persist in the simulated motion.
+    # The forces of missing rows are interpolated, and their errors persist in the simulated motion.
     by_pieces = misfit or not log.knows_forces
     if by_pieces:
         found, spread = _by_pieces(Cost(simulate, log, piece=SHORT_PIECE), found, scale)
@@ -217,8 +218,8 @@ def _fit(log, simulate):
 
 
 def _wide_intervals(intervals, x, step, peak, fast):
-    """Returns the indices of parameters whose intervals are too wide to state a value, with the reason. `peak`: largest
-    force [N], `fast`: largest speed [m/s]."""
+    """Returns the reason, by index, for each parameter whose interval is too wide to report a value. `peak`: largest
+    force [N]. `fast`: largest speed [m/s]."""
     half = 0.5 * np.diff(intervals)[:, 0]
     return {
         i: f"its interval is wider than +- {limit}"
@@ -233,8 +234,8 @@ def _wide_intervals(intervals, x, step, peak, fast):
 
 
 def _search(first, whole, log, position, scale):
-    """Returns the smallest sum of squares on the `whole` log. The `first` part of the log selects the starting
-    values."""
+    """Returns the result of least_squares() with the smallest sum of squares on the `whole` log. The `first` part of
+    the log selects the starting values."""
     starts = starts_of(log, position[: first.rows], log.force[: first.rows])
     scores = [np.sum(first(start) ** 2) for start in starts]
     tried = [least_squares(first, starts[i], scale, 15, 1e-4) for i in np.argsort(scores)[:KEPT]]
@@ -243,8 +244,8 @@ def _search(first, whole, log, position, scale):
         if all(_differs(one.x, other.x, scale) for other in distinct):
             distinct.append(one)
     found = min(_refined(whole, distinct[:DISTINCT], scale), key=lambda one: one.squares)
-    # Search again from this minimum, with other fractions of dry friction and offset. Only candidates that may be
-    # better are refined on the whole log.
+    # Searches again from this minimum with half and twice its dry friction, and without offset. Only candidates whose
+    # sum of squares may be smaller are refined on the whole log.
     again = np.array([found.x, found.x])
     again[:, OFFSET], again[:, DRY] = 0.0, found.x[DRY] * np.array([0.5, 2.0])
     reached = np.sum(first(found.x) ** 2)
@@ -257,8 +258,8 @@ def _search(first, whole, log, position, scale):
 
 
 def _intervals(cost, log, found, scale, residual, memory, noise, spread):
-    """Returns the intervals, the reasons for undetermined parameters by index, and the observed motion of the handle.
-    `spread`: half-widths of the intervals if they are known."""
+    """Returns (intervals, reason for each undetermined parameter by index, Strokes of the handle). `spread`:
+    half-widths of the intervals if they are known, otherwise None."""
     units = _units(scale, found.x)
     positions = cost.simulated(found.x)
     J = np.vstack(
@@ -303,8 +304,8 @@ def _units(scale, x):
 
 
 class Strokes:
-    """Strokes of the handle: motions in one direction. If the handle moves in one direction only, dry friction cannot
-    be distinguished from a constant force."""
+    """Motions of the handle in one direction. If the handle moves in one direction only, dry friction cannot be
+    distinguished from a constant force."""
 
     def __init__(self, positions, threshold):
         steps = np.diff(positions)
@@ -331,7 +332,8 @@ class Strokes:
 
 
 def _degenerate(J, strokes):
-    """Returns the parameters that can change together without a change of the positions, with the reason."""
+    """Returns the reason, by index, for each parameter that has no effect on the positions, or whose change other
+    parameters can compensate."""
     sizes = np.sqrt(np.mean(J**2, axis=1))
     felt = np.flatnonzero(sizes > 1e-12 * sizes.max())
     undetermined = {
@@ -352,11 +354,11 @@ def _degenerate(J, strokes):
 
 
 def _spreads(J, positions, encoder_step, rms):
-    """Returns two arrays of standard errors, with an entry for each row of J except the last row. Each entry is in
-    units of the `scale` by which sensitivities() multiplied the row. The first array treats all samples of the residual
-    as independent. The second array treats the residual as the sum of noise, whose samples are independent, and of the
-    encoder error. The encoder error is constant while the handle stays within one count, so all samples of this time
-    count as one sample."""
+    """Returns two arrays of standard errors, with an entry for each row of J except the last row. `J`: result of
+    sensitivities(). Each entry is in units of the `scale` of its row. The first array treats all residuals as
+    independent samples. The second array treats a residual as the sum of noise and encoder error. The noise is
+    independent in each sample. The encoder error is constant while the handle stays within one count, so that all
+    samples of this time count as one sample."""
     H = J @ J.T
     inverse = np.linalg.pinv(H, rcond=1e-14, hermitian=True)
     of_encoder = 0.0
@@ -385,14 +387,15 @@ def _spreads(J, positions, encoder_step, rms):
 
 
 def _by_pieces(cost, found, scale):
-    """Fits short pieces if the residual is not noise. Returns the fit and the half-widths of the intervals."""
+    """Returns (fit, half-widths of the intervals) for a log whose residual is not noise. `cost`: Cost with short
+    pieces."""
     found = least_squares(cost, found.x, scale, 60, 1e-8)
     return found, without_blocks(cost, found, scale)
 
 
 def without_blocks(cost, found, scale):
-    """Returns the half-widths of the intervals from fits that each omit one block of the log. The only assumption about
-    the residual is that all blocks have the same statistics."""
+    """Returns the half-widths of the 95 % intervals by a jackknife: each fit omits one of BLOCKS blocks of the log. It
+    assumes only that the residuals of all blocks have the same statistics."""
     units = _units(scale, found.x)
     J, residual = cost.sensitivities(found.x, units, np.ones(len(NAMES), bool), central=True), cost(
         found.x
@@ -411,9 +414,9 @@ def without_blocks(cost, found, scale):
 
 
 def slow_part(log, cost, x, residual):
-    """Returns the ratio, in standard deviations, of the slow part of the residual (its means over WINDOWS) to the slow
-    part that noise and encoder alone would cause. The latter is computed from simulated logs with the measured noise.
-    """
+    """Returns the size of the slow part of the residual, which is its mean over windows of the lengths WINDOWS. The
+    unit is the standard deviation of the slow part that noise and encoder alone would cause. Simulated logs with the
+    measured noise give this standard deviation."""
     positions = cost.simulated(x)
     positions = positions + np.mean(log.position[cost.known] - positions)
     random = np.random.default_rng(1)
@@ -443,8 +446,9 @@ def slow_part(log, cost, x, residual):
 
 
 def without_unknown_start(log):
-    """Returns the log without its first positions if the handle moves at the start, because forces from before the log
-    still act on it. The initial speed accounts for these forces."""
+    """If the handle moves at the start, returns the log without its first positions, because forces from before the log
+    still act on the handle there. The initial speed accounts for these forces. Otherwise returns the log.
+    """
     speed = first_speed(log.position[np.isfinite(log.position)][:200], log.step, log.encoder_step)
     if speed == 0.0 or len(log.time) < 20.0 * LONGEST:
         return log
@@ -454,8 +458,8 @@ def without_unknown_start(log):
 
 
 def memory_of(residual):
-    """Returns 1 + 2 times the sum of the autocorrelations up to the first below 0.05: the number of samples that count
-    as one independent sample."""
+    """Returns the number of consecutive residuals that count as one independent sample: 1 + 2 times the sum of the
+    autocorrelations before the first autocorrelation below 0.05."""
     centred = residual - residual.mean()
     power = np.abs(np.fft.rfft(centred, 1 << (2 * len(centred) - 1).bit_length())) ** 2
     correlation = np.fft.irfft(power)[: len(centred)]
@@ -466,8 +470,8 @@ def memory_of(residual):
 
 
 def profile(cost, found, scale, i, spread, variance):
-    """Returns the two values of parameter i at which the sum of squares, minimised over the other parameters, has grown
-    by the amount that corresponds to 95 %."""
+    """Returns the two ends of the 95 % interval of the parameter `i`. At each end, the sum of squares, minimised over
+    all other parameters, exceeds its minimum by the amount that corresponds to 95 %."""
     best, ends = found.x[i], []
     for side in (-1.0, 1.0):
         at = best + side * TWO_SIDED * min(spread, scale[i])
@@ -491,8 +495,8 @@ def profile(cost, found, scale, i, spread, variance):
     return ends
 
 
-# Starting values. Over a long log the sum of squares has many local minima, so that several different starting values
-# are needed.
+# Starting values. The sum of squares over a long log has many local minima, so that the search starts from several
+# different values.
 
 
 def noise_of(position):
@@ -502,16 +506,16 @@ def noise_of(position):
 
 
 def kernel(rows):
-    """Returns a bell-shaped kernel of about `rows` rows: a box of a quarter of this width, convolved with itself."""
+    """Returns a bell-shaped kernel of about `rows` rows: four boxes of a quarter of this width, convolved."""
     box = np.ones(max(1, round(rows / 4)))
     bell = np.convolve(np.convolve(box, box), np.convolve(box, box))
     return bell / bell.sum()
 
 
 def starts_of(log, position, force):
-    """Returns starting values (NAMES) from a regression of the force on acceleration, speed and direction, all filtered
-    by the same kernel, and from a grid. `position`: positions of rows without a gap; `force`: their forces.
-    """
+    """Returns starting values (in the order of NAMES) from a grid, and from regressions of the force on acceleration,
+    speed and direction of motion. A kernel filters all these quantities. `position`: positions at all times, without
+    NaN. `force`: forces at the same times."""
     step, peak, noise = log.step, float(np.abs(force).max()), noise_of(position)
     speed = first_speed(position, step, log.encoder_step)
     found = []
@@ -530,8 +534,8 @@ def starts_of(log, position, force):
 
 
 def _regressions(bell, position, force, step, noise):
-    """Yields mass, viscous and dry friction, delay [samples] and offset for the two best delays, which differ by at
-    least one sample."""
+    """Yields (mass, viscous friction, dry friction, delay [samples], offset) for the two best delays, which differ by
+    at least one sample. `bell`: kernel of the filter."""
     middle = slice(1, -1)
     slope = (position[2:] - position[:-2]) / (2.0 * step)
     speed = np.convolve(slope, bell, "valid")
@@ -539,11 +543,12 @@ def _regressions(bell, position, force, step, noise):
     held = np.concatenate(
         [[0.0], 0.5 * (force[1:] + force[:-1])]
     )  # mean force of two samples, which determines the second difference of the positions
-    push = np.concatenate([np.zeros(9), held[middle]])  # assumes no force before the log
+    # Assumes that the force is zero before the log.
+    push = np.concatenate([np.zeros(9), held[middle]])
     push = np.convolve(push, bell, "valid")  # push[k + 9] belongs to speed[k]
     threshold = 4.0 * noise * np.sqrt(np.sum(np.convolve(bell, [0.5, 0.0, -0.5]) ** 2)) / step
     direction = np.where(np.abs(speed) > threshold, np.sign(speed), 0.0)
-    # If the handle moves in one direction over the whole kernel, the smoothed friction equals the friction.
+    # If the handle moves in one direction over the whole kernel, the smoothed dry friction equals the dry friction.
     half = len(bell) // 2
     sums = np.cumsum(np.concatenate([np.zeros(half + 1), direction, np.zeros(half)]))
     unidirectional = np.abs(sums[2 * half + 1 :] - sums[: -2 * half - 1]) == 2 * half + 1
@@ -580,8 +585,8 @@ def _regressions(bell, position, force, step, noise):
 
 
 def first_speed(position, step, encoder_step):
-    """Returns the speed at the first sample [m/s], from a parabola through the first hundredth of a second; 0 if the
-    speed is not significant."""
+    """Returns the speed at the first sample [m/s], from a parabola through the first 0.01 s; 0 if the speed is not
+    significant."""
     rows = min(len(position), max(8, round(0.01 / step)))
     powers = np.vander(step * np.arange(rows), 3, increasing=True)
     terms, *_ = np.linalg.lstsq(powers, position[:rows], rcond=None)

@@ -1,4 +1,4 @@
-"""A log of one axis of a device: times, commanded forces and positions, in SI units."""
+"""A log of one axis of a device: times, commanded forces and positions in SI units."""
 import math
 from dataclasses import dataclass
 from types import SimpleNamespace
@@ -20,19 +20,20 @@ FEWEST = 50  # smallest number of samples
 @dataclass
 class Log:
     time: np.ndarray  # [s], increasing; includes the times of missing samples
-    force: np.ndarray  # commanded at this time and held until the next [N]
+    force: np.ndarray  # force commanded at this time and held until the next time [N]
     position: np.ndarray  # [m]; NaN for missing samples
-    step: float  # mean interval without gaps [s]
+    step: float  # mean interval of the times, without gaps [s]
     encoder_step: float  # encoder step [m]; 0 if the positions are not multiples of any length
     warnings: list
-    knows_forces: bool = True  # false if forces of missing rows are guesses
-    columns: dict | None = None  # columns by quantity, in the form of `import stroke`
+    knows_forces: bool = True  # false if the forces of missing rows are interpolated
+    # Columns that were read, by quantity, in the form of `import stroke`.
+    columns: dict | None = None
     columns_not_read: list | None = None
     scales: dict | None = None  # factors to SI units by quantity
 
 
 def read_log(options):
-    """The log that the command line names (__main__)."""
+    """Returns the Log that the parsed command line `options` names."""
     columns, scale = dict.fromkeys(NAMES), {}
     for option, words, target in (
         ("columns", options.columns, columns),
@@ -96,7 +97,7 @@ def read_log(options):
 
 
 def _bad_rows(recording, time, force, position):
-    """Returns for each bad row the reason why it is not a sample."""
+    """Returns the reason why a row is not a sample, by row number, for all bad rows."""
     bad, last = recording.problems(), -math.inf
     usual = not bad and np.isfinite((time, force, position)).all() and (np.diff(time) > 0.0).all()
     for row in () if usual else range(len(time)):
@@ -110,9 +111,10 @@ def _bad_rows(recording, time, force, position):
 
 
 def log_of(time, force, position):
-    """Inserts the times of missing samples. Their forces are interpolated linearly, which is accurate for signals that
-    change little between samples; their positions stay unknown. A position that is repeated in several rows was
-    measured in the first of these rows; in the other rows the position is unknown."""
+    """Returns the Log with the times of missing samples inserted. The forces of missing samples are interpolated
+    linearly, which is accurate if the signal changes little between samples. Their positions are NaN. If the log
+    repeats a position in several rows, the position counts only in the first of these rows and is NaN in the other
+    rows."""
     warnings, held = [], hold_of(position)
     if held is not None:
         rate = (len(time) - 1) / (time[-1] - time[0]) / held.rows
@@ -163,9 +165,9 @@ def log_of(time, force, position):
 
 
 def missing_samples(intervals):
-    """Returns the number of missing samples in each interval. It is zero if jitter of the clock explains the long
-    intervals: missing samples cause intervals near integer multiples of the usual interval, and few intervals of about
-    one and a half."""
+    """Returns the number of missing samples in each interval; zero if jitter of the clock explains the long intervals.
+    Missing samples cause intervals near integer multiples of the usual interval. They cause few intervals of about 1.5
+    usual intervals."""
     ratios = intervals / np.median(intervals)
     long = ratios >= 1.5
     between, beyond = np.sum((ratios >= 1.4) & (ratios < 1.6)), np.sum(ratios >= 1.6)
@@ -176,7 +178,8 @@ def missing_samples(intervals):
 
 
 def encoder_step_of(position):
-    """Returns the smallest spacing of positions [m] if 98 % of the spacings are multiples of it, otherwise 0."""
+    """Returns the encoder step [m]: the length of which the spacings of positions are multiples. Returns 0 unless 98 %
+    of the spacings are within 2 % of the step of such a multiple."""
     spacings = np.diff(np.unique(position))
     spacings = spacings[
         spacings > max(1e-10, 1e-9 * np.abs(position).max())
@@ -189,7 +192,7 @@ def encoder_step_of(position):
 
 
 def _factor(name, word):
-    """Parses a scale factor. Factors of force and position may be negative."""
+    """Returns the scale factor in a word. Only the factors of force and position may be negative."""
     value = finite_number(word.encode("utf-8", "surrogateescape"))
     if not (value > 0.0 or (value < 0.0 and name != "time")):
         allowed = "> 0" if name == "time" else "a number, not 0"
@@ -198,8 +201,9 @@ def _factor(name, word):
 
 
 def _index(names, quantity, word):
-    """Returns the column of a quantity: `word`, or if it is empty the default of NAMES or the quantity with its unit,
-    such as "force [N]"."""
+    """Returns the column of a quantity. `word`: name or number of the column that the user gave. If `word` is None,
+    searches for the name in NAMES, then for the name of the quantity with a unit, such as "force [N]".
+    """
     requested = word if word is not None else NAMES[quantity]
     column, _ = names.find(quantity, [requested], ())
     if column is None and word is None:

@@ -1,5 +1,6 @@
-"""The handle of an impedance device under held and delayed forces: m x'' = u(t - delay) + offset - b x' - c sign(x').
-The program integrates it exactly, including stops. Also creates the force signals for an identification."""
+"""Model of the handle of an impedance device: m x'' = u(t - delay) + offset - b x' - c sign(x'). The commanded force u
+is held over each sample. The program integrates the motion exactly, including stops. This module also creates the force
+signals for an identification."""
 import subprocess
 
 import numpy as np
@@ -11,26 +12,28 @@ KINDS = {
     "steps": "alternating pushes, from short to long",
     "multisine": "sum of thirty sines",
 }
-# Largest identifiable dry friction, relative to the largest force; with more friction the handle moves too little.
+# Largest dry friction that can be identified, as a fraction of the largest force. With more friction, the handle moves
+# too little.
 IDENTIFIABLE_FRICTION = 0.6
-# Largest frequency of a signal [Hz]; higher frequencies give little information about mass and friction.
+# Largest frequency of a force signal [Hz]; higher frequencies contain little information about mass and friction.
 HIGHEST = 100.0
-# Frictions for which a signal is verified to keep its travel: dry friction relative to the largest force, keyed by
-# viscous friction divided by mass [1/s].
+# Frictions for which design() limits the travel. Key: viscous friction divided by mass [1/s]. Value: dry frictions as
+# fractions of the largest force.
 DRY_SHARES = {
     0.0: np.linspace(0.0, IDENTIFIABLE_FRICTION, 61),
     1.0: np.linspace(0.0, IDENTIFIABLE_FRICTION, 13),
     10.0: np.linspace(0.0, IDENTIFIABLE_FRICTION, 13),
 }
 TRAVEL_USED = (
-    # Fraction of the travel that is used; for frictions between the simulated values the travel is up to 6 % longer.
+    # Fraction of the travel that a signal may use. For frictions between the simulated frictions, the travel can be up
+    # to 6 % longer.
     0.9
 )
 
 
 class Simulator(subprocess.Popen):
-    """A process of the program that simulates a log, used in a `with` statement. A fit needs some thousand
-    simulations."""
+    """A process of the program that simulates the handle under the forces of a log, used in a `with` statement. A fit
+    needs some thousand simulations."""
 
     def __init__(self, time, force):
         program = the_program()
@@ -49,8 +52,8 @@ class Simulator(subprocess.Popen):
         self.stdin.flush()
 
     def __call__(self, parameters, rows=None):
-        """Returns the displacements from the first position at the first `rows` times, for a handle with `parameters`
-        (NAMES) [m]."""
+        """Returns the displacements [m] from the first position at the first `rows` times (None: all). `parameters`:
+        values of the handle in the order of NAMES."""
         rows = rows or self.rows
         self._send([rows, *parameters])
         answer = self.stdout.read(8 * rows)
@@ -60,21 +63,22 @@ class Simulator(subprocess.Popen):
 
 
 def positions(time, force, parameters):
-    """Runs one simulation and returns the positions [m]."""
+    """Runs one simulation and returns the displacements from the first position [m]."""
     with Simulator(time, force) as simulate:
         return simulate(parameters)
 
 
 def design(kind, force, travel, rate, duration, mass):
-    """Returns (time, force). The force is at most `force` [N]. A handle of at least `mass` [kg] stays within `travel`
-    [m], without friction and with dry friction up to IDENTIFIABLE_FRICTION of the largest force."""
+    """Returns (times, forces) of a signal for an identification. The force is at most `force` [N]. Without friction,
+    and with dry friction up to IDENTIFIABLE_FRICTION of the largest force, a handle of at least `mass` [kg] stays
+    within `travel` [m]."""
     steps = int(round(duration * rate))
     if steps < 100:
         fail(
             f"--design: duration: got {duration:g} s, {steps} samples; allowed: at least 100 of them"
         )
     time = np.arange(steps) / rate
-    # From rest, F cos(w t) moves a mass between 0 and 2 F / (m w^2), without drift.
+    # A handle at rest under the force F cos(w t) moves between 0 and 2 F / (m w^2), without drift.
     slowest = max(np.sqrt(2.0 * force / (mass * travel)) / (2.0 * np.pi), 2.0 / duration)
     fastest = min(0.1 * rate, HIGHEST)
     if slowest > 0.5 * fastest:
@@ -98,9 +102,9 @@ def design(kind, force, travel, rate, duration, mass):
 
 
 def _steps(steps, rate, slowest, fastest):
-    """Returns pushes + for n samples, - for 2 n, + for n, with growing n. Without friction, this sequence returns the
-    handle to rest at its start. With friction, the first push moves the handle farthest, so that it drifts. Therefore
-    each sequence is followed by the sequence with the opposite sign, which compensates the drift.
+    """Returns sequences of pushes: + for n samples, - for 2 n, + for n, with growing n. Without friction, a sequence
+    brings the handle back to rest at its start. With friction, the first push moves the handle farthest, so that the
+    handle drifts. Each sequence is therefore followed by the sequence of opposite sign, which compensates the drift.
     """
     values = []
     lengths = np.geomspace(rate / (4.0 * fastest), rate / (4.0 * slowest), 8)
@@ -112,7 +116,7 @@ def _steps(steps, rate, slowest, fastest):
 
 
 def range_of(time, force, mass):
-    """Returns the lowest and highest position relative to the start over all DRY_SHARES [m]."""
+    """Returns the lowest and the highest position relative to the start [m], over all frictions in DRY_SHARES."""
     peak, ends = np.abs(force).max(), [0.0]
     with Simulator(time, force) as simulate:
         for rate, shares in DRY_SHARES.items():
@@ -123,9 +127,9 @@ def range_of(time, force, mass):
 
 
 def required_force(kind, numbers):
-    """Returns the value of --force for which the signal reaches numbers["force"] [N] although travel limits the signal,
-    rounded up to two digits. A larger --force makes the signal begin at a higher frequency. Empty if no value suffices.
-    """
+    """Returns the value of --force with which the signal reaches numbers["force"] [N], although the travel limits the
+    signal. The value is rounded up to two digits. A larger --force makes the signal begin at a higher frequency.
+    Returns None if no value suffices."""
     wanted = requested = numbers["force"]
     try:
         for _ in range(8):

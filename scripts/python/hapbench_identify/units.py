@@ -1,4 +1,5 @@
-"""Explanations for a log whose fit is implausible: the opposite sign of the force, or units other than s, N and m."""
+"""Finds explanations for a log whose fit is implausible: the opposite sign of the force, or units other than s, N and
+m."""
 import dataclasses
 import itertools
 import math
@@ -12,7 +13,7 @@ POSITIONS = {1.0: "m", 1e-3: "mm", 1e-2: "cm", 1e-6: "um"}
 FORCES = {1.0: "N", 1e-3: "mN", 1e3: "kN", 9.80665e-3: "gf", 9.80665: "kgf"}
 # Usual ranges in logs of haptic devices: time step [s], travel [m], peak force [N] and handle mass [kg].
 STEPS, TRAVELS, PEAKS, MASSES = (1e-5, 0.05), (1e-3, 0.8), (0.05, 60.0), (5e-3, 5.0)
-LONGEST_STEP = 0.2  # [s]; a log with longer intervals is not fitted without --scale
+LONGEST_STEP = 0.2  # largest median interval of a log that is fitted without --scale [s]
 COARSEST = 1e-3  # largest plausible step of an encoder [m]
 ACCEPTED = (1e-3, 20.0)  # masses of handles that are accepted without --scale [kg]
 MAX_REPORTED = 3
@@ -23,7 +24,8 @@ def is_likely(mass, encoder_step):
 
 
 def turned_round(log, found):
-    """Returns the fit with the opposite sign of the force if it explains the log and `found` does not, else None."""
+    """Returns the fit with the opposite sign of the force, if this fit explains the log and the fit `found` does not.
+    Otherwise returns None."""
     if not found.misfit and _within(found.values[MASS], ACCEPTED):
         return None
     other = fit(_scaled(log, 1.0, 1.0, -1.0))
@@ -37,9 +39,9 @@ def is_usual(log, mass):
 
 
 def likely_units(log, found=None):
-    """Returns (text, factors by quantity) for units, and for the sign of the force, with which the log belongs to a
-    plausible handle: at most three, the smallest change first. `found`: the fit of the unscaled log, if there is one.
-    """
+    """Returns a list of (text, factors by quantity), at most three, the smallest change first. The factors change
+    units, and the sign of the force, so that the log describes a plausible handle. `found`: fit of the unscaled log, or
+    None."""
     times = [one for one in TIMES if _within(one * log.step, STEPS)] or [1.0]
     positions = [
         one
@@ -62,9 +64,9 @@ def likely_units(log, found=None):
 
 
 def _unit_mass(log, time, position, found):
-    """Returns the sign of the force, and the mass of the handle if all numbers were in s, N and m. Mass is proportional
-    to force * time^2 / position. Without a good fit, the log is fitted with likely units and with both signs.
-    """
+    """Returns (sign of the force, mass of the handle [kg] if all numbers were in s, N and m). The mass is proportional
+    to force * time^2 / position. Without a good fit, the log is fitted with the units `time` and `position` and with
+    both signs of the force."""
     if found is not None and not found.misfit:
         return 1.0, found.values[MASS]
     signs = {sign: fit(_scaled(log, time, position, sign)) for sign in (1.0, -1.0)}
@@ -90,7 +92,7 @@ def _explanation(time, position, force, mass):
 
 
 def scale_option(factors, given):
-    """Returns the option that multiplies the `given` scales, numbers by quantity, by the factors."""
+    """Returns the option --scale with the `given` scales (numbers by quantity) multiplied by `factors`."""
     both = given | {name: factor * given.get(name, 1.0) for name, factor in factors.items()}
     return "--scale " + ",".join(f"{name}={factor:g}" for name, factor in both.items())
 

@@ -1,4 +1,4 @@
-"""python -m hapbench_import WORDS…; the program calls it for `hapbench import stroke`."""
+"""Command line of `hapbench import stroke`, which runs python -m hapbench_import WORDS…."""
 import sys
 from pathlib import Path
 

@@ -1,16 +1,17 @@
-"""Clocks of recordings in other units than seconds."""
+"""Detects recordings whose times are not in seconds."""
 import math
 
 import numpy as np
 from hapbench_command import fail
 
-LATEST = 1e11  # [s]; later times are in other units
-SINCE_1970 = (9e8, 4e9)  # 1998 to 2096 [s]
+# Upper limit of the times of a recording [s]; larger times are not in seconds.
+LATEST = 1e11
+SINCE_1970 = (9e8, 4e9)  # interval of the plausible times since 1970: the years 1998 to 2096 [s]
 
 
 def require_likely_clock(rows, file, scale, longest):
-    """Refuses a clock in other units than seconds: intervals that are too long in the median, or times long after
-    those since 1970. Names the scale of time that makes them likely."""
+    """Refuses a recording whose times are probably not in seconds: the median interval exceeds `longest` [s], or a time
+    is at least LATEST. The message suggests a scale of time."""
     usable = np.isfinite(rows.time)
     usable[list(rows.clock_problems)] = False
     time, position = rows.time[usable], rows.recorded[usable]
@@ -31,7 +32,7 @@ def require_likely_clock(rows, file, scale, longest):
         else f"times of up to {latest:.4g} s; allowed: {LATEST:g} s"
     )
     unit = likely_unit(abs(median), speed, latest)
-    # Whole numbers without a gap may count rows.
+    # Times that increase by exactly 1 may be row numbers.
     counts = (
         ", or numbers of rows? (--set sample_rate_Hz=... instead of --columns time=...)"
         if np.all(np.abs(steps / scale - 1.0) < 1e-9)
@@ -41,8 +42,10 @@ def require_likely_clock(rows, file, scale, longest):
 
 
 def likely_unit(interval, speed, latest=0.0):
-    """1e-3, 1e-6 or 1e-9: what makes the latest time one of our days since 1970, or else an interval [s] the nearest
-    to 2 ms and a speed [m/s] the nearest to 5 cm/s."""
+    """Returns the most likely unit of time [s]: 1e-3, 1e-6 or 1e-9. If one of them puts the latest time between the
+    years 1998 and 2096, returns this unit. Otherwise returns the unit for which the interval is closest to 2 ms and the
+    speed is closest to 5 cm/s. Arguments: interval [s], speed [m/s] and latest time [s], computed as if the times were
+    in seconds."""
     units = (1e-3, 1e-6, 1e-9)
     for unit in units:
         if SINCE_1970[0] < latest * unit < SINCE_1970[1]:

@@ -1,5 +1,4 @@
-"""Finds the columns of a recording that hold a quantity, by names or numbers and never by a guess, and reads units in
-names."""
+"""Finds the columns of a quantity by their names or numbers, without guessing, and reads units from the names."""
 import re
 from dataclasses import dataclass
 
@@ -18,7 +17,7 @@ UNITS = {
     "angle": {"rad": 1.0, "rads": 1.0, "radian": 1.0, "radians": 1.0, "mrad": 1e-3}
     | {unit: 0.017453292519943295 for unit in ("deg", "degs", "degree", "degrees", "°")},
 }
-# Endings that are units, as in x_mm. Short endings such as in x_m or x_cm may have another meaning.
+# Endings of column names that are certainly units, as in x_mm. The endings of x_m and x_cm may have another meaning.
 _ENDINGS = "ms msec us usec ns nsec mm um mN kN deg".split()
 _UNCLEAR_ENDINGS = ("cm", "in", "inch", "nm")
 _BRACKETED = re.compile(r"\s*([\[(])\s*([^\[\]()]*?)\s*[\])]\s*$")
@@ -27,7 +26,7 @@ NAMED_AS = {
     "force": re.compile(r"f_?[xyz]|.*force.*"),
     "position": re.compile(r"p?_?[xyz]|.*pos(ition)?([^a-z].*|)"),
 }
-# Prefix of the names of columns that a reader has added; messages do not name these columns.
+# Prefix of the names of columns that the audit has added to a log of one axis. Messages do not name these columns.
 ABSENT = "\x01absent"
 SI = {"time": "s", "position": "m", "force": "N", "angle": "rad"}
 
@@ -40,8 +39,8 @@ class Unit:
 
 
 def without_unit(name):
-    """Returns (name, Unit or None): "x [mm]", "x/mm" and "x, mm" are x in mm. Brackets around a number or a component,
-    as in q[0], are an index."""
+    """Returns (name, Unit or None) of a column name: "x [mm]", "x/mm" and "x, mm" are x in mm. Brackets around a number
+    or a component, as in q[0], contain an index and no unit."""
     found = _BRACKETED.search(name)
     if found and found[2] in ("", "-", "1"):
         return name[: found.start()] if found[2] != "1" else name, None
@@ -56,8 +55,8 @@ def without_unit(name):
 
 
 def substituted(name, tokens):
-    """Returns lists of names in which one token of `name` is replaced by each of `tokens`: pose.x gives pose.x, pose.y,
-    pose.z."""
+    """Returns lists of column names. In each list, one occurrence of a token in `name` is replaced by each of `tokens`:
+    pose.x gives [pose.x, pose.y, pose.z]."""
     found = []
     for token in tokens:
         for at in re.finditer(re.escape(token), name, re.IGNORECASE):
@@ -72,7 +71,8 @@ def substituted(name, tokens):
 
 
 def numbered(name, count):
-    """Returns lists of `count` names, with increasing numbers from a number in `name`: p[0] gives p[0], p[1], p[2]."""
+    """Returns lists of `count` column names in which a number of `name` (0 or 1) increases: p[0] gives [p[0], p[1],
+    p[2]]."""
     return [
         [name[: at.start()] + str(int(at[0]) + i) + name[at.end() :] for i in range(count)]
         for at in re.finditer(r"\d+", name)
@@ -81,7 +81,8 @@ def numbered(name, count):
 
 
 def cells_of_matrix(name):
-    """Returns lists of the nine names of a matrix, row by row: r11 gives r11, r12 ... r33; also for R[0][0]."""
+    """Returns lists of the nine column names of a 3 × 3 matrix, row by row: r11 gives r11, r12 ... r33. Names such as
+    R[0][0] are also found."""
     return [
         [
             name[: at.start()] + f"{int(at[1]) + i}{at[2]}{int(at[3]) + j}" + name[at.end() :]
@@ -94,7 +95,8 @@ def cells_of_matrix(name):
 
 
 class Names:
-    """The names of a recording's columns, with and without units, and their columns."""
+    """The names of the columns of a recording, with and without their units, and functions that find columns by
+    name."""
 
     def __init__(self, recording):
         self.file, self.names = recording.file, recording.names
@@ -109,19 +111,21 @@ class Names:
         fail(f"columns: {quantity}: {problem}; the file has {known}", self.file)
 
     def in_file(self):
-        """Returns the names of the file's columns, without columns that a reader added."""
+        """Returns the names of the columns in the file, without the columns that the audit has added."""
         return [name for name in self.names if not name.startswith(ABSENT)]
 
     def title(self, column):
         return f"{column + 1} {self.names[column]}".rstrip()
 
     def others(self, used):
-        """Returns numbers and names of the columns that are not in `used`, the columns by quantity."""
+        """Returns number and name of each column that is not in `used`. `used`: the columns by quantity, from
+        Columns.used()."""
         read = {part["column"] for parts in used.values() for part in parts}
         return [self.title(i) for i in range(len(self.in_file())) if i + 1 not in read]
 
     def index(self, quantity, name):
-        """Returns the column of this name, or None. A name matches completely, or without its unit."""
+        """Returns the index of the column of this name, or None. The name may omit the unit. Fails if two columns have
+        the name."""
         if not name:
             return None
         for names in (self.names, self.bare):
@@ -132,10 +136,10 @@ class Names:
         return None
 
     def find(self, quantity, words, endings=("_x", ".x")):
-        """Returns (column, True if the word is a number) for the first of the words that names a column; the `endings`
-        may be missing in a word. Returns (None, False) if no word names a column."""
+        """Returns (column, True if the word is a number) for the first of `words` that names a column. A word may omit
+        one of `endings` from a column's name. Returns (None, False) if no word names a column."""
         for word in words:
-            bare = word.lstrip("%# ")  # removes the mark of a header in a comment
+            bare = word.lstrip("%# ")  # a header in a comment begins with a comment character
             for name in (word, bare, *(bare + ending for ending in endings)):
                 if (column := self.index(quantity, name)) is not None:
                     return column, False
@@ -151,14 +155,14 @@ class Names:
         self.fail(quantity, f"got {quoted(word)}{near}")
 
     def indices(self, names):
-        """Returns the columns of all these names, or None. Compares names without units, because units follow
-        components."""
+        """Returns the columns of all these names, or None if one of them is missing or not unique. Units are ignored,
+        because they stand after the component."""
         found = [self.bare.index(name) if self.bare.count(name) == 1 else None for name in names]
         return None if None in found or len(set(found)) < len(found) else found
 
     def nanoseconds(self, time):
-        """The column of nanoseconds that belongs to a column of whole seconds, as those of ROS: secs and nsecs; in a
-        list, which is empty without it. `time`: the column of times in a list."""
+        """Returns a list with the column of nanoseconds that belongs to a column of whole seconds, such as secs and
+        nsecs of ROS; empty if there is none. `time`: list with the column of times."""
         found = re.fullmatch(r"(|.*[._ /])secs?", self.names[time[0]]) if time else None
         for ending in ("nsecs", "nsec", "nanosec", "nanosecs") if found else ():
             if self.names.count(found[1] + ending) == 1:
@@ -166,9 +170,9 @@ class Names:
         return []
 
     def components(self, column, tokens, numbers=True):
-        """Returns the columns of all components if the names show them and `column` is one of them, else None. With
-        `numbers`, numbered names such as q0 are also accepted, although they do not state the order.
-        """
+        """Returns the columns of all components if the names of the columns state the components and `column` is one of
+        them. Otherwise returns None. With `numbers`, names such as q0 are also accepted, although they do not state the
+        order of the components."""
         name = self.bare[column]
         if not name:
             return None
@@ -192,7 +196,7 @@ class Names:
         return None
 
     def unit(self, quantity, columns):
-        """Returns the Unit in the names of columns, or None. Refuses columns with different units."""
+        """Returns the Unit that the names of the columns state, or None. Fails if the names state different units."""
         units = {
             self.units[column].text: self.units[column] for column in columns if self.units[column]
         }
@@ -205,7 +209,7 @@ _ANGLES = ("angle", "theta", "a", "Angle", "phi")
 
 
 def _between(names):
-    """Returns the name with a mark in place of the component: "axis_\0" for axis_x, axis_y, axis_z."""
+    """Returns the first name with a mark in place of the component: ["axis_\0"] for axis_x, axis_y, axis_z."""
     at = next(i for i, pair in enumerate(zip(*names)) if len(set(pair)) > 1)
     return [names[0][:at] + "\0" + names[0][at + 1 :]]
 
@@ -215,7 +219,8 @@ def scale_text(quantity, scale):
 
 
 def scale_of(names, quantity, columns, given, notes):
-    """Returns the factor to SI units: `given`, or from the units in the names, or 1."""
+    """Returns the factor to SI units: the factor `given` by the user, or the factor of the unit in the column names, or
+    1."""
     unit = names.unit(quantity, columns)
     known = UNITS[quantity]
     factor = None if unit is None else known.get(unit.text, known.get(unit.text.lower()))
@@ -237,7 +242,8 @@ def scale_of(names, quantity, columns, given, notes):
 
 
 def unclear_endings(names, columns):
-    """A note about names such as x_cm, whose ending is a unit or something else, such as the centre of mass."""
+    """Returns a list with a note if a column name such as x_cm ends in a unit or in another abbreviation, such as
+    "centre of mass"; empty if there is no such name."""
     for column in columns:
         ending = names.names[column].rpartition("_")[2]
         if ending in _UNCLEAR_ENDINGS and names.names[column] != ending:

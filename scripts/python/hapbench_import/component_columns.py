@@ -1,4 +1,4 @@
-"""The columns of a recording that the options name, for each quantity and its components."""
+"""Finds the columns of each quantity and of its components in a recording, from the options."""
 from .columns import NAMED_AS, Names, scale_of
 from .options import ORIENTATIONS
 
@@ -16,7 +16,8 @@ PARTS = list(dict.fromkeys(sum(ORIENTATIONS.values(), ())))
 
 
 def one_axis(group):
-    """Returns the message about a recording of one axis."""
+    """Returns the end of an error message, which explains what to do with a recording of one axis. Returns an empty
+    text for other quantities."""
     if group not in ("position", "force"):
         return ""
     return (
@@ -26,8 +27,8 @@ def one_axis(group):
 
 
 class Columns:
-    """The columns that the options name: lists of indices in the order of the components, empty if a quantity has no
-    columns."""
+    """The columns that the options name. Each quantity has a list of column indices in the order of its components; the
+    list is empty if the options name no column."""
 
     def __init__(self, recording, options):
         self._options, self.notes, self.scales = options, [], {}
@@ -50,7 +51,8 @@ class Columns:
         self._note_other_quantity()
 
     def used(self):
-        """Returns for each quantity its components, and number, name and unit of the column of each component."""
+        """Returns for each quantity a list of its components. Each entry has the component, and the number, name and
+        unit of its column."""
         return {
             quantity: [
                 {
@@ -69,15 +71,15 @@ class Columns:
         }
 
     def scale(self, quantity, columns):
-        """Returns the factor to SI units and stores it in `scales`."""
+        """Returns the factor from the unit of a quantity to its SI unit. Stores the factor in `scales`."""
         if quantity not in self.scales:
             given = self._options.scale.get(quantity)
             self.scales[quantity] = scale_of(self.names, quantity, columns, given, self.notes)
         return self.scales[quantity]
 
     def _group(self, group, parts):
-        """Returns the columns of a group: from the name of its first component, from a number, or one name for each
-        component."""
+        """Returns the columns of a group of components. The options may give one name for each component, the number of
+        the first column, or the name of the first component's column."""
         wanted, named = self._options.columns, self._options.named
         alone = [part for part in parts if part != group and part in wanted]
         # The command line takes precedence over the preset.
@@ -119,8 +121,8 @@ class Columns:
         return found
 
     def _first(self, group, letters):
-        """Returns the column of the group's first component, and True if a number names it. A name may omit the
-        component."""
+        """Returns (column of the group's first component, True if the option gives its number). The option may give the
+        name without the component, such as "pos" for "pos_x"."""
         endings = [f"{mark}{letters[0]}" for mark in ("_", ".", "")] + ["[0]", "_0", ".0", "0"]
         if letters[0] != "x":
             endings = ["_x", *endings]
@@ -142,7 +144,7 @@ class Columns:
         return found
 
     def _refuse_name(self, group, first, parts):
-        """Refuses a name from which the columns of the other components do not follow."""
+        """Fails for a column name from which the names of the other components cannot be derived."""
         names, count = self.names, len(parts)
         alone = ",".join(f"{part}=..." for part in parts)
         consecutive = (
@@ -224,7 +226,7 @@ class Columns:
                     )
 
     def _note_lone_order(self):
-        """Adds a note if components that are named one by one contradict the names of their columns."""
+        """Adds a note if the user assigned single components to columns whose names state another component."""
         wanted = self._options.columns
         for group, parts, columns in (
             ("position", ("px", "py", "pz"), self.position),
@@ -241,7 +243,8 @@ class Columns:
                 )
 
     def _note_other_quantity(self):
-        """Positions in columns that are named as forces, and the reverse."""
+        """Adds a note if a position is read from columns that are named as forces, or a force from columns that are
+        named as positions."""
         for group, columns, other in (
             ("position", self.position, "force"),
             ("force", self.force, "position"),

@@ -1,29 +1,32 @@
-"""Held samples: if the log is faster than the measurement, each sample is repeated in several rows."""
+"""Detects held samples. If a log has a higher rate than the measurement, each sample is repeated in several rows."""
 from dataclasses import dataclass
 
 import numpy as np
 
 FEWEST_CHANGES = 10
-MAX_ROWS = 200  # largest number of rows of one sample
-ALL, NEARLY_ALL = 0.98, 0.9  # fractions of the changes that must match the rhythm
+MAX_ROWS = 200  # largest number of rows that repeat one sample
+# Smallest fraction of the distances between changes that are multiples of a number of rows, and smallest fraction of
+# the distances that are close to the median.
+ALL, NEARLY_ALL = 0.98, 0.9
 
 
 @dataclass
 class Hold:
     rows: float  # mean number of rows of each sample
-    # True in the first row of each sample; while the value does not change for longer, true every `rows` rows.
+    # True in the first row of each sample. While the value is constant for longer than one sample, true in every
+    # `rows`-th row.
     fresh: np.ndarray
 
 
 def hold_of(values):
-    """Returns the Hold of values (a row each), or None. Encoder steps are not held samples: in a slow motion, the value
-    changes by one step at a time, and not after a regular number of rows."""
+    """Returns the Hold of values, one row each, or None if samples are not held. Encoder steps in a slow motion are not
+    held samples: the value then changes by one encoder step, at irregular numbers of rows."""
     values = np.asarray(values).reshape(len(values), -1)
     steps = np.diff(values, axis=0)
     changed = np.flatnonzero(np.any(steps != 0.0, axis=1)) + 1
     if len(changed) < FEWEST_CHANGES or 2 * len(changed) > len(values):
         return None
-    # Select the column that moves most; all columns change in the same rows.
+    # Uses the column with the largest motion. All columns change in the same rows.
     moving = steps[changed - 1, np.argmax(np.abs(steps).sum(axis=0))]
     sizes = np.abs(moving[moving != 0.0])
     if len(np.unique(np.round(sizes / sizes.min(), 6))) < 3:
@@ -33,9 +36,10 @@ def hold_of(values):
 
 
 def _rhythm(runs):
-    """Returns the number of rows between changes. It is an integer of which nearly all runs are multiples, or the mean
-    of runs that differ by at most one row (rates that are not multiples) or two rows (a clock with jitter).
-    """
+    """Returns the number of rows of each sample. `runs`: numbers of rows between changes. The result is an integer if
+    nearly all runs are multiples of it. Otherwise it is the mean of the runs, which may differ by at most one row (the
+    rates are not multiples of each other) or by two rows (a clock with jitter). Returns None if the runs have no
+    rhythm."""
     largest = min(MAX_ROWS, int(np.median(runs)))
     for n in range(largest, 1, -1):
         if np.mean(runs % n == 0) >= ALL:
@@ -49,8 +53,8 @@ def _rhythm(runs):
 
 
 def _fresh(changed, rows, count):
-    """Returns True for the rows in which a new sample begins: rows with a change, and, while the value is constant for
-    longer, the rows in which a sample is expected."""
+    """Returns for each row True if a new sample begins in it: in rows with a change, and in rows in which a sample is
+    expected while the value is constant."""
     fresh = np.zeros(count, bool)
     starts = np.concatenate([changed, [count]])
     # The rows before the first change have the same rhythm.

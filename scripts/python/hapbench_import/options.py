@@ -1,4 +1,4 @@
-"""The options of an import: the options of a preset, overridden by the options of the command line."""
+"""Options of `import stroke`. Options of the command line override the options of a preset."""
 import json
 import math
 import sys
@@ -10,7 +10,7 @@ from hapbench_command import Faults, fail, finite_number, plain, quoted, require
 PRESETS = Path(__file__).resolve().parents[3] / "scenarios" / "library" / "presets"
 DECIMALS = ("auto", "comma", "point")
 FORMATS = ("csv", "traj", "hapi", "hapi-binary")
-# The columns of each representation of an orientation, in their order.
+# Columns of each representation of an orientation, in the order in which they are read.
 ORIENTATIONS = {
     "none": (),
     "axis": ("axis_x", "axis_y", "axis_z"),
@@ -40,11 +40,14 @@ QUANTITIES = list(
 
 @dataclass
 class Options:
-    """Meaning of the numbers in a recording. Defaults: metres, seconds, newtons, radians; the tip points along -z."""
+    """Describes the meaning of the numbers in a recording. Defaults: metres, seconds, newtons and radians; the tip
+    points along -z of the tool frame."""
 
     format: str = "csv"
-    floats: bool = False  # hapi-binary: true if numbers have four bytes
-    decimal: str = "auto"  # "comma", "point", or "auto": determined from the numbers of a column
+    # True if the numbers of a hapi-binary file have four bytes, false for eight bytes.
+    floats: bool = False
+    # Decimal sign: "comma", "point", or "auto", which determines it from the numbers of each column.
+    decimal: str = "auto"
     columns: dict = field(
         default_factory=dict
     )  # for each quantity, the names or numbers (from 1) that its column may have
@@ -53,7 +56,7 @@ class Options:
     scale: dict = field(
         default_factory=dict
     )  # units of "time", "position", "angle" and "force", in SI units
-    # A key of ORIENTATIONS; None: determined from the names of the columns.
+    # Representation of the orientation, a key of ORIENTATIONS. None: determined from the names of the columns.
     orientation: str | None = None
     named: frozenset = frozenset()  # quantities of `columns` that the command line sets
     tip_axis: tuple = (
@@ -70,11 +73,12 @@ class Options:
     # True if the recorded forces act on the object; they are then negated.
     force_by_tool: bool = False
     rate: float | None = None  # rate of the stroke [Hz]; None: as recorded
-    smooth: dict | None = None  # window [samples] and order
+    # Window [samples] and order of the smoothing polynomial; None: no smoothing.
+    smooth: dict | None = None
     max_speed: float = 5.0  # larger speeds between samples are errors [m/s]
     max_gap: float = 0.5  # longer gaps are errors [s]
     skip_bad_rows: bool = False
-    # "thin" omits rows that repeat a held sample; "keep" treats them as samples
+    # "thin" omits rows that repeat a held sample; "keep" uses these rows as samples.
     held_rows: str = "thin"
 
     def set(self, name, value):
@@ -87,7 +91,7 @@ class Options:
 
 
 def options_of(requested):
-    """Returns the options of the command line (__main__)."""
+    """Returns the Options for a parsed command line of `import stroke`."""
     options = Options()
     if requested.preset:
         _apply_preset(options, requested.preset)
@@ -136,7 +140,7 @@ def _presets():
 
 
 def _read_preset(file):
-    """Reads a preset: a JSON file whose fields are options. Users copy and modify it."""
+    """Returns the JSON object of a preset's file. Its fields are options. Users copy and modify such files."""
     try:
         with open(file, encoding="utf-8-sig") as stream:
             preset = json.load(stream)
@@ -152,7 +156,7 @@ def _read_preset(file):
 
 
 def _apply_preset(options, file):
-    # A pipe, such as /dev/fd/63, has no extension.
+    # A pipe, such as /dev/fd/63, has no extension but is a file and not the name of a preset.
     if not file.endswith(".json") and "/" not in file and not Path(file).is_fifo():
         presets = _presets()
         require_name("preset: got", file, list(presets))
@@ -175,7 +179,7 @@ def _assignments(option, words):
 
 
 def _value(word):
-    """Parses a value of --set: JSON, or numbers and words separated by commas."""
+    """Parses a value of --set: JSON, or a list of numbers and words separated by commas."""
     try:
         return json.loads(word)
     except ValueError:
@@ -200,8 +204,8 @@ def _smoothing(words):
 
 
 def _is_number(value):
-    """Returns True for a finite number of double precision, as JSON writes it. Python would also read NaN and integers
-    of any length."""
+    """Returns True for a number that a double can represent. json.loads also accepts NaN, infinities and integers of
+    any length."""
     return (
         isinstance(value, (int, float))
         and not isinstance(value, bool)
@@ -210,7 +214,7 @@ def _is_number(value):
 
 
 def _is_column(value):
-    """Returns True for a name, a number, or a list of names and numbers."""
+    """Returns True for a column name, a column number, or a list of names and numbers."""
     return (
         isinstance(value, str)
         or _is_number(value)
@@ -253,7 +257,8 @@ def _scale(options, value):
 
 
 def _frame(_, words):
-    """Parses three words, such as x, -z, y: the recorded directions that become the scenario's x, y and z."""
+    """Returns the rotation matrix for three words, such as x, -z, y. They are the directions of the recording that
+    become the scenario's x, y and z."""
     rows = [
         [
             0.0 if word.removeprefix("-") != letter else -1.0 if word.startswith("-") else 1.0
@@ -261,7 +266,8 @@ def _frame(_, words):
         ]
         for word in words
     ]
-    # Each row is a unit vector or zero. The triple product is -1 for a reflection, which no motion of a tool can be.
+    # Each row of the matrix is a unit vector, or zero for an invalid word. The determinant of a reflection is -1; the
+    # frame of a tool cannot be reflected.
     if (
         len(rows) != 3
         or sum(
@@ -277,8 +283,8 @@ def _frame(_, words):
     return rows
 
 
-# For each field of a preset: the allowed values as text, the check of a value, and the conversion. None for a field
-# that is only a description.
+# Fields of a preset: (allowed values as text, check of a value, conversion of a value). The conversion is None for a
+# field that only describes the preset.
 _FIELDS = {
     "description": ("a text", lambda v: isinstance(v, str), None),
     "format": ("a text", lambda v: isinstance(v, str), _named("format", FORMATS)),

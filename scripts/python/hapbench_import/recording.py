@@ -1,4 +1,5 @@
-"""Recordings in the supported formats: their columns as arrays, and the position of each row in the file."""
+"""Reads recordings in the supported formats. Provides their columns as arrays, and the location of each row in the
+file."""
 import math
 import re
 from datetime import date
@@ -9,7 +10,7 @@ from hapbench_command import fail, finite_number, nearest, plain, quoted
 from .text_table import has_decimal_commas, read_table, with_points
 
 LARGEST_FILE = 4 << 30  # [bytes]
-# Fields of a HAPI log and their number of columns.
+# Number of columns of each field of a HAPI log.
 HAPI_FIELDS = {
     "TIME": 1,
     "TIMESTAMP": 1,
@@ -31,22 +32,23 @@ EXACT = 2.0**53  # integers up to this value are exact in a double
 
 
 class Recording:
-    """The rows of a file. `names` are the names of the columns, empty if the file has none. `rows` are lists of cells,
-    or an array with the names. `row_numbers` are the positions of the rows in the file, counted in units of `row_word`.
-    `notes`: skipped or repaired parts, each mentioned once."""
+    """The rows of a recording's file. `names`: names of the columns; empty if the file has none. `rows`: lists of
+    cells, or a numpy array with the columns `names`. `row_numbers`: location of each row in the file, counted in
+    `row_word` (lines or samples). `notes`: texts about skipped or repaired parts; each kind is mentioned once.
+    """
 
     def __init__(self, file, names, rows, row_numbers, row_word="line", notes=(), decimal="auto"):
         self.file, self.names, self.rows, self.row_numbers = file, names, rows, row_numbers
         self.row_word, self.notes, self._decimal = row_word, list(notes), decimal
         self.is_binary = isinstance(rows, np.ndarray)
-        # True if the user has chosen the decimal comma, or after a note has mentioned it.
+        # True if no note about decimal commas is needed: the user has chosen them, or a note has mentioned them.
         self._is_comma_noted = decimal == "comma"
 
     def location(self, row):
         return f"{self.file}, {self.row_word} {self.row_numbers[row]}"
 
     def problems(self):
-        """Returns the problems of whole rows, by row."""
+        """Returns the problem of each row that has the wrong number of values, by row."""
         if self.is_binary:
             return {}
         return {
@@ -56,8 +58,8 @@ class Recording:
         }
 
     def faults(self, problems):
-        """Returns (position, problem) from problems by row. A repeated problem is reported at its first row with the
-        number of rows."""
+        """Returns (location in the file, problem) for each kind of problem. A problem of several rows is reported at
+        the first of these rows, with the number of rows."""
         kinds = {}
         for row in sorted(problems):
             kinds.setdefault(_kind_of(problems[row]), []).append(row)
@@ -81,8 +83,8 @@ class Recording:
             return np.where(np.isfinite(values), values, math.nan)
         cells = self._cells(column)
         text = b"\n".join(cells)
-        # In other texts, float() may accept cells that are not numbers in this format, so the cells are parsed one by
-        # one.
+        # float() accepts some cells that are not numbers in this format. Cells with unusual characters are therefore
+        # parsed one by one.
         usual = not text.translate(None, _NUMERIC) and text.count(b"+") == text.count(
             b"e+"
         ) + text.count(b"E+")
@@ -181,7 +183,8 @@ _TIME_OF_DAY = re.compile(
 
 
 def _nanoseconds(cell):
-    """Returns the nanoseconds of a time of day, with or without a date and an offset, or None."""
+    """Returns a time of day in nanoseconds; its date and its offset from UTC may be missing. Returns None for other
+    texts."""
     found = _TIME_OF_DAY.fullmatch(cell)
     if not found:
         return None
@@ -200,13 +203,14 @@ def _nanoseconds(cell):
 
 
 def _kind_of(problem):
-    """Returns the problem without its values, which differ between rows. Column and name are kept."""
+    """Returns the kind of a problem: its text without the values, which differ between rows. The column and its name
+    are kept."""
     where, got, rest = problem.partition("got ")
     return where, re.sub(r'"[^"]*"|-?\d[\d.e+-]*', "#", got + rest)
 
 
 def open_recording(file, options):
-    """Reads a file in one pass, so that it may be a pipe."""
+    """Reads the file of a recording once from start to end, so that it may be a pipe. Returns the Recording."""
     data = _content(file)
     if options.format == "hapi-binary":
         return _binary(data, file, options.floats)

@@ -1,4 +1,5 @@
-"""Samples of a recording in SI units and the scenario's frame, and the problems of its rows."""
+"""Converts the rows of a recording to samples in SI units and in the scenario's frame. Collects the problems of bad
+rows."""
 import math
 import re
 from dataclasses import dataclass
@@ -12,16 +13,17 @@ from .component_columns import Columns
 from .holds import hold_of
 
 MAX_SAMPLES = 10_000_000
-UNIT_TOLERANCE = 1e-3  # tolerance of norms: a larger deviation from 1 is an error, not rounding
+UNIT_TOLERANCE = 1e-3  # largest deviation of a norm from 1 that counts as rounding
 MIN_JUMP = (
-    # [m]; a smaller jump may be caused by a clock with jitter that wrote two samples almost at once
+    # Distance between samples [m] up to which a jump is accepted at any speed, because a clock with jitter may have
+    # written both samples almost at once.
     1e-3
 )
 _EXPONENT_OF_FORTRAN = re.compile(rb"[+-]?(\d+\.?\d*|\.\d+)[dD][+-]?\d+")
 TIMES_OF_DAY = '"05:59:00.002" or "2026-11-28T05:59:00.002Z"'
-LENGTHS = {1e-3: "millimetres", 1e-6: "micrometres"}  # unit of length [m]: its name
+LENGTHS = {1e-3: "millimetres", 1e-6: "micrometres"}  # name by unit of length [m]
 DEGREE = math.pi / 180.0
-DOWN = np.array([0.0, 0.0, -1.0])  # axis of the tool in the tool frame
+DOWN = np.array([0.0, 0.0, -1.0])  # axis that points out of the tip, in the tool frame
 
 
 @dataclass
@@ -35,29 +37,30 @@ class Samples:
 
 @dataclass
 class Read:
-    """A recording after reading."""
+    """A recording after reading, with its samples."""
 
     samples: Samples
     recording: object
     kept: np.ndarray  # row numbers of the samples
-    left_out: list  # faults of omitted rows: (position, problem)
+    # (position in the file, problem) for the bad rows that were omitted, once for each kind of problem.
+    left_out: list
     unit_deviation: float  # largest |norm - 1| of an orientation before it was normalised
     notes: list  # notes for the user of the stroke
     coordinates: np.ndarray  # positions before rotation and shift [m]
-    rows_left_out: int  # number of omitted rows, over all faults
-    origin: float  # offset from the times here to the times of the recording [s]
+    rows_left_out: int  # number of omitted rows, over all kinds of problems
+    origin: float  # time of the recording minus time in `samples` [s]
     columns: dict  # Columns.used()
-    columns_not_read: list  # numbers and names of the other columns
+    columns_not_read: list  # numbers and names of the columns that were not read
     scales: dict  # factors to SI units, by quantity
-    held: object  # Hold, or None if samples are not held
+    held: object  # Hold of the samples; None if no sample is repeated in several rows
 
 
 class Rows:
-    """The rows of a recording as numbers. `problems` has for each bad row the reason why it is not a sample."""
+    """Numbers in the rows of a recording. `problems`: for each bad row, the reason why it is not a sample."""
 
     def __init__(self, recording, columns, options):
         self.problems, self.unit_deviation, self._recording = recording.problems(), 0.0, recording
-        self.jumps = {}  # speed by row [m/s]
+        self.jumps = {}  # speed [m/s] of each row that is rejected as a jump
         self.notes, self.origin, self._time = columns.notes, 0.0, columns.time[:1]
         frame = np.array(options.frame).T
         if columns.time:
@@ -87,7 +90,7 @@ class Rows:
                 self.orientation[:, 3] *= scale
             self._check_orientation()
         forces = np.zeros(1) if self.force is None else np.linalg.norm(self.force, axis=1)
-        self.clock_problems = set(self.problems)  # rows without a time or a position
+        self.clock_problems = set(self.problems)  # rows whose time or position is missing
         fits = (
             (np.linalg.norm(self.position, axis=1) < 1e6)
             & (forces < 1e9)
@@ -110,7 +113,7 @@ class Rows:
             )
 
     def turns(self, kept, options):
-        """Returns the rotations from the tool frame to the world frame for the kept rows."""
+        """Returns the rotation from the tool frame to the world frame for each kept row."""
         frame, tool = np.array(options.frame), _from_down_to(np.array([options.tip_axis]))
         if self.kind == "none":
             return _from_down_to(np.repeat([frame @ options.tip_axis], len(kept), axis=0))
@@ -143,7 +146,7 @@ class Rows:
         return values
 
     def _refuse_columns(self, columns, values):
-        """Adds the problems of rows without a number in a column."""
+        """Adds a problem for each row that has no number in one of the columns."""
         for column, numbers in zip(columns, values.T):
             name = self._recording.names[column]
             self._refuse(
@@ -155,7 +158,8 @@ class Rows:
             )
 
     def _cause(self, column, row):
-        """The likely cause of a cell that is no number, with the correction, or nothing."""
+        """Returns a text for the error message: the likely cause of a cell that is not a number, and the correction.
+        Returns an empty text if no cause is known."""
         cell = b"" if self._recording.is_binary else self._recording.rows[row][column]
         if _EXPONENT_OF_FORTRAN.fullmatch(cell):
             return "; write an exponent as in 1e-3"
@@ -214,14 +218,15 @@ def _from_down_to(axes):
     """Returns the smallest rotations from DOWN to the axes."""
     unit = axes / np.linalg.norm(axes, axis=1, keepdims=True)
     turns = np.column_stack([np.cross(DOWN, unit), 1.0 + unit @ DOWN])
-    # A half turn may have any axis perpendicular to DOWN.
+    # A half turn can be about any axis perpendicular to DOWN; x is chosen.
     return Rotation.from_quat(np.where(turns[:, 3:] < 1e-12, [1.0, 0.0, 0.0, 0.0], turns))
 
 
 def read_samples(recording, options):
-    """Reads a recording. Bad rows are: too few values, no finite number, time that does not increase, an invalid
-    orientation, a jump faster than max_speed. They are refused together, each kind with its first position, or omitted
-    if the options say so. Rows that repeat a held sample are omitted."""
+    """Reads the samples of a recording. Bad rows have too few values, no finite number, a time that does not increase,
+    an invalid orientation, or a jump faster than max_speed. By default, bad rows are refused in one message, with the
+    first row of each kind. With the option, bad rows are omitted. Rows that repeat a held sample are always omitted.
+    """
     columns = Columns(recording, options)
     with np.errstate(invalid="ignore", over="ignore"):
         rows = Rows(recording, columns, options)
@@ -269,7 +274,8 @@ def read_samples(recording, options):
 
 
 def _held_rows(rows, options, notes):
-    """Returns the Hold of the rows without problems, or None; its `fresh` has an entry for each row."""
+    """Returns the Hold of the rows without problems, or None if samples are not held. Its `fresh` has an entry for
+    every row."""
     usable = np.array([row not in rows.problems for row in range(len(rows.time))], bool)
     values = [rows.recorded] + ([rows.orientation] if rows.kind != "none" else [])
     held = hold_of(np.column_stack(values)[usable]) if usable.any() else None
@@ -295,12 +301,13 @@ def _held_rows(rows, options, notes):
 
 
 def _is_held(values, fresh):
-    """Returns True if values change only in fresh rows."""
+    """Returns True if the values change only in rows for which `fresh` is true."""
     return not np.any((np.diff(values, axis=0) != 0.0).any(axis=1) & ~fresh[1:])
 
 
 def _with_hints(rows, count):
-    """Returns the problems of rows. If most rows are jumps, adds the scale with which they would be a motion."""
+    """Returns the problems of the rows. If more than a third of the rows are jumps, adds the scale of length that would
+    make their speed plausible."""
     jumps = [row for row, speed in rows.jumps.items() if row in rows.problems]
     if len(jumps) < 3 or 3 * len(jumps) <= count:
         return rows.problems

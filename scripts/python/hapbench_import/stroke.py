@@ -1,5 +1,5 @@
-"""Converts samples to a stroke: a regular clock that starts at 0, optional smoothing, and the resolution of the
-recording. Reports the measured properties as JSON, and as a table for people."""
+"""Converts the samples of a recording to a stroke: times of a regular clock that starts at 0, and optional smoothing.
+Reports the properties of the recording as JSON and as a printed table."""
 import math
 
 import numpy as np
@@ -13,18 +13,19 @@ from .samples import DOWN, Samples, read_samples
 
 STIFFNESS = 20000.0  # default of rendering.stiffness_N_per_m [N/m]
 MAX_SAMPLES = 1e7
-LONG_INTERVALS = 10.0  # in median intervals; a longer interval is a gap
+LONG_INTERVALS = 10.0  # duration in median intervals above which an interval is a gap
 USUAL_RATES = (1.0, 1e5)  # usual rates of recordings [Hz]
 LONGEST, SHORTEST = 3.0, 1e-5  # largest and smallest plausible length of a hand's stroke [m]
 FASTEST = 5.0  # largest plausible speed of a hand [m/s]
-# Ranges of times that may be days: days since 1900 of the years 1982 to 2091, and days since the year 0.
+# Plausible numbers of days in the time column of a recording whose times are dates: 1982 to 2091 as days since 1900,
+# and the same as days since the year 0.
 DAYS = ((3e4, 7e4), (7e5, 8e5))
 MAX_GAPS = 5  # largest number of gaps that are listed one by one
 MAX_NOT_READ = 12  # largest number of unread columns that the table names
 
 
 def import_stroke(recording, options):
-    """Returns a stroke that a scenario can replay, and the properties of the recording as JSON."""
+    """Returns (Stroke that a scenario can replay, properties of the recording for the JSON)."""
     read = read_samples(recording, options)
     clock, is_regular = clock_of(read.samples.time)
     gaps = gaps_in(read, clock["interval_s"]["median"], options.max_gap)
@@ -88,8 +89,8 @@ def import_stroke(recording, options):
 
 
 def clock_of(time):
-    """Returns the times of a recording, and True if every sample is within a thousandth of an interval of a regular
-    clock."""
+    """Returns (statistics of the clock, True if the clock is regular). A regular clock has no sample that is off by
+    more than a thousandth of the mean interval."""
     first, duration, intervals = float(time[0]), float(time[-1] - time[0]), np.diff(time)
     even = duration / len(intervals)
     off = time - first - np.arange(len(time)) * even
@@ -104,7 +105,8 @@ def clock_of(time):
 
 
 def usual_rate(clock, is_regular, samples):
-    """Returns the recorded rate; for an irregular clock the rate of its median interval, rounded to an integer."""
+    """Returns the sampling rate of a recording [Hz]. For an irregular clock, returns the rate of the median interval,
+    rounded to an integer if it is at least 10 Hz."""
     if is_regular:
         return (samples - 1) / clock["duration_s"]
     rate = 1.0 / clock["interval_s"]["median"]
@@ -112,8 +114,8 @@ def usual_rate(clock, is_regular, samples):
 
 
 def gaps_in(read, median, longest):
-    """Returns the gaps to interpolate: index of the sample before the gap, and duration [s]. Refuses the recording if
-    intervals are longer than `longest` [s], regardless of their number."""
+    """Returns (index of the sample before the gap, duration [s]) for each gap to interpolate. Refuses the recording if
+    any interval is longer than `longest` [s]."""
     intervals = np.diff(read.samples.time)
     faults = [
         (
@@ -139,8 +141,8 @@ def resolution_of(values):
     rounding = max(1e-10, 1e-9 * max(abs(values[0]), abs(values[-1])))
     step = 0.0
     for before, value in zip(values, values[1:]):
-        # Euclid's algorithm for the greatest common divisor. Rounding can make a zero remainder slightly positive, or
-        # slightly smaller than the divisor.
+        # Computes the greatest common divisor by Euclid's algorithm. Rounding can turn a remainder of zero into a small
+        # positive number, or into a number slightly below the divisor.
         rest = value - before
         if rest <= rounding:
             continue
@@ -148,21 +150,22 @@ def resolution_of(values):
             step, rest = rest, abs(math.remainder(step, rest))
         if step <= 2.0 * rounding:
             return None
-        # The total span is also a multiple; rounding to it removes the amplified error.
+        # The whole span of the values is a multiple of the step, too. Dividing the span by its rounded number of steps
+        # removes the amplified error.
         span = value - values[0]
         step = span / math.floor(span / step + 0.5)
     return step if step > 0.0 else None
 
 
 def resample(samples, rate):
-    """Resamples at a regular rate [Hz] from the first sample, with times relative to it: positions and forces linearly,
-    orientations along the great arc."""
+    """Returns the samples at a regular rate [Hz] from the first sample on, with times that start at 0. Positions and
+    forces are interpolated linearly, and orientations along the great arc."""
     time, duration = samples.time, samples.time[-1] - samples.time[0]
     if not (rate > 0.0 and math.isfinite(rate) and duration * rate < MAX_SAMPLES):
         fail(
             f"rate: got {rate:g} Hz for {duration:.6g} s; allowed: above 0, and up to {MAX_SAMPLES:g} samples"
         )
-    # Includes a last sample that misses the grid only by rounding.
+    # The tolerance keeps a last sample that misses the regular times only by rounding.
     grid = np.arange(math.floor(duration * rate * (1.0 + 1e-12)) + 1) / rate
     recorded = time[0] + grid
     after = np.clip(np.searchsorted(time, recorded, side="right"), 1, len(time) - 1)
@@ -208,7 +211,8 @@ def smooth(stroke, window, order):
             basis[half + 1 :] @ (basis.T @ before[n - window :]),
         ]
     )
-    # A window that spans more than half a turn may average to nearly zero; such samples keep their values.
+    # Over a window that spans more than half a turn, the mean quaternion may be nearly zero. The affected samples keep
+    # their orientations.
     is_turn = np.linalg.norm(after[:, 3:], axis=1, keepdims=True) > 0.1
     turn = Rotation.from_quat(np.where(is_turn, after[:, 3:], before[:, 3:]))
     moved, turned = (
@@ -225,15 +229,15 @@ def smooth(stroke, window, order):
 
 
 def of_one_sign(quaternions):
-    """Returns quaternions of consistent sign. q and -q are the same orientation; with equal signs, interpolation takes
-    the shorter arc."""
+    """Returns the quaternions with consecutive signs made equal. q and -q are the same orientation, and interpolation
+    between quaternions of equal sign follows the shorter arc."""
     same = np.einsum("ij,ij->i", quaternions[1:], quaternions[:-1]) >= 0.0
     return quaternions * np.cumprod(np.where(np.concatenate([[True], same]), 1.0, -1.0))[:, None]
 
 
 def stroke_text(stroke):
-    """Returns the contents of the stroke's file: time_s,px_m,py_m,pz_m, then qw,qx,qy,qz or axis_x,axis_y,axis_z, then
-    with a measured force mfx_N,mfy_N,mfz_N."""
+    """Returns the contents of the stroke's file. Its columns are time_s,px_m,py_m,pz_m, then qw,qx,qy,qz or
+    axis_x,axis_y,axis_z, and with a measured force mfx_N,mfy_N,mfz_N."""
     if stroke.has_roll:
         names, pose = "qw,qx,qy,qz", np.roll(of_one_sign(stroke.turn.as_quat()), 1, axis=1)
     else:
@@ -248,7 +252,7 @@ def stroke_text(stroke):
 
 
 def number_text(value):
-    """Returns the shortest decimal that reads back as the same number; in scientific notation only if that is
+    """Returns the shortest decimal text that is read back as the same number. Scientific notation is used only if it is
     shorter."""
     text = repr(value)
     if "e" not in text and abs(value) >= 1e-3 and not text.endswith(".0"):
@@ -260,7 +264,7 @@ def number_text(value):
 
 
 def table_of(found):
-    """Returns rows of a label and a text about the result of import_stroke."""
+    """Returns the rows (label, text) of the printed table about the result of import_stroke()."""
     smallest, largest = found["force_min_N"], found["force_max_N"]
     return [
         ("columns", columns_text(found["columns"], found["columns_not_read"], found["scales"])),
@@ -373,8 +377,9 @@ def resolution_rows(found):
 
 
 def columns_text(columns, not_read, scales):
-    """Formats columns by quantity, with numbers and names: "time: column 1 t; position x, y, z: columns 2 px, 3 py, 4
-    pz"."""
+    """Returns a text with the columns of each quantity, by number and name: "time: column 1 t; position x, y, z:
+    columns 2 px, 3 py, 4 pz". `not_read`: columns that were not read. `scales`: factors to SI units.
+    """
     texts = []
     for quantity, parts in columns.items():
         titles = ", ".join(f"{part['column']} {part['name']}".rstrip() for part in parts)
@@ -392,10 +397,10 @@ def columns_text(columns, not_read, scales):
 
 
 def into_surface(stroke):
-    """Returns the mean cosine of the angle between measured force and tip direction over the samples with more than a
-    fifth of the largest force. Returns 0 without forces, and unless the cosine is positive in more than 95 % of these
-    samples. A positive mean indicates a force of the opposite sign, because a surface pushes against the tip.
-    """
+    """Returns the mean cosine of the angle between the measured force and the direction out of the tip, over the
+    samples with more than a fifth of the largest force. A positive mean indicates a force of the opposite sign, because
+    a surface pushes against the tip. Returns 0 without forces, or unless the cosine is positive in more than 95 % of
+    these samples."""
     if stroke.force is None:
         return 0.0
     sizes = np.linalg.norm(stroke.force, axis=1)
@@ -434,7 +439,8 @@ def _warnings(read, gaps, found):
 
 
 def _clock_warnings(found):
-    """Returns at most one warning: an unusual rate or speed, with the time scale that makes it usual."""
+    """Returns a list with at most one warning: the sampling rate or the speed is unusual. The warning names the time
+    scale that would make it usual."""
     rate, speed = found["rate_Hz"], found["speed_p99_m_per_s"]
     scale = found["scales"].get("time", 1.0)
     what = f"{rate:.4g} samples per second and a speed of {speed:.3g} m/s"

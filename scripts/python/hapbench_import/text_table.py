@@ -1,5 +1,5 @@
-"""Text files of numbers: lines, separators, decimal commas and names of columns. Used by `import stroke` and `import
-device`."""
+"""Reads text files of numbers. Detects lines, separators, decimal commas and the names of columns. `import stroke` and
+`import device` use this module."""
 import codecs
 import csv
 import math
@@ -12,16 +12,17 @@ from hapbench_command import fail, finite_number, quoted
 from .columns import UNITS
 
 MAX_COLUMNS = 1000
-MAX_ABOVE = 40  # largest number of lines above a header
+MAX_ABOVE = 40  # largest number of lines above the header of a file
 MAX_HEADERS = 8  # largest number of lines of a header
-SAMPLED = 20  # number of lines from which the separator is determined
+SAMPLED = 20  # number of lines in each sample from which the separator is determined
 SEPARATORS = (b",", b";", b"\t", None)  # None stands for blanks
 _BLANK = b" \t\r"
 _COMMA_NUMBER = re.compile(rb"[+-]?(\d+,\d*|,\d+)([eE][+-]?\d+)?")
 _THOUSANDS = re.compile(rb"[+-]?[1-9]\d{0,2}(,\d{3})+(\.\d*)?")
 _WHOLE = re.compile(rb"[+-]?\d+([eE][+-]?\d+)?")
-MISSING = {"", "-", "NA", "N/A", "#N/A", "na", "null", "NULL", "None"}  # values, not names
-# How files that are no texts begin.
+# Cell texts that stand for a missing value and are not names.
+MISSING = {"", "-", "NA", "N/A", "#N/A", "na", "null", "NULL", "None"}
+# First bytes of files that are not text, with the kind of the file.
 PACKED = {
     b"\x1f\x8b": "compressed (gzip)",
     b"PK\x03\x04": "compressed (a zip file, or a workbook .xlsx)",
@@ -48,13 +49,15 @@ class Table:
     rows: list  # lists of cells (bytes)
     lines: list  # line number of each row
     separator: bytes | None
-    notes: list = field(default_factory=list)  # skipped or repaired parts, each mentioned once
+    # Texts about skipped or repaired parts of the file; each kind is mentioned once.
+    notes: list = field(default_factory=list)
 
 
 def read_table(data, file, by_blanks=False, names_of=None):
-    """Returns the rows and the names of columns of a text file. The names come from a header: the first line if none of
-    its cells is a number, or the last comment line before the rows with as many cells as the rows. `names_of`: function
-    that makes names from the words of the first line in any case."""
+    """Returns the Table of a text file: its rows and the names of its columns. The names come from a header. The header
+    is the first line if none of its cells is a number, or the last comment line above the rows that has as many cells
+    as the rows. `names_of`: function that always makes the names from the words of the first line.
+    """
     notes = []
     lines, comments = _lines(_utf8(data, file, notes))
     if not lines:
@@ -95,7 +98,7 @@ def counted(count, thing):
 
 
 def _utf8(data, file, notes):
-    """Converts the bytes of a text to UTF-8 without a byte order mark."""
+    """Returns the bytes of a text as UTF-8 without a byte order mark. Fails for a file that is not text."""
     for mark, kind in PACKED.items():
         if data.startswith(mark):
             fail(f"is {kind}, not a text; allowed: {UNPACKED}", file)
@@ -127,7 +130,8 @@ def _utf8(data, file, notes):
 
 
 def _wide_encoding(data):
-    """UTF-16 or UTF-32 by the byte order mark or, without it, by the zero bytes of a text in ASCII; or None."""
+    """Returns the name of the encoding if the text is UTF-16 or UTF-32, otherwise None. The byte order mark decides;
+    without it, the positions of the zero bytes in an ASCII text decide."""
     for mark, encoding in (
         (codecs.BOM_UTF32_LE, "utf-32"),
         (codecs.BOM_UTF32_BE, "utf-32"),
@@ -145,16 +149,16 @@ def _wide_encoding(data):
 
 
 def _lines(data):
-    """Returns lines with their numbers, and separately the comments, which begin with # or %. Blank lines are skipped.
-    A line ends with LF, CR LF or, as on old Macs, CR."""
+    """Returns two lists of (number, line): the lines of data, and the comments, which begin with # or %. Blank lines
+    are skipped. A line ends with LF, CR LF or CR."""
     raw = data.split(b"\n")
     if any(b"\r" in line.rstrip(b"\r") for line in raw):
         raw = data.replace(b"\r\n", b"\n").replace(b"\r", b"\n").split(b"\n")
     lines, comments = [], []
     for number, line in enumerate(raw, 1):
-        # A tab at an end may separate an empty cell of a table with empty columns.
+        # A tab at the end of a line may separate an empty cell.
         bare = line.strip(_BLANK)
-        if bare.strip(b',;\t "'):  # a row of empty cells is blank, too
+        if bare.strip(b',;\t "'):  # a line with only empty cells counts as blank
             kept = line.strip(b" \r") if b"\t" in line else bare
             (comments if bare[0] in b"#%" else lines).append((number, kept))
     return lines, comments
@@ -192,7 +196,8 @@ def is_number(cell):
 
 
 def _sample(lines):
-    """Some of the first lines, and some of those below, where a file may have many lines above its header."""
+    """Returns some of the first lines, and some lines further below. A file may have up to MAX_ABOVE lines above its
+    header."""
     return lines[:SAMPLED] + lines[SAMPLED + MAX_ABOVE :][:SAMPLED]
 
 
@@ -210,7 +215,8 @@ def _separator(lines):
 
 
 def _header(words):
-    """Returns the words as names; empty if one of them is a number or all of them are "nan" or empty."""
+    """Returns the words of a header as names. Returns an empty list if a word is a number, or if all words are empty or
+    "nan"."""
     named = [word for word in words if word and not _NOT_A_NUMBER.fullmatch(word)]
     if not named or any(is_number(word) and not _NOT_A_NUMBER.fullmatch(word) for word in words):
         return []
@@ -218,7 +224,8 @@ def _header(words):
 
 
 def _from_header_on(lines, separator, notes):
-    """Removes the lines above the header. The header is above the first rows of numbers with as many cells."""
+    """Returns the lines from the header on. The header is directly above the first rows of numbers and has the same
+    number of cells."""
     rows = [split(line, separator) for _, line in lines[: 2 * SAMPLED + MAX_ABOVE]]
     counts = [len(row) - (not row[-1]) for row in rows]  # a separator may be at the end
     numbers = [is_row(row) for row in rows]
@@ -229,7 +236,7 @@ def _from_header_on(lines, separator, notes):
     )
     if first == len(rows):
         first = counts.index(usual)
-    # A header may have one name more than the rows have numbers: that of a column without values.
+    # A header may have one name more than the rows have cells, namely the name of a column without values.
     widths = (usual, usual + 1)
     while first and not numbers[first - 1] and _header(rows[first - 1]):
         above = rows[first - 1]
@@ -245,14 +252,15 @@ def _from_header_on(lines, separator, notes):
 
 
 def is_row(words):
-    """True if most cells that are not empty are numbers."""
+    """Returns True if more than half of the non-empty cells are numbers."""
     cells = [word for word in words if word]
     return 2 * sum(map(is_number, cells)) > len(cells)
 
 
 def _names_in_header(lines, separator, notes):
-    """(names, line number of the header, lines below it). The header may have several lines: groups of columns, names
-    and units. The names are those of the last line that names every column differently."""
+    """Returns (names, line number of the header, lines below the header). The header may have several lines: groups of
+    columns, names, and units. The names are taken from the last line that does not contain units. If these names are
+    not distinct, the words of all lines above each column are joined."""
     block = []
     for _, line in lines[:MAX_HEADERS]:
         words = _header(split(line, separator))
@@ -261,7 +269,7 @@ def _names_in_header(lines, separator, notes):
         block.append(words)
     if not block:
         return [], lines[0][0], lines
-    # Without numbers below them, the lines are rows of something else.
+    # If no numbers follow, the other lines are not part of the header: only the first line is.
     if len(lines) <= len(block) or not is_row(split(lines[len(block)][1], separator)):
         block = block[:1]
     numbers, below = [number for number, _ in lines[: len(block)]], lines[len(block) :]
@@ -270,7 +278,7 @@ def _names_in_header(lines, separator, notes):
         notes.append(f"line {numbers[len(block) - 1]} has the units of the columns")
         block.pop()
     elif len(block) == 2 and not _are_distinct(block[1]) and _are_distinct(block[0]):
-        # The scale of an unknown unit is asked for where the column is read.
+        # The caller that reads the column requests the scale of an unknown unit.
         units = block.pop()
         notes.append(f"line {numbers[1]} is read as the units of the columns")
     else:
@@ -291,13 +299,14 @@ def _names_in_header(lines, separator, notes):
 
 
 def _are_distinct(names):
-    """True if no name is there twice; columns may lack a name."""
+    """Returns True if no name occurs twice. Several columns may have an empty name."""
     named = [name for name in names if name]
     return len(set(named)) == len(named)
 
 
 def _units_of(words):
-    """Returns the units in a line below the header, "" for a column without a unit; empty if a word is not a unit."""
+    """Returns the unit of each word in a line below the header, "" for a column without a unit. Returns an empty list
+    if a word is not a unit."""
     words = [word.decode("utf-8", "replace").strip("[]()") for word in words]
     is_unit = [
         word in ("", "-") or any(word in known for known in UNITS.values()) for word in words
@@ -308,7 +317,8 @@ def _units_of(words):
 
 
 def _commented_header(comments, before, count, separator):
-    """Returns line number and names of a header such as "% time,x,y,z" above the line `before`."""
+    """Returns (line number, names) of a commented header, such as "% time,x,y,z", above the line number `before`.
+    Returns (None, []) if there is none with `count` names."""
     for number, comment in reversed(comments):
         text = comment.lstrip(b"#% \t")
         # A comment often has blanks between its names, even if the numbers have another separator.
@@ -319,8 +329,8 @@ def _commented_header(comments, before, count, separator):
 
 
 def _drop_trailing_separators(table):
-    """Removes an empty cell at the end of rows that have one more cell than the header, and an empty name if the rows
-    have one cell less."""
+    """Removes an empty last cell from rows that have one cell more than the header. If the rows have one cell less than
+    the header, removes an empty last name."""
     width = len(table.names)
     longer = [i for i, row in enumerate(table.rows) if len(row) == width + 1 and not row[-1]]
     for i in longer:
@@ -343,7 +353,8 @@ def _drop_trailing_separators(table):
 
 
 def _complete_last_column(table, width):
-    """Appends an empty cell to rows without the last cell, if nearly all rows lack it, as the comments of LabVIEW."""
+    """Appends an empty last cell to the rows that lack it, if at least 90 % of the rows lack it. LabVIEW writes such
+    files, with a last column for comments."""
     if width < 3 or not table.names[-1]:
         return
     shorter = [i for i, row in enumerate(table.rows) if len(row) == width - 1]

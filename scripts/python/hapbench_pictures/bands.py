@@ -1,4 +1,5 @@
-"""A quantity over time with several runs for each law: the mean with a band."""
+"""Draws a quantity over time for several runs of each law: the mean, in a band from the smallest to the largest
+value."""
 import numpy as np
 
 from .panels import cut_off_peaks, share_an_axis
@@ -7,7 +8,8 @@ SPANS = 300  # number of time spans of a curve
 
 
 def draw_bands(ax, quantity, laws, looks):
-    """Draws the bands. `laws`: the Samples of the runs of each law; `looks`: one look for each law."""
+    """Draws one mean with its band for each law. `laws`: for each law, the Samples of its runs. `looks`: look of each
+    law."""
     drawn = [
         (s, one, s.of(quantity)) for runs, one in zip(laws, looks) for s in runs if s.of(quantity)
     ]
@@ -30,8 +32,8 @@ def draw_bands(ax, quantity, laws, looks):
 
 
 def band(curves, edges):
-    """Returns mean, smallest and largest value of curves (time, lower and upper edge) in each time span; NaN in spans
-    without a value."""
+    """Returns (mean, smallest value, largest value) of several curves in each time interval between `edges`; NaN in
+    intervals without a value. Each curve is (times, lower bounds, upper bounds)."""
     spans = len(edges) - 1
     total, count = np.zeros(spans), np.zeros(spans)
     smallest, largest = np.full(spans, np.inf), np.full(spans, -np.inf)

@@ -1,4 +1,4 @@
-"""Picture of the levels of `converge`: the error of each metric over the refined field, and over the time of a run."""
+"""Picture of the levels of `converge`: the error of each metric over the refined field, and over the run time."""
 from itertools import cycle
 
 import numpy as np
@@ -16,8 +16,8 @@ ORDERS, LEVELS, TIMES = "converge.csv", "converge_levels.csv", "converge_levels_
 
 
 def draw_converge(files, sheet=SHEET):
-    """Draws the relative error of each metric over the refined field, with the line of the formal order, and over the
-    time of a run. Filled marks: an order is stated. Hollow marks: errors of the levels without a stated order.
+    """Draws the relative error of each metric over the refined field, with a line of the formal order, and over the run
+    time. Filled marks: metrics whose order is known. Hollow marks: metrics without a known order.
     """
     orders, levels, times = (
         files.records(ORDERS),

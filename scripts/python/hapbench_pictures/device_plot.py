@@ -1,5 +1,5 @@
-"""Picture of the limits of `limit --device`: on each device, and for each device over another field. A device has one
-colour; the linear and the simulated limit have different marks."""
+"""Picture of the limits of `limit --device`: one limit for each device, or limits of each device over another field.
+Each device has one colour; the linear limit and the simulated limit have different marks."""
 import numpy as np
 from matplotlib.lines import Line2D
 from matplotlib.transforms import ScaledTranslation
@@ -11,15 +11,17 @@ from hapbench_style import BLACK, GREY, PUBLISHED_LINE, legend_above, legend_hei
 from .given import axis
 from .over_axes import Axis, over_axes
 
-# Variants of a preset, such as "touch[soft]", have the colour of the preset and thinner lines.
+# Plot styles of the limits. Variants of a preset, such as "touch[soft]", have the colour of the preset and thinner
+# lines.
 LINEAR = {"marker": "s", "mfc": "white", "mew": 1.1, "ms": 4.2}
 SIMULATED = {"marker": "o", "ms": 4.2}
-# A simulated limit with unstable runs on its stable side or stable runs beyond it. It is not joined to other limits.
+# Style of a simulated limit that does not separate stable from unstable runs: there are unstable runs on its stable
+# side, or stable runs beyond it. It is not joined to other limits.
 ALTERNATING = {"marker": "o", "mfc": "white", "mew": 1.1, "ms": 4.2, "ls": "none"}
-# The whole range is stable up to its end: the limit is larger than the range.
+# Style of a limit that is larger than the searched range, because all runs up to the end of the range are stable.
 BEYOND = {"ms": 4.2, "mfc": "white", "mew": 0.9}
-BEYOND_MARKERS = {"x": ">", "y": "^"}  # marker by the axis of the limit
-BEYOND_ROW = 5.5  # distance between the marks of two devices at the same end of the range [points]
+BEYOND_MARKERS = {"x": ">", "y": "^"}  # marker by the axis on which the limit is drawn
+BEYOND_ROW = 5.5  # distance between the marks of two devices at the end of the range [points]
 NON_MONOTONIC = "non_monotonic_runs"
 BEYOND_LABEL = "stable to the end of the range: a row for each device"
 ALTERNATING_LABEL = "simulated: stable and unstable runs alternate"
@@ -29,46 +31,48 @@ VARIANT_LABEL = "thin: ends of unpublished parameters"
 
 
 def device_of(row):
-    """Returns the device without the variant: "touch" for "touch[soft]"."""
+    """Returns the device of a row without its variant: "touch" for "touch[soft]"."""
     return row["device"].partition("[")[0].rstrip("*")
 
 
 def looks_of(rows):
-    """Returns the look of each device, in the order of the table."""
+    """Returns the look of each device by name, in the order of the table."""
     names = list(dict.fromkeys(map(device_of, rows)))
     return {name: SERIES[i % len(SERIES)] for i, name in enumerate(names)}
 
 
 def linear(rows):
-    """Returns the linear limit of each row: the limit of the contact loop, or the theoretical limit of bilateral
-    springs."""
+    """Returns the linear limit of each row: the limit of the contact loop, or else the theoretical limit of bilateral
+    springs. The limit is NaN if the row has none."""
     linear_limit, theory = numbers(rows, "linear_limit"), numbers(rows, "theoretical_limit")
     values = np.where(np.isfinite(linear_limit), linear_limit, theory)
     return np.where(np.isfinite(values) & (values > 0), values, np.nan)
 
 
 def simulated(rows):
-    """Returns the simulated limits, and True for limits at the end of the searched range, where no limit was found."""
+    """Returns (simulated limit of each row, True for each limit at the end of the searched range). A limit at the end
+    of the range means that no unstable run was found."""
     ends = np.array([row["side"] == "largest" and not row["first_unstable"] for row in rows], bool)
     values = np.where(ends, numbers(rows, "stable_high"), numbers(rows, "limit"))
     return values, ends & np.isfinite(values)
 
 
 def alternate(rows):
-    """Returns True for each row whose stable and unstable runs alternate, so that no limit separates them."""
+    """Returns for each row True if its stable and unstable runs alternate, so that no single limit separates them."""
     return np.array([row.get(NON_MONOTONIC) not in (None, "", "0") for row in rows], bool)
 
 
 def simulated_kinds(rows):
-    """Returns the simulated limits in three groups, NaN elsewhere: separated, alternating, and at the end of the
-    range."""
+    """Returns three arrays with the simulated limits of the rows: limits that separate stable from unstable runs,
+    limits at which they alternate, and limits at the end of the range. A value is NaN in the arrays of the other two
+    kinds."""
     values, ends = simulated(rows)
     alternating = alternate(rows) & ~ends
     return [np.where(of, values, np.nan) for of in (~ends & ~alternating, alternating, ends)]
 
 
 def published(rows):
-    """Returns the published limit of each device."""
+    """Returns the published limit [N/m] by device, for the devices that have one."""
     return {
         device_of(row): float(row["published_N_per_m"])
         for row in rows
@@ -77,7 +81,8 @@ def published(rows):
 
 
 def legend_of_marks(rows, along):
-    """Returns handles and labels of the marks that are drawn. `along`: the axis of the limit, "x" or "y"."""
+    """Returns (handle, label) of each kind of mark that the picture has. `along`: the axis on which limits are drawn,
+    "x" or "y"."""
     separated, alternating, ends = simulated_kinds(rows)
     marks = (
         ("linear limit", linear(rows), LINEAR),
@@ -99,7 +104,8 @@ def legend_of_marks(rows, along):
 
 
 def panels_of(rows):
-    """Returns the rows of each panel by title; each scene and law has a panel."""
+    """Returns the rows of each panel, keyed by the title of the panel. Each combination of scene and law has a
+    panel."""
     found = {}
     for row in rows:
         title = f"{row['scenario'].replace('_', ' ')}, {law_name(row['algorithm'])}"
@@ -113,7 +119,7 @@ def title_of(found):
 
 
 def draw_devices_over(found, sheet):
-    """Draws both limits over the last field of --over, with a colour for each device."""
+    """Draws the linear and the simulated limit over the last field of --over, with a colour for each device."""
     panels, looks = panels_of(found.rows), looks_of(found.rows)
     marks = legend_of_marks(found.rows, "y")
     entries = [
@@ -149,7 +155,7 @@ def draw_devices_over(found, sheet):
 
 
 def curves_of(found, rows, colour, is_variant):
-    """Returns both limits of one device as series of over_axes()."""
+    """Returns the linear and the simulated limit of one device as `series` of over_axes()."""
     x, (separated, alternating, _) = found.along(rows), simulated_kinds(rows)
     shown = {"color": colour, "mec": colour, "lw": THIN if is_variant else 1.3}
     return [
@@ -160,8 +166,8 @@ def curves_of(found, rows, colour, is_variant):
 
 
 def mark_ends(ax, found, rows, looks):
-    """Draws marks at the end of the range for the devices that are stable up to it. Each device has its own row of
-    marks, shared by its variants."""
+    """Draws marks at the end of the range for devices that are stable up to this end. The marks of each device,
+    including its variants, are in a separate line."""
     of_device = {}
     for row, x, y in zip(rows, found.along(rows), simulated_kinds(rows)[2]):
         if np.isfinite(y):
@@ -178,7 +184,7 @@ def mark_ends(ax, found, rows, looks):
 
 
 def draw_devices(found, sheet):
-    """Draws both limits on each device, with a panel for each scene and law."""
+    """Draws the linear and the simulated limit of each device, with a panel for each combination of scene and law."""
     panels, looks = panels_of(found.rows), looks_of(found.rows)
     devices = list(dict.fromkeys(row["device"] for row in found.rows))
     marks = legend_of_marks(found.rows, "x")

@@ -1,7 +1,7 @@
-"""Differences between the results A and B of two runs, or of two folders with several runs: a regression test.
+"""Compares the results A and B of two runs, or of two folders with several runs, as a regression test.
 
-Results are the outcome, the metrics and warnings of summary.json, trajectory.csv and sweep.csv. Differences of the
-scenario's fields are printed but do not count. Provenance, times and work counters are not compared.
+Results are the outcome, the metrics and the warnings in summary.json, trajectory.csv and sweep.csv. Differences in the
+fields of the scenario are printed but do not count. Provenance, times and work counters are not compared.
 """
 import json
 import math
@@ -23,13 +23,13 @@ NO_RESULTS = (
     "state_hash",
 )
 LONGEST = 24  # largest number of characters of a printed value
-NO_NUMBER = math.inf  # size of a difference between values that are not both numbers
+NO_NUMBER = math.inf  # size of a difference if one of the two values is not a finite number
 
 
 def differences(a, b):
-    """Returns the differences of each run and sweep, by its path below the folders `a` and `b`. Keys are "field",
-    "result", "state hash" and the names of tables; values are lists of (name, in A, in B, size, relative size).
-    """
+    """Returns the differences by run or sweep, which are named by their path below the folders `a` and `b`. For each
+    run, the keys are "field", "result", "state hash" and the names of tables. Values are lists of (name, value in A,
+    value in B, difference, relative difference)."""
     in_a, in_b = results_below(a), results_below(b)
     pairs = [path for path in in_a if path in in_b]
     if not pairs:
@@ -79,7 +79,7 @@ def of_runs(a, b):
 
 
 def flat(value, path=""):
-    """Returns the leaves as texts, keyed by their paths."""
+    """Yields (path, text) of each leaf of a JSON value."""
     parts = (
         value.items()
         if isinstance(value, dict)
@@ -94,8 +94,8 @@ def flat(value, path=""):
 
 
 def results_of(summary):
-    """Returns the results of a summary. Names of metrics have no section in front, as in `expect`. Each warning is a
-    separate result."""
+    """Returns the results of a summary as texts by name. Metrics are named without their section, as in the field
+    `expect`. Each warning is a separate result."""
     found = [
         pair
         for key, value in summary.items()
@@ -106,7 +106,7 @@ def results_of(summary):
 
 
 def fields_of(run):
-    """Returns the fields of a run. A file that the scenario names is represented by its contents. Expectations are
+    """Returns the fields of a run's scenario as texts by path. A file is represented by its contents. Expectations are
     excluded, because they do not change a run."""
     scenario = read_object(run / SCENARIO, parse_float=str, parse_int=str)
     found = dict(flat({key: value for key, value in scenario.items() if key != "expect"}))
@@ -121,7 +121,7 @@ def fields_of(run):
 
 
 def changed(a, b):
-    """Returns the entries with different texts, and the entries that only one side has."""
+    """Returns the entries whose texts differ, and the entries that only `a` or only `b` has."""
     return [
         (name, a.get(name, "-"), b.get(name, "-"), *sizes(a.get(name, "-"), b.get(name, "-")))
         for name in {**a, **b}
@@ -143,8 +143,8 @@ def sizes(a, b, largest=0.0):
 
 def of_tables(a, b):
     """Returns an entry for each column that differs: the row with the largest absolute difference, with both values.
-    The relative difference is relative to the column's largest magnitude. Also returns an entry if the numbers of rows
-    or the names of the columns differ."""
+    The relative difference is the difference divided by the largest magnitude in the column. Another entry states
+    different numbers of rows or different names of columns."""
     (names_a, rows_a), (names_b, rows_b) = read_rows(a), read_rows(b)
     found = [
         (what, one, other, NO_NUMBER, NO_NUMBER)
@@ -182,7 +182,7 @@ def of_tables(a, b):
 
 
 def are_equal(found, tolerance):
-    """Returns True if all differences are numbers within a relative tolerance. An entry that only one side has is
+    """Returns True if all differences are numbers within a relative tolerance. An entry that only A or only B has is
     always a difference. The state hash, which changes with any bit, counts only if the tolerance is 0.
     """
     return all(
@@ -200,7 +200,7 @@ def cut(value):
 
 
 def in_words(a, b, found, tolerance):
-    """Formats the differences as text for people."""
+    """Returns the printed text about the differences."""
     lines = [f"A {a}", f"B {b}", ""]
     for path, tables in found.items():
         rows = [

@@ -1,4 +1,4 @@
-"""Drawings of a page: each drawing exists for light and for dark ground."""
+"""Drawings of a page. Each drawing exists for a light and for a dark background."""
 import base64
 from dataclasses import replace
 
@@ -12,12 +12,14 @@ from .given import axis
 from .over_axes import Axis, look_of, over_axes, pareto
 from .panels import DARK, LIGHT, RunLook, settings
 
-# [inch]; on a phone, the text in a drawing is as legible as the text around it
+# Size of a drawing of a quantity, and of a scene [inch]. On a phone, the text in a drawing is then as legible as the
+# text around it.
 SIZE, SCENE_SIZE = (4.0, 2.0), (4.0, 2.9)
 
 
 def drawing(size, draw, light, title, words, **labels):
-    """Returns a drawing with one pair of axes. `light`: the looks on light ground of the curves that `draw` draws."""
+    """Returns a drawing with one pair of axes as HTML, for both backgrounds. `draw(ax, looks, paper)` draws the curves.
+    `light`: looks of the curves on a light background. `words`: description for screen readers."""
 
     def of(paper, shown):
         figure, ax = plt.subplots(figsize=size)
@@ -31,8 +33,8 @@ def drawing(size, draw, light, title, words, **labels):
 
 
 def on_both_grounds(draw, light, dark, title, words):
-    """Draws on both grounds: `draw(paper, looks)` returns a figure. `words`: description of the drawing for screen
-    readers."""
+    """Returns HTML with a drawing for each background. `draw(paper, looks)` returns a figure. `words`: description of
+    the drawing for screen readers."""
     images = []
     for paper, shown, name in ((LIGHT, light, "only-light"), (DARK, dark, "only-dark")):
         with plt.rc_context({**SETTINGS, **settings(paper)}):
@@ -45,13 +47,13 @@ def on_both_grounds(draw, light, dark, title, words):
     return f"<figure><figcaption>{text(title)}</figcaption>{''.join(images)}</figure>"
 
 
-MAX_LAWS = 2  # largest number of laws for which the table is clear without the picture
+MAX_LAWS = 2  # largest number of laws for which a page has only the table and no Pareto picture
 DEEPER, SHAKIER = "inside_max_m", "force_rms_above_30Hz_N"
 
 
 def pareto_section(runs):
-    """Returns the Pareto section of a comparison with many laws: depth of the tool against vibration for each law, over
-    all scenes and seeds."""
+    """Returns the Pareto section of a comparison: depth of the tool against vibration for each law, over all scenes and
+    seeds. It is empty for at most MAX_LAWS laws."""
     found = {}
     for run in runs:
         values = (run.metric(DEEPER), run.metric(SHAKIER))

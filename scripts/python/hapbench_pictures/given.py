@@ -1,5 +1,5 @@
-"""The runs that RUN… on the command line names (folders of `run`, folders of `compare`, or one folder of `sweep`), the
-fields in which they differ, and the names of fields in legends and on axes."""
+"""The runs that the arguments RUN… name: folders of `run`, folders of `compare`, or one folder of `sweep`. Also finds
+the fields in which the runs differ, and formats the names of fields for legends and axes."""
 import json
 import os
 import re
@@ -13,8 +13,9 @@ from hapbench_report.markup import column
 from hapbench_report.runs import load_run, load_runs
 
 SUMMARY, SWEEP = "summary.json", "sweep.csv"
-SEED_FOLDER = re.compile(r"seed_(\d+)")  # folder of a comparison with --seeds
-# Titles of fields whose last name is too short to be clear, and symbols in formulas.
+# Matches the name of a repetition's folder in a comparison with --seeds.
+SEED_FOLDER = re.compile(r"seed_(\d+)")
+# Titles of fields whose names are too short to be clear, and symbols of fields in formulas.
 TITLES, SYMBOLS = {"time.step_s": "time step", "rendering.damping_ratio": "damping ratio ζ"}, {
     "rendering.stiffness_N_per_m": "K"
 }
@@ -22,8 +23,8 @@ NO_INPUT = ("expect", "description", "name", "source")
 
 
 def given_alone(words, files, what):
-    """Returns the folder among the arguments that contains one of these files and no run; None if there is none. Such a
-    folder is drawn without other folders."""
+    """Returns the folder among the arguments that contains one of `files` and no single run, or None. A folder of this
+    kind must be the only argument; otherwise raises InputError with the text `what`."""
     found = [
         Path(word)
         for word in words
@@ -42,7 +43,8 @@ def given_sweep(words):
 
 
 def given_runs(words):
-    """Returns the runs in the given order, each folder once. A comparison contributes the runs that its table names."""
+    """Returns the runs in the order of the arguments, each folder once. A folder of a comparison stands for the runs
+    that its table names."""
     found = {}
     for word in words:
         folder = Path(word)
@@ -67,7 +69,8 @@ def given_runs(words):
 
 
 def compared(folder):
-    """Returns the runs below a folder, without runs that an earlier comparison left there."""
+    """Returns the runs below a folder of a comparison. Runs that an earlier comparison left in the folder are
+    skipped."""
     table = folder / "comparison.csv"
     runs = load_runs(folder)
     if not table.is_file():
@@ -79,13 +82,14 @@ def compared(folder):
 
 
 def labels(runs):
-    """Returns names that distinguish the runs: scene, algorithm, fields, seed and folder, as far as they differ."""
+    """Returns a name for each run that distinguishes it: scene, algorithm, fields, seed and folder, each only if it
+    differs between the runs."""
     return named(runs)[0]
 
 
 def named(runs):
-    """Returns the labels of the runs, and the labels without the seed; the latter are equal for all runs that differ
-    only in the seed."""
+    """Returns (labels of the runs, labels without the seed). Runs that differ only in the seed have equal labels
+    without the seed."""
     parts = [
         part
         for part in ([run.name for run in runs], [plain(run) for run in runs])
@@ -105,8 +109,8 @@ def named(runs):
 
 
 def seed_of(run):
-    """Returns the number of a run's repetition, which is in the name of its folder and in comparison.csv. For a run
-    outside of a comparison, returns the seed of its scenario."""
+    """Returns the number of the repetition from the name of the run's folder in a comparison with --seeds. For any
+    other run, returns the seed of its scenario."""
     found = SEED_FOLDER.fullmatch(run.folder.name)
     return int(found[1]) if found else run.scenario.get("seed")
 
@@ -116,12 +120,14 @@ def plain(run):
 
 
 def by_seed(run):
-    """Returns the fields that a seed sets. In a comparison with --jitter, they include the start."""
+    """Returns the paths of the fields that differ between repetitions: the seed and, in a comparison, the start
+    (--jitter)."""
     return ("seed", "initial.position_m") if SEED_FOLDER.fullmatch(run.folder.name) else ("seed",)
 
 
 def field_entries(runs):
-    """Returns for each run the fields, with values, in which it differs from other runs of its scene and algorithm."""
+    """Returns for each run a list of "field = value" texts, for the fields in which it differs from other runs of the
+    same scene and algorithm. Fields of by_seed() are excluded."""
     fields = [
         {path: value for path, value in fields_of(run).items() if path not in by_seed(run)}
         for run in runs
@@ -136,15 +142,15 @@ def field_entries(runs):
 
 
 def relative_folders(runs):
-    """Returns the runs' folders without their common path."""
+    """Returns the folder of each run, relative to the deepest folder that contains all of them."""
     paths = [os.path.abspath(run.folder) for run in runs]
     common = os.path.commonpath([os.path.dirname(path) for path in paths])
     return [os.path.relpath(path, common) for path in paths]
 
 
 def common_folder(words):
-    """Returns the folder that contains all runs or logs; for a single run, the folder of the run. The current folder
-    for a pipe."""
+    """Returns the deepest folder that contains all runs or logs; for a single run, the folder of the run. Returns the
+    working directory for a pipe."""
     path = (
         Path(os.path.commonpath([os.path.abspath(word) for word in words]))
         if len(words) > 1
@@ -156,8 +162,8 @@ def common_folder(words):
 
 
 def fields_of(run):
-    """Returns the scenario's fields by path. Paths of files, which are relative to the scenario's folder, are given
-    relative to the working directory."""
+    """Returns the fields of the run's scenario by path. A file's path, which is relative to the scenario's folder, is
+    converted to a path relative to the working directory."""
     return {
         path: os.path.relpath(run.folder / value)
         if path.rpartition(".")[2] == "file" and isinstance(value, str)
@@ -167,8 +173,8 @@ def fields_of(run):
 
 
 def differing(flat):
-    """Returns the paths at which the fields differ, with the value of each run. Names, descriptions and expectations
-    are excluded."""
+    """Returns the paths of the fields that differ between the runs, with a list of the values of all runs. Names,
+    descriptions and expectations are excluded."""
     values = {
         path: [fields.get(path) for fields in flat]
         for path in dict.fromkeys(p for fields in flat for p in fields)
@@ -190,8 +196,8 @@ def leaves(value, path=""):
 
 
 def title_and_unit(path):
-    """Splits a field into title and unit: "rendering.mass_kg" gives "mass", "kg". The unit is empty if the name has
-    none."""
+    """Returns (title, unit) of a field or column: "rendering.mass_kg" gives "mass", "kg". The unit is empty if the name
+    states none."""
     title, unit, _ = column(path.rpartition(".")[2])
     return TITLES.get(path, title), unit
 
@@ -203,8 +209,8 @@ def is_ambiguous(path, among):
 
 
 def axis(path, among=()):
-    """Returns the title of a field or column with its unit. If another field of `among` has the same title, the title
-    is the whole path."""
+    """Returns the title of a field or column with its unit. If another field of `among` has the same title, returns the
+    whole path instead."""
     title, unit = title_and_unit(path)
     if is_ambiguous(path, among):
         return path
@@ -213,7 +219,7 @@ def axis(path, among=()):
 
 
 def entry(path, value, among):
-    """Formats a field and its value for a legend: "K = 40 000 N/m"."""
+    """Returns a text with a field and its value for a legend: "K = 40 000 N/m". `among`: all fields in the legend."""
     title, unit = title_and_unit(path)
     if is_ambiguous(path, among):
         return f"{path}={shown(value)}"

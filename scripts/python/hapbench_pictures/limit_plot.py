@@ -58,8 +58,8 @@ class Limits:
         distinguish(self.algorithms)
 
     def along(self, rows):
-        """Returns the values of the last field of --over in these rows; for a field of texts, their positions in the
-        table."""
+        """Returns the values of the last field of --over in these rows. If the values are texts, returns their numbers
+        in the order of the table."""
         field = self.over[-1]
         names = list(dict.fromkeys(row[field] for row in self.rows))
         if all(map(is_number, names)):
@@ -100,7 +100,8 @@ class Limits:
         ]
 
     def theories(self):
-        """Returns the distinct curves of the linear limit over the last field: field values and limits."""
+        """Returns the distinct curves of the theoretical limit of all algorithms: (values of the last field of --over,
+        limits)."""
         found = {}
         for name in self.algorithms:
             rows = [row for row in self.rows if row["algorithm"] == name]
@@ -113,7 +114,7 @@ class Limits:
         ]
 
     def groups(self):
-        """Returns groups of algorithms with identical limits, the largest group last."""
+        """Returns lists of algorithms with identical simulated limits; the longest list is last."""
         groups = {}
         for algorithm in self.algorithms:
             groups.setdefault(
@@ -122,7 +123,8 @@ class Limits:
         return sorted(groups.values(), key=len)
 
     def draw_classes(self, ax, algorithm):
-        """Draws the class of every run of the search over the field, and the limits as lines."""
+        """Draws the class of every run of an algorithm's search over the last field of --over, and the limits as
+        lines."""
         runs, rows = (
             [row for row in of if row["algorithm"] == algorithm] for of in (self.runs, self.rows)
         )
@@ -143,12 +145,12 @@ class Limits:
 
 
 def separated(rows):
-    """Returns the simulated limits with stable runs on one side and unstable runs on the other; NaN elsewhere."""
+    """Returns the simulated limits of the rows; NaN where stable and unstable runs alternate."""
     return np.where(alternate(rows), np.nan, numbers(rows, "limit"))
 
 
 def alternating(rows):
-    """Returns the simulated limits on both sides of which stable and unstable runs alternate; NaN elsewhere."""
+    """Returns the simulated limits of the rows in which stable and unstable runs alternate; NaN for other rows."""
     return np.where(alternate(rows), numbers(rows, "limit"), np.nan)
 
 
@@ -161,8 +163,8 @@ def draw_limits(files, sheet=SHEET, folder=""):
 
 
 def draw_strip(found, sheet):
-    """Draws a line of marks for each algorithm: the class of every run over the field. Bars show the simulated limit
-    and the theoretical limit."""
+    """Draws one line of marks for each algorithm: the class of every run over the searched field. Bars mark the
+    simulated limit and the theoretical limit."""
     names = found.algorithms
     runs = [
         (
@@ -206,8 +208,8 @@ def draw_strip(found, sheet):
 
 
 def draw_over(found, sheet=PAGE):
-    """Draws the limit of every algorithm and its ratio to the linear limit, then the classes of the runs. Algorithms
-    with the same limits share a panel."""
+    """Draws the limit of every algorithm, its ratio to the theoretical limit, and the classes of the runs. Algorithms
+    with the same limits share a panel of classes."""
     groups, has_theory = found.groups(), np.isfinite(numbers(found.rows, "theoretical_limit")).any()
     rows, columns = sheet.grid(1 + has_theory + len(groups))
     entries = class_legend(found)
@@ -256,7 +258,7 @@ def draw_over(found, sheet=PAGE):
 
 
 def class_legend(found):
-    """Returns handles and labels of algorithms, lines and classes."""
+    """Returns (handle, label) of each algorithm, line and class in the picture."""
     entries = [(Line2D([], [], **look_of(name)), law_name(name)) for name in found.algorithms]
     entries += [(Line2D([], [], **style), label) for label, _, style in found.lines(found.rows)]
     if np.isfinite(alternating(found.rows)).any():

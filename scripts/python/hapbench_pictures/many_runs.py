@@ -1,5 +1,5 @@
-"""The page of many runs. It begins with a table of laws by metrics with mean and spread. Then follow the differences
-between laws, curves as the mean with a band, and every run in a folded section."""
+"""Page of `hapbench report` for many runs. It begins with a table of metrics for each law, with mean and spread. Then
+follow the differences between laws, curves of the mean with a band, and every run in a folded section."""
 import re
 from collections import Counter
 
@@ -35,19 +35,19 @@ from .ranking_values import RESOLUTION, has_repetitions, value_of
 from .run_plot import profile_of
 from .sections import FIRST, diagnosed, first_table, metric_names, plugin_option, scenario_section
 
-MANY_LAWS = 8  # number of laws that counts as many if there are several scenes
-ON_PAGE = Sheet(10.0, 3)  # [inch]
+MANY_LAWS = 8  # number of laws, over all scenes, above which several scenes count as many runs
+ON_PAGE = Sheet(10.0, 3)  # size of the pictures on the page [inch]
 NUMBER = re.compile(r"(?<![\w.])[-+]?\d[\d.,]*(?:e[-+]?\d+)?")
 
 
 def are_many(scenes):
-    """Returns True if runs are repeated over seeds, or if many laws ran in several scenes."""
+    """Returns True if runs are repeated over seeds, or if more than MANY_LAWS laws ran in several scenes."""
     laws = sum(len(scene.laws) for scene in scenes)
     return has_repetitions(scenes) or len(scenes) > 1 and laws > MANY_LAWS
 
 
 def many_sections(scenes, runs, words):
-    """Returns the sections that are not empty."""
+    """Returns the sections of the page that are not empty."""
     first = [next(iter(law.runs.values())) for scene in scenes for law in scene.laws]
     drawn = [run for run in first if TRAJECTORY in tables_of(run)]
     names = [name_of(run, scenes) for run in drawn]
@@ -110,7 +110,7 @@ NOTE = (
 
 
 def shown_metrics(scenes, runs):
-    """Returns the metrics of the ranking and the default metrics, if the runs have them."""
+    """Returns the metrics of the ranking and the default metrics, without metrics that no run has."""
     known = dict.fromkeys(name for scene in scenes for name in [*scene.better, *FIRST])
     return [name for name in known if any(value_of(run, name) is not None for run in runs)]
 
@@ -128,7 +128,8 @@ def extent(scenes, runs):
 
 
 def law_table(scene, shown):
-    """Returns a table with a row for each law. The law with the best first metric is on top."""
+    """Returns a table of the metrics of a scene, with a row for each law. The law that is best in the first metric is
+    in the first row."""
     entries = {name: scene.entries(name) for name in shown}
     ranks = {name: scene.ranks(name) for name in shown}
     heads = {
@@ -159,7 +160,8 @@ def failures_cell(law):
 
 
 def mean_cell(of, rank, factor=1.0):
-    """Returns a cell with mean ± spread, with as many digits as are significant, and the rank."""
+    """Returns a table cell with the mean, the spread and the rank of a law. The numbers have as many digits as are
+    significant. `of`: the Entry of the law."""
     if of.mean is None:
         return cell("–", classes="number")
     error = of.shown_error
@@ -193,7 +195,7 @@ def ranking(scenes, shown):
 
 
 def seeds_section(scenes):
-    """Returns for each metric the comparison of the law with the smallest mean with every other law."""
+    """Returns a section that compares, for each metric, the law with the smallest mean with every other law."""
     parts = []
     for scene in scenes:
         items = [
@@ -211,8 +213,8 @@ def seeds_section(scenes):
 
 
 def between(scene, metric):
-    """Returns a sentence for each law beside the law with the smallest mean, over the seeds in which both laws have the
-    metric."""
+    """Yields a sentence for each other law: its difference from the law with the smallest mean, over the seeds in which
+    both laws have the metric."""
     laws = {law.label: law.values(metric) for law in scene.laws if len(law.values(metric)) > 1}
     best = min(laws, key=lambda label: np.mean(list(laws[label].values())), default=None)
     errors = {label: of.error for label, of in scene.entries(metric).items()}
@@ -237,7 +239,8 @@ def between(scene, metric):
 
 
 def grouped(scenes, of_run):
-    """Returns the texts about the runs. Runs whose texts differ only in numbers share one entry."""
+    """Returns a list of the texts that `of_run` returns for the runs, as HTML. Texts that differ only in their numbers
+    share one entry."""
     groups = {}
     for scene in scenes:
         for law in scene.laws:
@@ -267,8 +270,8 @@ def group_text(alike, names_scene):
 
 
 def curves(scene, is_titled):
-    """Draws each quantity over time: the mean over the runs of a law that did not fail, in a band from the smallest to
-    the largest value."""
+    """Returns drawings of each quantity over time, as HTML. A curve is the mean over the runs of a law that did not
+    fail. Its band reaches from the smallest to the largest value."""
     quantities = [SHORT[name] for name in USUAL if name in SHORT]
     laws, light, samples = [], [], []
     for law in scene.laws:
@@ -319,7 +322,7 @@ def first_run(law):
 
 
 def metrics(scenes, runs):
-    """Returns all metrics by law, and all runs, in folded sections."""
+    """Returns the metrics of all laws and of all runs, in folded sections."""
     parts = [
         folded(
             f"All metrics of {named(scene.name)}, mean ± standard deviation", metrics_table(scene)
@@ -351,7 +354,7 @@ def metrics_table(scene):
 
 
 def scenarios(scenes):
-    """Returns the scenario of the first run of each scene; other runs differ in law, seed and start."""
+    """Returns the scenario of the first run of each scene. The other runs differ only in law, seed and start."""
     runs = [first_run(scene.laws[0]) for scene in scenes]
     return (
         "<p>The runs of a scene differ in law, seed and start only; one scenario stands for all.</p>"

@@ -1,5 +1,5 @@
-"""Plots results over fields: curves and classes of runs over two axes. Used by limit_plot, tuning_plot,
-convergence_plot and sweep_plot."""
+"""Plots results over fields: curves, and classes of runs over two axes. limit_plot, tuning_plot, convergence_plot and
+sweep_plot use these functions."""
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,7 +12,7 @@ MAX_TICKS = 12
 
 @dataclass
 class Axis:
-    """One axis of a plot: its numbers, or the positions of texts."""
+    """One axis of a plot: the numbers on it, or for texts their positions and names."""
 
     title: str
     values: np.ndarray
@@ -21,7 +21,7 @@ class Axis:
 
     @property
     def label(self):
-        """Returns the title with its unit; the unit 1 marks numbers without a unit."""
+        """Returns the title with its unit; the unit of numbers without a unit is printed as 1."""
         return (
             f"{self.title} [1]"
             if self.title and not self.names and "[" not in self.title
@@ -30,7 +30,8 @@ class Axis:
 
     @classmethod
     def of(cls, title, values, log=None):
-        """Creates an axis. `log`: None selects a logarithmic axis by the range of the values."""
+        """Creates an axis for numbers (array) or texts (list). `log`: None selects a logarithmic axis by the range of
+        the numbers."""
         if isinstance(values, list):
             names = tuple(dict.fromkeys(values))
             return cls(title, np.array([names.index(value) for value in values], float), names)
@@ -43,9 +44,9 @@ def spread_logarithmically(values):
 
 
 def over_axes(ax, x, y, series=(), runs=()):
-    """Draws curves and runs. `series`: label, x values, y values and look of each curve; coinciding curves are drawn as
-    stripes. `runs`: for each class the positions of its runs. `x`, `y`: the Axis of either direction.
-    """
+    """Draws curves and the classes of runs. `series`: (label, x values, y values, look) of each curve; coinciding
+    curves are drawn as stripes. `runs`: (class, x values, y values) of the runs of each class. `x`, `y`: the Axis of
+    each direction."""
     size = 26 if sum(len(xs) for _, xs, _ in runs) < 100 else 9
     for name, xs, ys in runs:
         title, colour, hatch = look_of_class(name)
@@ -82,7 +83,7 @@ def over_axes(ax, x, y, series=(), runs=()):
 
 
 def integer_ticks(along, values):
-    """Sets ticks at the values of an integer field."""
+    """Sets ticks at the values if they are integers, few and not spread logarithmically."""
     values = np.unique(values[np.isfinite(values)])
     if (
         1 < len(values) <= MAX_TICKS
@@ -105,13 +106,15 @@ def look_of(algorithm, **more):
 
 
 def with_room(low, high, above=1.0):
-    """Returns limits around a range on a logarithmic axis, with room for marks and names."""
+    """Returns (lower limit, upper limit) of a logarithmic axis around a range, with space for marks and names. `above`:
+    additional factor of the upper limit."""
     room = max((high / low) ** 0.12, 1.3)
     return low / room, high * room * above
 
 
 def pareto(points):
-    """Returns the points that no other point dominates in both coordinates, sorted by the first coordinate."""
+    """Returns the points of the Pareto front, sorted by the first coordinate: no other point is smaller in both
+    coordinates."""
     points = points[np.all(np.isfinite(points), axis=1)]
     front, smallest = [], np.inf
     for point in points[np.lexsort((points[:, 1], points[:, 0]))]:

@@ -1,5 +1,5 @@
-"""Draws runs into matplotlib's axes: quantities over time, and the scene in a section with the path of the tip and the
-tool. A run has the look of its algorithm, with another line style if two runs share an algorithm."""
+"""Draws runs into the axes of matplotlib: quantities over time, and the scene in a section with the path of the tip and
+the tool. A run has the look of its algorithm. If runs share an algorithm, their line styles differ."""
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,27 +12,28 @@ from hapbench_style import LINE, curve, equal_curves, note, reduced, striped
 from .given import shown
 from .quantities import settled_range
 
-# Colours of text, ground, grid, solid and the solid's surface, on paper and on the dark page.
+# Colours of text, background, grid, solid, and surface of the solid, on paper and on the dark page.
 LIGHT = ("#1d2126", "#ffffff", "#e6e6e6", "#EFE8DC", "#8C7A58")
 DARK = ("#e7e9ea", "#1c2024", "#383e44", "#4a4438", "#b5a27c")
-THIN = 0.6  # line width of the single runs of a group [points]
+THIN = 0.6  # line width of the single runs of a group of runs [points]
 SPANS = 600  # number of time spans of a curve; a page hardly shows more
-# Runs whose peaks have a larger ratio do not share a linear axis.
+# If the ratio of the largest to the smallest peak of the runs is larger, the runs do not share a linear axis.
 LARGEST_RATIO = 30
-# Runs with peaks beyond a gap of the first ratio, and failed runs beyond the second ratio, do not influence the axis.
+# A run does not influence the axis if its peak is beyond a gap of this ratio between the sorted peaks. A failed run
+# does not influence it if its peak exceeds the peaks of the other runs by the second ratio.
 THROWN_RATIO, FAILED_RATIO = 100, 5
 ROUNDING = (
     1e-9  # fraction of a value that an axis must span; a smaller span shows rounding errors only
 )
-MAX_THROWN = 3  # largest number of runs whose largest value is printed in a panel
+MAX_THROWN = 3  # largest number of runs outside the axis whose largest value is printed in a panel
 PANEL = 1.1  # usual height of a panel without its tick labels [inch]
-GRID = 400  # number of cells along each side of a section
+GRID = 400  # number of grid cells along each side of a section, for the filled solid
 PATH_COLUMNS, AXIS_COLUMNS = ("px_m", "py_m", "pz_m"), ("axis_x", "axis_y", "axis_z")
-SNAPSHOTS = (0.35, 0.5, 0.7, 0.95)  # opacity of the tool at these equally spaced times
+SNAPSHOTS = (0.35, 0.5, 0.7, 0.95)  # opacity of the tool at four equally spaced times
 PATH_MARKS = "circle: start; square: end; triangle: first touch"
 TOOL_OUTLINES = "outlines: the tool at four times"
-# Smallest component of the tool's axis in the plane for which its outline is drawn; the axis is then at most 30 degrees
-# out of the plane.
+# The tool is drawn only in rows in which the component of its axis in the plane is at least this value. The axis is
+# then at most 30 degrees out of the plane.
 MIN_IN_PLANE = 0.85
 
 
@@ -44,8 +45,8 @@ class RunLook(Look):
 
 
 def looks(runs, labels, groups=()):
-    """Returns the looks of runs. `groups`: a name for each run, equal for runs that differ only in the seed; default:
-    the labels."""
+    """Returns the RunLook of each run. `groups`: a name for each run, equal for runs that differ only in the seed;
+    empty: the labels."""
     groups = groups or labels
     distinct = list(dict.fromkeys(zip(groups, (run.algorithm for run in runs))))
     algorithms = [algorithm for _, algorithm in distinct]
@@ -70,7 +71,7 @@ def looks(runs, labels, groups=()):
 
 
 def settings(paper):
-    """Returns matplotlib's colour settings for LIGHT or DARK."""
+    """Returns the colour settings of matplotlib for `paper`, which is LIGHT or DARK."""
     ink, ground, grid, *_ = paper
     return {
         "text.color": ink,
@@ -86,7 +87,7 @@ def settings(paper):
 
 
 def draw_over_time(ax, quantity, samples, looks):
-    """Draws a quantity over time. Coinciding curves are drawn as stripes."""
+    """Draws a quantity over time for each run that has it. Coinciding curves are drawn as stripes."""
     drawn = [(s, one, s.of(quantity)) for s, one in zip(samples, looks)]
     drawn = [(s, one, of) for s, one, of in drawn if of is not None]
     within, thrown = without_thrown(drawn)
@@ -118,7 +119,8 @@ def draw_over_time(ax, quantity, samples, looks):
 
 
 def leave_out_rounding(ax):
-    """Widens an axis on which only rounding errors of its numbers would be visible, such as a stiffness ratio of 1."""
+    """Widens an axis on which only rounding errors of its numbers would be visible, for example if a stiffness ratio is
+    always 1."""
     low, high = ax.get_ylim()
     middle = (low + high) / 2
     if high - low < ROUNDING * abs(middle):
@@ -126,7 +128,8 @@ def leave_out_rounding(ax):
 
 
 def without_thrown(drawn):
-    """Returns the curves that determine the axis, and the curves of unstable runs that would flatten all others."""
+    """Returns two lists of curves: the curves that determine the axis, and the curves of runs whose peaks would flatten
+    all other curves."""
     peaks = [peak_of(of[2]) for _, _, of in drawn]
     largest = largest_shown(peaks, [s.failed for s, _, _ in drawn])
     of = list(zip(peaks, drawn))
@@ -134,9 +137,9 @@ def without_thrown(drawn):
 
 
 def largest_shown(peaks, failed):
-    """Returns the largest peak that an axis shows. It is below a gap of THROWN_RATIO if at least half of the runs are
-    below the gap, and for failed runs at most FAILED_RATIO times the peaks of the other runs. Infinite if all runs
-    determine the axis."""
+    """Returns the largest peak of a run that may determine the axis. It is below a gap of THROWN_RATIO if at least half
+    of the runs are below this gap. If a run failed, it is at most FAILED_RATIO times the largest peak of the other
+    runs. Returns infinity if all runs determine the axis."""
     found = sorted(peak for peak in peaks if peak > 0)
     largest = next(
         (
@@ -153,12 +156,13 @@ def largest_shown(peaks, failed):
 
 
 def peak_of(heights):
-    """Returns the largest absolute value; infinite after an overflow."""
+    """Returns the largest absolute value of a curve; infinity after an overflow."""
     return float(np.nanmax(np.abs(heights), initial=0.0))
 
 
 def mark_thrown(ax, quantity, thrown):
-    """Marks the point at which each of these runs leaves the axis, and prints its largest value."""
+    """Marks the point at which each run of `thrown` leaves the axis, and prints the largest values of the first
+    MAX_THROWN runs."""
     bottom, top = ax.get_ylim()
     for line, (_, one, (time, low, high)) in enumerate(thrown):
         beyond = np.flatnonzero((high > top) | (low < bottom))
@@ -177,20 +181,21 @@ def mark_thrown(ax, quantity, thrown):
 
 
 def share_an_axis(ax, heights):
-    """If the ratio of the largest to the smallest peak of a run exceeds LARGEST_RATIO, makes the axis linear up to
-    about the smallest peak and logarithmic beyond, and returns True."""
+    """Returns True and makes the axis partly logarithmic if the peaks of the runs differ by more than LARGEST_RATIO.
+    The axis is then linear up to about the smallest peak and logarithmic beyond it. Returns False otherwise.
+    """
     peaks = [peak for peak in map(peak_of, heights) if peak > 0]
     if peaks and max(peaks) > LARGEST_RATIO * min(peaks):
-        # The linear range ends at a power of ten, which is a tick: its label does not overlap the label of 0.
+        # The linear range ends at a power of ten, which has a tick whose label does not overlap the label of 0.
         ax.set_yscale("symlog", linthresh=10.0 ** np.ceil(np.log10(min(peaks))))
         return True
     return False
 
 
 def cut_off_peaks(ax, quantity, drawn, is_fixed=False):
-    """Sets the axis to the range of settled contact if this range is far below a peak, and prints the largest peak
-    where it leaves the picture. If `is_fixed` and no peak is cut off, sets the axis to the range of these curves,
-    because other curves leave it."""
+    """Sets the axis to the range of settled contact if this range is far below the largest peak, and prints this peak
+    where it leaves the picture. Otherwise, and if `is_fixed` (curves that are not in `drawn` leave the axis), sets the
+    axis to the range of the curves in `drawn`."""
     span = settled_range([(s.settled[quantity.file], low, high) for s, _, (_, low, high) in drawn])
     if span is None:
         if is_fixed:
@@ -254,8 +259,8 @@ def tip_of(samples, which=PATH_COLUMNS):
 
 
 def framed(samples):
-    """Returns the rows that a picture of the scene must show: the start and the rows in contact, or all rows. Rows of a
-    tool that was thrown away are excluded."""
+    """Returns the numbers of the rows that a picture of the scene must show: the first row and the rows in contact, or
+    all rows without contact."""
     touching = np.flatnonzero(samples.trajectory["colliding"] > 0)
     return (
         np.append(touching, 0) if touching.size else np.arange(len(samples.trajectory["colliding"]))
@@ -263,8 +268,8 @@ def framed(samples):
 
 
 def plane_of(samples):
-    """Returns the axes to the right and up of the section: x and y for a planar scene, else z and the horizontal axis
-    along which the paths are longer."""
+    """Returns (axis to the right, axis up) of the section: x and y for a planar scene. Otherwise up is z, and right is
+    the horizontal axis along which the paths are longer."""
     if all(np.all(s.trajectory["pz_m"] == 0) for s in samples):
         return (0, 1)
     tips = np.vstack([tip_of(s)[framed(s)] for s in samples])
@@ -273,12 +278,12 @@ def plane_of(samples):
 
 def draw_section(ax, samples, looks, profile=None, surface=None, paper=LIGHT):
     """Draws the scene with equal axes, in the plane through the middle of the tips' paths: the filled solid, the paths,
-    and the tool of the first run at four times. `profile`: profile of the tool [m]; `surface`:
+    and the tool of the first run at four times. `profile`: result of tool_profile() [m]. `surface`:
     hapbench_report.replay.Surface."""
     plane, radius = plane_of(samples), max((radius for _, radius in profile or ()), default=0.0)
     tips = np.vstack([tip_of(s)[framed(s)][:, plane] for s in samples])
     low, high = tips.min(0) - 1.3 * radius, tips.max(0) + 0.7 * radius
-    # A path shorter than 10 µm is numerical noise and should not fill the picture.
+    # A path shorter than 10 µm is numerical noise and must not fill the picture.
     middle, half = (low + high) / 2, np.maximum(0.53 * (high - low), 6e-6)
     paths = [1e3 * tip_of(s)[:, plane] for s in samples]
     if surface is not None:
@@ -329,8 +334,9 @@ def surface_text(surface):
 
 
 def draw_surface(ax, plane, middle, surface, reach, paper):
-    """Draws the points of the surface near the plane. For a solid, fills the inside: positions at which the normal of
-    the nearest point points away. An open surface has no inside."""
+    """Draws the points of the surface near the plane of the section. For a solid, also fills its inside: the positions
+    at which the outward normal of the nearest surface point points away from the position. An open surface has no
+    inside."""
     points = surface.points
     aside, up = ({0, 1, 2} - set(plane)).pop(), list(plane)
     away, spacing = np.abs(points[:, aside] - middle[aside]), spacing_of(points[:, :3])
@@ -361,9 +367,9 @@ def spacing_of(points):
 
 
 def outline(profile, tip, axis):
-    """Returns the outline of the tool at a tip with an axis, both projected into a plane [m]. It is exact if the axis
-    lies in the plane, and approximate near it. `profile`: hapbench_report.recording.tool_profile.
-    """
+    """Returns the outline of the tool [m] in a plane. `tip`, `axis`: position of the tip and axis of the tool,
+    projected into the plane. The outline is exact if the axis lies in the plane, otherwise approximate. `profile`:
+    result of hapbench_report.recording.tool_profile()."""
     axis = axis / np.linalg.norm(axis)
     s, radius = np.array(profile).T[:, :, None]
     half, across = tip + s * axis, radius * np.array([-axis[1], axis[0]])
@@ -371,7 +377,7 @@ def outline(profile, tip, axis):
 
 
 def draw_tool(ax, plane, samples, profile, colour):
-    """Draws the tool's outline at four times, from faint to strong."""
+    """Draws the outline of the tool at four times, first faint, last strong."""
     tip, axis = (tip_of(samples, columns)[:, plane] for columns in (PATH_COLUMNS, AXIS_COLUMNS))
     rows = np.sort(framed(samples))
     rows = rows[np.linalg.norm(axis[rows], axis=1) >= MIN_IN_PLANE]
@@ -393,8 +399,8 @@ def draw_tool(ax, plane, samples, profile, colour):
 
 
 def corners(trajectory, spans=300):
-    """Returns the rows that preserve the shape of a path: the extremes along each axis in `spans` equal spans of
-    rows."""
+    """Returns the numbers of rows that preserve the shape of a path: the extremes along each axis in each of `spans`
+    equal parts of the rows."""
     n = len(trajectory["px_m"])
     if n <= 6 * spans:
         return np.arange(n)

@@ -1,5 +1,5 @@
-"""`hapbench plot`: a file with the scene in a section and quantities over time below it, or the picture of a sweep, of
-limits, of a tuning or of a convergence study."""
+"""`hapbench plot`: writes a picture. Runs are drawn as the scene in a section and quantities over time. Sweeps, limits,
+tunings and convergence studies have other pictures."""
 import math
 from pathlib import Path
 
@@ -30,7 +30,7 @@ def plot(options):
 
 
 def dpi_of(options, file):
-    """Returns the pixels per inch of --dpi."""
+    """Returns the resolution from --dpi [pixels per inch], or the default. Fails for an SVG, which has no pixels."""
     if options.dpi is None:
         return DPI
     if file.suffix == ".svg":
@@ -41,7 +41,7 @@ def dpi_of(options, file):
 
 
 def figure_of(options):
-    """Returns the figure for the options of `hapbench plot`."""
+    """Returns the figure for the parsed options of `hapbench plot`."""
     window = window_of(options)  # checked first, because --to FILE is a likely mistake
     logs = given_logs(options.runs)
     if logs:
@@ -66,7 +66,8 @@ def figure_of(options):
 
 
 def refuse(options, names, why):
-    """Refuses options that do not apply to the drawn results."""
+    """Fails if one of the options `names` is given, because it does not apply to the drawn results. `why`: text of the
+    message."""
     given = {
         "--y": options.y,
         "--metric": options.metric,
@@ -80,7 +81,7 @@ def refuse(options, names, why):
 
 
 def window_of(options):
-    """Returns the first and last time to draw [s]."""
+    """Returns the first and the last time to draw [s], from --from and --to."""
     for name, text in (("--from", options.start), ("--to", options.end)):
         if text is not None and not is_number(text):
             hint = ""

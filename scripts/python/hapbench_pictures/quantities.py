@@ -1,4 +1,4 @@
-"""Quantities over time: short names, and every column of a run's tables by its name. The axis shows the range of
+"""Quantities over time. A quantity has a short name, or is a column of a run's tables. The axis shows the range of
 settled contact, because the peak of a landing or a crash would flatten the other values."""
 import json
 import re
@@ -16,25 +16,25 @@ from .ranking_values import failed
 
 TRAJECTORY = "trajectory.csv"
 REFERENCE = "force_reference.csv"
-# Tables with a row for each recorded step, which are searched for a column.
+# Tables with a row for each recorded step. A quantity without a short name is searched for in their columns.
 TABLES = (TRAJECTORY, "energy.csv", "ideal_trajectory.csv", "stiffness_tensor.csv", REFERENCE)
-# A peak larger than this factor times the settled values is cut off.
+# A peak is cut off if it is larger than this factor times the largest settled value.
 CUT_OFF = 3
-# The range omits at most this fraction of the rows, for runs in which settled contact is not representative, such as a
-# tool that bounces to the end.
+# Largest fraction of the rows that may be outside the range of settled contact. If more rows are outside, for example
+# because the tool bounces to the end, the axis shows all values.
 LARGEST_LEFT_OUT = 0.1
 BULK = (1, 99)  # percentiles of the settled rows that define the range
 
 
 @dataclass(frozen=True)
 class Quantity:
-    name: str  # name as typed by the user
+    name: str  # name that the user types
     title: str
     unit: str  # unit for the axis; empty for numbers without a unit
     factor: float
     file: str
     columns: tuple
-    # "value", "norm" of a vector, or "band" between the first and the second column
+    # "value" of a column, "norm" of a vector, or "band" between the first and the second column.
     kind: str = "value"
 
     @property
@@ -43,7 +43,7 @@ class Quantity:
         return f"{title} [{self.unit or 1}]"
 
     def of(self, table):
-        """Returns lower and upper bound at every row; for a curve, both are the same array."""
+        """Returns (lower bound, upper bound) of the quantity in every row. For a curve, both are the same array."""
         parts = [table[name] * self.factor for name in self.columns]
         if self.kind == "norm":
             parts = [np.sqrt(sum(part * part for part in parts))]
@@ -84,14 +84,14 @@ SHORT = {
         ),
     )
 }
-PATH = "path"  # the path of the tip in space, which is not a function of time
-# Drawn by default if a run recorded them.
+PATH = "path"  # name of the tip's path in space, which is drawn in a section and not over time
+# Names of the quantities that are drawn by default, if a run recorded them.
 USUAL = ("force", "reference", "force_error", "depth", "ratio", "contacts", "energy", PATH)
 
 
 def chosen(names, runs):
-    """Returns the quantities of these names, and True if the path is included. Quantities that were not chosen by name
-    may be missing in a run."""
+    """Returns (quantities of these names, True if the path is among the names). Without names, returns the default
+    quantities that some run has, and True."""
     if not names:
         usual = [SHORT[name] for name in USUAL if name != PATH]
         return [q for q in usual if any(has(run, q) for run in runs)], True
@@ -122,7 +122,8 @@ def quantity(name, runs):
 
 
 def switch_of(lacks):
-    """Returns the field that makes a run write a table or a column: the first field whose description names it."""
+    """Returns the field of the scenario that makes a run record a table or a column: the first field of `record` whose
+    description names it."""
     record = json.loads(SCHEMA.read_text(encoding="utf-8"))["else"]["properties"]["record"][
         "properties"
     ]
@@ -144,11 +145,11 @@ def tables_of(run):
 
 
 class Samples:
-    """The columns of one run that are drawn. Each table is read once."""
+    """Columns of one run that a picture needs. Each table is read only once."""
 
     def __init__(self, run, quantities, further=(), window=(-np.inf, np.inf)):
-        """`further`: columns of trajectory.csv in addition to the columns of the quantities; `window`: first and last
-        time to keep [s]."""
+        """Arguments: `further`: columns of trajectory.csv in addition to the columns of the quantities. `window`: first
+        and last time to keep [s]."""
         wanted = {TRAJECTORY: {"time_s", "colliding", *further}}
         for q in (q for q in quantities if has(run, q)):
             wanted.setdefault(q.file, {"time_s"}).update(q.columns)
@@ -164,7 +165,7 @@ class Samples:
         }
         time = tables[TRAJECTORY]["time_s"]
         touching = time[tables[TRAJECTORY]["colliding"] > 0]
-        # Time of the first recorded row in contact; None if there is none or if it is outside of the window.
+        # Time of the first recorded row in contact [s]. None without contact, or if this time is outside of the window.
         self.first_touch_s = (
             float(touching[0]) if touching.size and window[0] <= touching[0] <= window[1] else None
         )
@@ -186,14 +187,15 @@ class Samples:
         return self.tables[TRAJECTORY]
 
     def of(self, q):
-        """Returns time, lower and upper bound; None if this run did not record the quantity."""
+        """Returns (times, lower bounds, upper bounds) of a quantity; None if this run did not record it."""
         table = self.tables.get(q.file, {})
         return (table["time_s"], *q.of(table)) if set(q.columns) <= set(table) else None
 
 
 def settled_range(curves):
-    """Returns the range of the bulk of settled contact with a margin; None if all values are to be shown. Each curve:
-    True for settled rows, and the lower and upper bound of every row."""
+    """Returns the range of settled contact with a margin, from the percentiles BULK. Returns None if all values must be
+    shown: there is no settled contact, no peak is above the range by CUT_OFF, or too many rows are outside of the
+    range. `curves`: (True for each settled row, lower bounds, upper bounds) of each run."""
     ends = [
         (np.nanpercentile(low[settled], BULK[0]), np.nanpercentile(high[settled], BULK[1]))
         for settled, low, high in curves

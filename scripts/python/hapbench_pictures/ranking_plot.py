@@ -1,4 +1,4 @@
-"""Picture of a comparison: each metric by law, with its mean, the spread over seeds and every run."""
+"""Picture of a comparison: each metric of each law, with the mean, the spread over seeds and every run."""
 from collections import Counter
 from pathlib import Path
 
@@ -32,7 +32,8 @@ SINGLE = {
     "mew": 0,
     "alpha": 0.6,
 }  # drawn below the mean, which would otherwise be hidden
-# Height of a law, height of a law with a second line, and smallest height with one line [inch].
+# Height of the row of a law, height of a row with a second line of text, and smallest height of a row with one line
+# [inch].
 ROW, FAILED_ROW, MIN_ROW = 0.2, 0.3, 0.14
 AROUND = 0.75  # height of a panel without its rows [inch]
 TOLERANCE = "#D9D9D9"
@@ -47,8 +48,8 @@ def is_ranking(folders):
 
 
 def metrics_of(names, scenes, words):
-    """Returns the metrics of these names, or without names the metrics of the ranking. Raises InputError for a name
-    that no run has."""
+    """Returns the metrics `names`, or without names the metrics of the ranking. Raises InputError for a name that no
+    run has. `words`: the given folders."""
     runs = [run for scene in scenes for law in scene.laws for run in law.runs.values()]
     known = list(
         dict.fromkeys(
@@ -76,7 +77,7 @@ def ranked_metrics(scenes):
 
 
 def draw_ranking(runs, names=(), words=(), sheet=SHEET):
-    """Draws a panel for each scene and metric."""
+    """Returns the figure of a comparison, with a panel for each combination of scene and metric."""
     scenes = scenes_of(runs, [Path(word) for word in words])
     metrics = metrics_of(list(names), scenes, words)
     with plt.rc_context(SETTINGS):
@@ -97,7 +98,7 @@ def ranking_figure(scenes, metrics, sheet):
     is_compact = bool(sheet.height) or panel < wanted
     for ax, (scene, metric) in zip(axes.flat, panels):
         draw_panel(ax, scene, metric, is_compact)
-        # In a row of one scene, only the first panel has the name of the scene.
+        # In a row of panels of one scene, only the first panel has the name of the scene.
         if len(scenes) > 1 and (columns != len(metrics) or metric == metrics[0]):
             ax.set_title(scene.name.replace("_", " "))
     for ax in axes.flat[len(panels) :]:
@@ -107,10 +108,10 @@ def ranking_figure(scenes, metrics, sheet):
 
 
 def draw_panel(ax, scene, metric, is_compact=False):
-    """Draws one metric of one scene: a row for each law, the best law on top. `is_compact`: each row has one line of
-    text."""
+    """Draws one metric of one scene, with a row for each law and the best law at the top. `is_compact`: true if a row
+    has only one line of text."""
     entries, laws = scene.entries(metric), scene.sorted_laws(metric)
-    # A law whose runs all failed has no mean, and is not a number that could determine the axis.
+    # A law without any mean, because all its runs failed, and a law with only a bound must not determine the axis.
     known = [of for of in entries.values() if of.mean is not None and not of.is_unknown]
     values = [v for of in known or entries.values() for v in of.values.values()]
     title, unit, factor = column(metric, values)
@@ -128,7 +129,7 @@ def draw_panel(ax, scene, metric, is_compact=False):
             )
         if law.failures:
             ax.plot(1, row, **FAILED, transform=ax.get_yaxis_transform(), clip_on=False, zorder=5)
-    ax.use_sticky_edges = False  # otherwise the grey bars would remove the margins
+    ax.use_sticky_edges = False  # without this setting, the grey bars would remove the margins
     ax.margins(x=0.07)
     if known and spread_logarithmically(factor * np.array(values)):
         ax.set_xscale("log")
@@ -140,7 +141,8 @@ def draw_panel(ax, scene, metric, is_compact=False):
     }
     draw_bounds(ax, bounds, bool(known), is_dark)
     label_rows(ax, scene, metric, is_compact)
-    # Beside other panels, the label may be wider than the panel; the space below the names on its left is free.
+    # Beside other panels, the label of the axis may be wider than its panel. It extends to the left, below the names of
+    # the laws, where nothing is drawn.
     beside = ax.get_subplotspec().get_gridspec().ncols > 1
     ax.set_xlabel(f"{title} [{unit or 1}]", loc="right" if beside else "center")
     ax.grid(axis="y", visible=False)
@@ -148,7 +150,7 @@ def draw_panel(ax, scene, metric, is_compact=False):
 
 
 def draw_law(ax, row, of, factor, colour, is_positive):
-    """Draws mean, error, standard deviation and runs of a law."""
+    """Draws the mean of a law, its error, its standard deviation and its runs in a row."""
     each, mean = factor * np.array(list(of.values.values())), factor * of.mean
     low, high = (mean + sign * factor * of.error for sign in (-1, 1))
     low = max(low, 0.0) if is_positive else low
@@ -160,8 +162,9 @@ def draw_law(ax, row, of, factor, colour, is_positive):
 
 
 def draw_bounds(ax, bounds, has_numbers, is_dark):
-    """Draws a hollow mark at each bound, with its value. A bound beyond the numbers of the other laws is drawn at the
-    panel's edge, because only these numbers determine the axis. `bounds`: bound and look by row."""
+    """Draws a hollow mark at each bound, with its value. `bounds`: (bound, look) by row. Only the numbers of laws
+    without a bound determine the axis; a bound beyond the axis is drawn at the edge of the panel.
+    """
     if not bounds:
         return
     if not has_numbers:
@@ -186,7 +189,8 @@ def draw_bounds(ax, bounds, has_numbers, is_dark):
 
 
 def label_rows(ax, scene, metric, is_compact):
-    """Writes rank and name of each law, and in red the number of failed runs with their outcome."""
+    """Writes the rank and the name of each law at its row, and in red the number of its failed runs with their
+    outcome."""
     laws, ranks, labels = scene.sorted_laws(metric), scene.ranks(metric), []
     for law in laws:
         rank = ranks[law.label]
@@ -211,7 +215,7 @@ def failures_text(law):
 
 
 def legend_of(scenes, metrics):
-    """Returns handles and labels of the marks that are drawn."""
+    """Returns (handle, label) of each kind of mark in the picture."""
     of = [
         entry for scene in scenes for metric in metrics for entry in scene.entries(metric).values()
     ]

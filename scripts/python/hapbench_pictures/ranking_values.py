@@ -1,4 +1,4 @@
-"""The runs of a comparison by scene and law: mean, spread, error and rank of each metric. Implements the rules of
+"""Runs of a comparison by scene and law, with mean, spread, error and rank of each metric. The rules are those of
 scenarios/batch/ranking.hpp, so that pictures and pages agree with ranking.csv."""
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -18,7 +18,8 @@ USUAL = ("force_rms_above_30Hz_N", "force_step_p99_N", "inside_max_m")
 
 
 def failed(run):
-    """Returns True if the run's metrics do not characterise its law."""
+    """Returns True if the metrics of a run say nothing about its law: the outcome is a failure, or not an expected
+    outcome. A tool on a prescribed path that went through the surface has not failed."""
     wanted = at(run.scenario, "/expect/outcome")
     wanted = [wanted] if isinstance(wanted, str) else wanted
     led = run.outcome == "went_through" and at(run.scenario, "/motion/position/type") not in FREE
@@ -42,12 +43,12 @@ def tolerance_of(run, metric):
 class Entry:
     """One law in one scene for one metric."""
 
-    values: dict  # value by repetition, without failed runs
+    values: dict  # value by number of the repetition (seed), without failed runs
     mean: float | None = None  # mean over the common repetitions
     spread: float | None = (
         None  # standard deviation; None for one repetition, or if the seed changes nothing
     )
-    tolerance: float | None = None  # error of the mean
+    tolerance: float | None = None  # largest error of the mean, from the errors of the runs
     rank: int | None = None
 
     @property
@@ -56,8 +57,9 @@ class Entry:
 
     @property
     def shown_error(self):
-        """Error that determines the digits of the mean, as in the ranking that `compare` prints: the largest of the
-        error of its numbers, the standard error over seeds, and a tenth of RESOLUTION."""
+        """Error that determines the number of digits of the mean, as in the ranking that `compare` prints. It is the
+        largest of three values: the error of the mean, the standard error over seeds, and a tenth of RESOLUTION times
+        the mean."""
         if self.spread is None or self.mean is None:
             return self.tolerance
         of_seeds = self.spread / np.sqrt(max(len(self.values), 1))
@@ -65,31 +67,31 @@ class Entry:
 
     @property
     def bound(self):
-        """The largest magnitude that the number may have."""
+        """Largest magnitude that the metric may have: the magnitude of the mean plus its error."""
         return abs(self.mean) + self.error
 
     @property
     def seeds_agree(self):
-        """True if the runs differ by less than the resolution of the ranking."""
+        """True if the spread over the seeds is at most the fraction RESOLUTION of the mean."""
         return self.spread is not None and self.spread <= RESOLUTION * abs(self.mean or 0.0)
 
     @property
     def is_unknown(self):
-        """True if the error is not smaller than the value, so that only a bound is known."""
+        """True if the error is at least the magnitude of the mean, so that only a bound of the metric is known."""
         return self.mean is not None and self.error > 0 and self.error >= abs(self.mean)
 
 
 @dataclass
 class Law:
-    """The runs of one law, with one set of fields, in one scene."""
+    """Runs of one law in one scene that differ only in the seed."""
 
     label: str
     algorithm: str
-    runs: dict = field(default_factory=dict)  # run by repetition
+    runs: dict = field(default_factory=dict)  # run by number of the repetition (seed)
 
     @cached_property
     def failures(self):
-        """Outcome of each failed run, by repetition."""
+        """Outcomes of the failed runs, by number of the repetition."""
         return {seed: run.outcome for seed, run in self.runs.items() if failed(run)}
 
     def values(self, metric):
@@ -106,13 +108,13 @@ class Scene:
 
     def __init__(self, name, laws, better=None):
         self.name, self.laws = name, laws
-        self.better = better or {}  # "less" or "more" by metric, if one direction is better
+        self.better = better or {}  # for each metric with a better direction: "less" or "more"
 
     @cached_property
     def seeds(self):
-        """The repetitions over which means are computed: repetitions in which no law failed, among the laws that have
-        successful runs. If there are none, the repetitions in which all laws without a failure ran.
-        """
+        """Repetitions over which means are computed. Laws of which all runs failed are ignored. The repetitions are
+        those in which no other law failed. If there are none, they are the repetitions that all laws without a failure
+        have."""
         succeeding = [law for law in self.laws if len(law.failures) < len(law.runs)]
         for laws in (succeeding, [law for law in self.laws if not law.failures]):
             shared = [set(law.runs) - set(law.failures) for law in laws]
@@ -126,7 +128,7 @@ class Scene:
         return any(len({run.state_hash for run in law.runs.values()}) > 1 for law in self.laws)
 
     def entries(self, metric):
-        """Returns the entry by label of a law, in the order of the laws."""
+        """Returns the Entry of each law by label, in the order of the laws."""
         found = {law.label: self.entry(law, metric) for law in self.laws}
         direction = self.better.get(metric)
         if direction and any(of.mean is not None for of in found.values()):
@@ -142,8 +144,8 @@ class Scene:
         return found
 
     def ranks(self, metric):
-        """Returns the rank by label of a law. The rank is None if the metric has no better direction, if only a bound
-        of the number is known, and for all laws if their ranks would be equal."""
+        """Returns the rank of each law by label. The rank is None if the metric has no better direction, or if only a
+        bound of its value is known. If the ranks of all laws would be equal, all are None."""
         return {label: of.rank for label, of in self.entries(metric).items()}
 
     def entry(self, law, metric):
@@ -164,7 +166,8 @@ class Scene:
         )
 
     def sorted_laws(self, metric):
-        """Returns the laws, best first: by failures, then by the mean; laws without a mean come last."""
+        """Returns the laws, best first: fewest failures first, then by the mean. Laws without a mean come last among
+        equal failures."""
         found, sign = self.entries(metric), -1 if self.better.get(metric) == "more" else 1
 
         def key(law):
@@ -190,8 +193,8 @@ def is_better(failures, entry, other_failures, other, direction):
 
 
 def scenes_of(runs, words=()):
-    """Returns the scenes of these runs, each with its laws. `words`: the given folders, whose ranking.csv states the
-    better direction of each metric."""
+    """Returns the Scene objects of these runs, each with its laws. `words`: the given folders; their ranking.csv states
+    the better direction of each metric."""
     scenes, better = {}, directions(words)
     for run, fields in zip(runs, field_entries(runs)):
         laws = scenes.setdefault(run.name, {})
@@ -203,7 +206,7 @@ def scenes_of(runs, words=()):
 
 
 def directions(words):
-    """Returns the better direction by metric from the ranking.csv in these folders."""
+    """Returns the better direction ("less" or "more") by metric, from the files ranking.csv in these folders."""
     return {
         row["metric"]: row["better"]
         for word in words
@@ -215,7 +218,8 @@ def directions(words):
 
 
 def has_repetitions(scenes):
-    """Returns True if the runs of some law differ in their seeds, and no run is contained in several folders."""
+    """Returns True if some law has several runs with different seeds. Returns False if the same run is in several
+    folders."""
     laws = [law for scene in scenes for law in scene.laws]
     is_copied = any(isinstance(seed, str) for law in laws for seed in law.runs)
     return not is_copied and any(len(law.runs) > 1 for law in laws)

@@ -1,5 +1,5 @@
-"""Picture of the logs of a haptic loop: the rendered force over time of a log or of `run --replay`, the difference of
-two logs, and the late calls."""
+"""Picture of the logs of a haptic loop: the rendered force, or the set position, over time, the difference of two logs,
+and the late calls. A log is a file of the loop or of `run --replay`."""
 import json
 from pathlib import Path
 
@@ -13,17 +13,17 @@ from .panels import SPANS
 
 REPLAY, COMPARISON = "replay.csv", "replay_comparison.csv"
 HEADER = "# hapbench loop log:"
-# A call missed its deadline if it is later than this factor times the period.
+# A call is late if the time since the previous call exceeds this factor times the period.
 LATE = 1.5
-MODES = {  # columns, title and factor of the quantity that the loop applies
+MODES = {  # columns, title and factor of the quantity that the loop sends to the device, by mode
     "impedance": (("fx_N", "fy_N", "fz_N"), "force [N]", 1.0),
     "admittance": (("set_x_m", "set_y_m", "set_z_m"), "set position [mm]", 1e3),
 }
 
 
 def given_logs(words):
-    """Returns the logs among the arguments: files of a haptic loop, and folders of `run --replay`. Returns None if an
-    argument is neither."""
+    """Returns the files of the logs among the arguments, which are log files or folders of `run --replay`. Returns None
+    if no argument is one. Fails if only some arguments are logs, or for more than two logs."""
     files = [log_of(Path(word)) for word in words]
     if not any(files):
         return None
@@ -48,7 +48,8 @@ def log_of(path):
 
 
 class Log:
-    """Time since the first call [s], the quantity that the loop applies at each call, and True for late calls."""
+    """A log of a haptic loop: at each call, the time since the first call [s], the quantity that the loop sends to the
+    device, and True if the call is late."""
 
     def __init__(self, file):
         with file.open(encoding="utf-8") as lines:
@@ -68,8 +69,8 @@ class Log:
 
 
 def draw_logs(files, sheet):
-    """Draws the quantity that the loop applies over time. For two logs, also draws the difference at each call that
-    both logs contain."""
+    """Returns the figure of one or two logs: the quantity that the loop sends to the device over time. For two logs,
+    also draws their difference at each call that both logs contain."""
     logs = [read_log(file) for file in files]
     if len({log.title for log in logs}) > 1:
         raise InputError(f"{files[0]}, {files[1]}: one log has forces, the other one positions")
@@ -116,7 +117,7 @@ def figure_of(logs, sheet):
 
 
 def draw_difference(ax, logs):
-    """Draws the norm of the difference at the calls of both logs."""
+    """Draws the norm of the difference of two logs at the calls that both logs contain."""
     calls, first, second = np.intersect1d(logs[0].call, logs[1].call, return_indices=True)
     if not calls.size:
         raise InputError("the logs have no call in common")

@@ -1,4 +1,5 @@
-"""`hapbench report`: one page about the given runs. Each quantity is drawn for light and for dark ground."""
+"""`hapbench report`: writes one page about the given runs. Each quantity is drawn for a light and for a dark
+background."""
 import math
 from pathlib import Path
 
@@ -41,7 +42,8 @@ STYLE = Path(__file__).parent / "page.css"
 
 
 def report(options):
-    """Writes the page and returns the exit status, which states whether the two folders of --tolerance differ."""
+    """Writes the page and returns the exit status. With --tolerance, compares two folders instead; the status then
+    states whether they differ."""
     if options.tolerance is not None:
         return test_of_regression(options)
     if given_sweep(options.runs):
@@ -86,7 +88,8 @@ def test_of_regression(options):
 
 
 def differences_section(words):
-    """Returns the differences of two runs; empty for other numbers of folders."""
+    """Returns the section with the differences of two runs; empty for any other number of folders, or if a folder holds
+    no single run."""
     a, b = map(Path, words) if len(words) == 2 else (Path(), Path())
     if a == b or not all(
         (folder / name).is_file() for folder in (a, b) for name in (SUMMARY, SCENARIO)
@@ -97,7 +100,7 @@ def differences_section(words):
 
 
 def sections(runs, names, words):
-    """Returns the sections that are not empty."""
+    """Returns the sections of the page that are not empty."""
     drawn = [(run, name) for run, name in zip(runs, names) if TRAJECTORY in tables_of(run)]
     found = (
         ("summary", "Summary", "Summary", summary_section(runs, names)),
@@ -174,7 +177,8 @@ def curves_section(runs, labels):
 
 
 def spoken(quantity, samples, labels):
-    """Returns the description of the picture for screen readers: label and range of each run with a finite value."""
+    """Returns a description of a picture for screen readers: name and range of values of each run that has a finite
+    value."""
     parts = []
     for s, label in zip(samples, labels):
         found = s.of(quantity)

@@ -25,15 +25,15 @@ from .panels import (
 )
 from .quantities import Samples
 
-# Height of a scene or of the first quantity, and of the other quantities [inch].
+# Height of a scene and of the first quantity, and height of each further quantity [inch].
 LARGE, SMALL = 2.6, 1.35
-ROOM = 0.35  # height of the title of the time axis [inch]
+ROOM = 0.35  # height reserved for the title of the time axis [inch]
 TITLE_LETTER = 0.085  # width of a letter of the title [inch]
-LONGEST_NAME = 90  # largest number of letters
+LONGEST_NAME = 90  # largest number of letters of a run's name in the title
 
 
 def draw_runs(runs, quantities, with_path, window, sheet=SHEET):
-    """Returns the figure: a title with the names of the runs, the scenes, and the quantities over time."""
+    """Returns the figure of runs: a title with their names, their scenes in sections, and the quantities over time."""
     further = (*PATH_COLUMNS, *AXIS_COLUMNS) if with_path else ()
     samples = [Samples(run, quantities, further, window) for run in runs]
     shown = looks(runs, *named(runs))
@@ -44,8 +44,8 @@ def draw_runs(runs, quantities, with_path, window, sheet=SHEET):
 
 
 def figure_of(runs, shown, quantities, samples, groups, surfaces, sheet=SHEET):
-    """Returns the figure. `groups`: the numbers of the runs in each section; `surfaces`: the surface around each
-    group."""
+    """Returns the figure. `groups`: for each section, the numbers of its runs. `surfaces`: for each section, the
+    surface that the tools touch, or None."""
     entries = legend_of(shown)
     columns = legend_columns(list(entries), sheet.width)
     head = 0.3 + (LINE * math.ceil(len(entries) / columns) if len(runs) > 1 else 0)
@@ -71,7 +71,8 @@ def figure_of(runs, shown, quantities, samples, groups, surfaces, sheet=SHEET):
 
 
 def rows_of(scenes, quantities, beside, sheet):
-    """Returns height, number of panels and width ratios of each row of the picture."""
+    """Returns (height [inch], number of columns, width ratios of the panels) for each row of panels. `beside`: true if
+    the scene and the first quantity share a row."""
     if sheet.height:
         rows, columns = sheet.grid(scenes + quantities)
         counts = [min(columns, scenes + quantities - row * columns) for row in range(rows)]
@@ -90,7 +91,7 @@ def rows_of(scenes, quantities, beside, sheet):
 
 
 def axes_of(figure, rows):
-    """Creates the axes row by row."""
+    """Creates and returns the axes of all panels, row by row. `rows`: result of rows_of()."""
     heights = [height for height, _, _ in rows]
     widths = {(columns, ratios) for _, columns, ratios in rows if len(ratios) == columns}
     if len(widths) == 1:  # a single grid, in which all columns are aligned
@@ -111,7 +112,7 @@ def axes_of(figure, rows):
 
 
 def name_times(axes, beside, sheet):
-    """Writes the title of the time axis at the panels that show it."""
+    """Writes the title of the time axis below the panels that show it. The other panels have no tick labels."""
     if not axes:
         return
     marks = "   (triangles and dotted lines: first touch)"
@@ -126,12 +127,12 @@ def name_times(axes, beside, sheet):
 
 
 def width_of(rows, sheet):
-    """Returns the width of a panel, without its tick labels, in the row with the largest number of panels [inch]."""
+    """Returns the width [inch] of a panel, without its tick labels, in the row with the most panels."""
     return sheet.width / max(columns for _, columns, _ in rows) - 0.6
 
 
 def draw_scenes(axes, groups, runs, shown, samples, surfaces, width):
-    """Draws one section for each group of runs. `width`: width of a panel [inch]."""
+    """Draws the scene of each group of runs in one section. `width`: width of a panel [inch]."""
     for ax, group, surface in zip(axes, groups, surfaces):
         of_samples, of_looks = ([entries[i] for i in group] for entries in (samples, shown))
         draw_section(ax, of_samples, of_looks, profile_of(runs[group[0]]), surface)
@@ -141,7 +142,7 @@ def draw_scenes(axes, groups, runs, shown, samples, surfaces, width):
 
 
 def texts_of(groups, runs, surfaces):
-    """Returns the meaning of the marks in each section."""
+    """Returns a text for each section that explains its marks."""
     texts = []
     for group, surface in zip(groups, surfaces):
         phrases = [PATH_MARKS, *surface_text(surface)]
@@ -152,7 +153,8 @@ def texts_of(groups, runs, surfaces):
 
 
 def explain_scenes(figure, axes, texts, sheet, rows):
-    """Writes the meaning of the marks below the sections, only once if it is the same for all."""
+    """Writes the explanation of the marks below each section, or only once if all sections have the same
+    explanation."""
     if sheet.height and texts:
         every = dict.fromkeys("; ".join(texts).split("; "))
         figure.supxlabel(fill("; ".join(every), int(sheet.width / LETTER)), fontsize=7)
@@ -164,8 +166,8 @@ def explain_scenes(figure, axes, texts, sheet, rows):
 
 
 def scene_groups(runs, samples):
-    """Returns the numbers of the runs in each section. Runs of one scene share a section unless their distance is
-    larger than their size."""
+    """Returns the groups of runs that share a section, as lists of run numbers. Runs of one scene share a section
+    unless the gap between them is larger than their size."""
     groups = []
     for i, (run, of) in enumerate(zip(runs, samples)):
         box = box_of(of)
@@ -180,19 +182,20 @@ def scene_groups(runs, samples):
 
 
 def box_of(samples):
-    """Returns the corners of the bounding box of the tip's path, without rows of a tool that was thrown away."""
+    """Returns the corners of the bounding box of the tip's path. Rows in which the tool has been thrown away are
+    excluded."""
     tips = tip_of(samples)[framed(samples)]
     return np.array([tips.min(axis=0), tips.max(axis=0)])
 
 
 def are_near(box, other):
-    """Returns True if the gap between two boxes is at most the sum of their largest edges."""
+    """Returns True if the gap between two boxes is at most the sum of the longest edges of both boxes."""
     gap = np.maximum(box[0] - other[1], other[0] - box[1]).max()
     return gap <= (box[1] - box[0]).max() + (other[1] - other[0]).max()
 
 
 def profile_of(run):
-    """Returns the profile of the tool; None for a scene of springs, which has no tool."""
+    """Returns the profile of the tool by tool_profile(); None for a scene of springs, which has no tool."""
     return (
         None
         if at(run.scenario, "/environment/type") == "springs"
@@ -201,7 +204,7 @@ def profile_of(run):
 
 
 def legend_of(shown):
-    """Returns the look by label; the first run of each group represents the group."""
+    """Returns the entries of the legend: a RunLook by label. Runs that differ only in the seed share one entry."""
     counts = Counter(one.group or one.label for one in shown)
     entries = {}
     for one in shown:
@@ -219,7 +222,7 @@ def shortened(name, longest=LONGEST_NAME):
 
 
 def write_title(top, head, runs, entries, columns, sheet):
-    """Writes the names of the scenes, and a legend if there are several runs."""
+    """Writes the names of the scenes as the title, and a legend if there are several runs."""
     scenes = ", ".join(dict.fromkeys(run.name for run in runs))
     name = next(iter(entries)) if len(runs) == 1 else scenes
     room = int(sheet.width / TITLE_LETTER)

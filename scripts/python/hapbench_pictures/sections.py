@@ -1,4 +1,4 @@
-"""Sections of text and tables of a page of runs."""
+"""Sections with texts and tables of the page about runs."""
 import json
 
 from hapbench.results import at
@@ -57,8 +57,8 @@ def first_table(runs, labels):
 
 
 def outcome_cell(run):
-    """Returns a cell with the outcome. It also names the expected outcome, because a copy of a bundled scenario
-    inherits the expectation."""
+    """Returns a table cell with the outcome of a run. For an unexpected outcome, the cell also names the expected
+    outcome, because a copy of a bundled scenario inherits the expectation."""
     how = text(run.outcome.replace("_", " ") or "–")
     if run.expected:
         return cell(how)
@@ -80,7 +80,8 @@ def contact_text(run):
 
 
 def texts_section(runs, labels, of_run):
-    """Returns the texts about each run by label: warnings, or the diagnosis by the rules of the program with advice."""
+    """Returns a list of the texts that `of_run` returns for each run, with the label of the run: its warnings, or its
+    diagnosis with advice."""
     items = "".join(
         f"<li><b>{text(label)}:</b> {words}</li>"
         for run, label in zip(runs, labels)
@@ -97,7 +98,7 @@ def diagnosed(run):
 
 
 def metric_names(runs):
-    """Returns section and name of every metric of the runs."""
+    """Returns (section, name) of each metric that some run has, each once."""
     return dict.fromkeys(
         (section, name)
         for run in runs
@@ -107,7 +108,7 @@ def metric_names(runs):
 
 
 def metrics_section(runs, labels):
-    """Returns all metrics of the summaries, section by section."""
+    """Returns a table of all metrics in the summaries of the runs, section by section."""
     rows = [
         [
             cell(text(section)),
@@ -172,8 +173,7 @@ def commands_section(runs, words):
 
 
 def plugin_option(run):
-    """Returns the options that load the run's modules: a law, identified by the name of its file, and a source of
-    contacts."""
+    """Returns the options --module that load the modules of a run: its force law, and its source of contacts."""
     files = [at(run.summary, "/provenance/plugin/file")]
     source = at(run.scenario, "/rendering/contact_source")
     if isinstance(source, dict) and source.get("type") == "plugin":

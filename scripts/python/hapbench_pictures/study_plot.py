@@ -1,4 +1,5 @@
-"""Selects the picture of a folder of `limit`, `tune` or `converge` by the files in the folder."""
+"""Draws the picture of a folder that `limit`, `tune` or `converge` wrote. The files in the folder select the
+picture."""
 from hapbench.errors import InputError
 from hapbench.results import Files, MissingResult
 from hapbench_style import SETTINGS, SHEET, plt
@@ -26,7 +27,7 @@ KINDS = {
 
 
 def kind_of(path):
-    """What a folder holds, for messages."""
+    """Returns a description of the results in a folder, for messages."""
     return next(kind for name, kind in KINDS.items() if (path / name).is_file())
 
 

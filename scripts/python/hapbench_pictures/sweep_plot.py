@@ -1,5 +1,5 @@
-"""Picture of a sweep's table: a metric over one varied field; over two fields as curves or a heat map; for a sample, or
-for more fields, as points over each field with the influence of each field."""
+"""Picture of a sweep: a metric over one varied field, or over two fields as curves or as a heat map. A sample, or more
+than two fields, is drawn as points over each field, with the influence of each field."""
 import textwrap
 from dataclasses import dataclass
 
@@ -20,20 +20,20 @@ from .over_axes import Axis, look_of, over_axes, spread_logarithmically
 
 USUAL = ("force_rms_above_30Hz_N", "force_max_N")
 FAILURES = ("diverges", "error")
-# Look of cells without a number.
+# Style of a cell without a number.
 NO_VALUE = {"facecolor": "#F4F4F4", "edgecolor": "#C8C8C8", "lw": 0.5}
-WIDTH = 100  # width of the text [characters]
+WIDTH = 100  # width of the printed table [characters]
 MAX_COSINES, ROWS_PER_COSINE = 6, 10
 # Smallest number of rows of a sample for which the influence of a field is computed.
 MIN_ROWS = 20
-# If the ratio of the largest to the smallest positive value is larger, the Sobol index of the logarithm is also
-# computed.
+# If the ratio of the largest to the smallest value of a positive metric exceeds this number, the Sobol index of the
+# logarithm is also computed.
 DECADE = 10.0
 
 
 def runs_that_meet(folder, conditions):
-    """Returns the numbers, as texts, of the runs of a sweep that meet all conditions, such as "inside_max_m<3e-4". The
-    program evaluates the conditions by the grammar of `hapbench sweep --where`."""
+    """Returns the numbers, as texts, of the runs of a sweep that meet all conditions. A condition such as
+    "inside_max_m<3e-4" has the grammar of `hapbench sweep --where`. The program evaluates it."""
     output = output_of_program("evaluates --where", "plot", "--runs-where", folder, *conditions)
     return set(output.split())
 
@@ -69,8 +69,8 @@ class Sweep:
         failed = np.array(
             [row["outcome"] in FAILURES or row.get("expected") == "false" for row in self.rows]
         )
-        # For each class of failed runs (diverged, not computed, or an unexpected outcome), True for the runs of this
-        # class. Their metrics have no meaning.
+        # For each class of failed runs, True for the runs of this class. A run fails if it diverges, is not computed or
+        # has an unexpected outcome. The metrics of failed runs have no meaning.
         self.classes = {name: failed & (outcomes == name) for name in by_class(outcomes[failed])}
         self.values = np.array(
             [
@@ -80,13 +80,13 @@ class Sweep:
         )
 
     def column(self, field):
-        """Returns the values of a field as numbers if all are numbers, else as texts."""
+        """Returns the values of a field as an array of numbers if all are numbers, otherwise as a list of texts."""
         texts = [row[field] for row in self.rows]
         return np.array([float(text) for text in texts]) if all(map(is_number, texts)) else texts
 
     def is_logarithmic(self, i):
-        """Returns True if the field was varied in equal ratios, False for equal steps; for a list of other values, the
-        range decides."""
+        """Returns True if the field was varied in equal ratios, and False if it was varied in equal steps. For a list
+        of other values, the ratio of the largest to the smallest value decides."""
         if "scale" in self.axes[i]:
             return self.axes[i]["scale"] == "log"
         values = self.column(self.fields[i])
@@ -106,7 +106,8 @@ class Sweep:
         )
 
     def sensitivities(self):
-        """Returns the Sensitivity of each field over the runs that have the metric; empty if there is none."""
+        """Returns a list with the Sensitivity of each field over the runs that have the metric. An entry is None where
+        sensitivity() returns None."""
         ok = np.isfinite(self.values)
         found = []
         for i, entry in enumerate(self.axes):
@@ -127,7 +128,8 @@ class Sweep:
 
     @property
     def spans_decades(self):
-        """Returns True if the metric is positive and its values span more than a decade."""
+        """Returns True if all values of the metric are positive and the largest is more than DECADE times the
+        smallest."""
         return spans_decades(self.values[np.isfinite(self.values)])
 
     @property
@@ -156,7 +158,7 @@ def draw_sweep(sweep, sheet=SHEET):
 
 
 def draw_cloud(sweep, over, sheet):
-    """Draws the metric over each field."""
+    """Draws the metric as points over each field. `over`: the Axis of each field."""
     value = Axis.of(axis(sweep.metric), sweep.values)
     high, wide = sheet.grid(len(over))
     figure, axes = sheet.panels(high, wide, 0.5 + sheet.panel(2.4) * high)
@@ -189,7 +191,7 @@ def draw_cloud(sweep, over, sheet):
 
 
 def mark_classes(ax, sweep, x):
-    """Draws marks below the axis for runs without a number, in the looks of their classes."""
+    """Draws a mark below the axis for each run without a number, in the style of its class."""
     for name, mine in sweep.classes.items():
         title, colour, _ = look_of_class(name)
         ax.plot(
@@ -218,8 +220,8 @@ def hundredths(number):
 
 
 def draw_curves(ax, sweep, over):
-    """Draws a curve over the numeric field for each text of the other field; if both have texts, draws over the
-    texts."""
+    """Draws the metric over a numeric field, with one curve for each value of the other field. If both fields have
+    texts, draws over the texts of the first field."""
     x = next((of for of in over if not of.names), over[0])
     other = next((of for of in over if of is not x), None)
     value, series = Axis.of(axis(sweep.metric), sweep.values), []
@@ -272,7 +274,7 @@ def draw_map(figure, ax, sweep, over):
 
 
 def edges(values):
-    """Returns the borders of the cells around the values of a grid."""
+    """Returns the borders of the cells around the values of a grid, one more than values."""
     if spread_logarithmically(values):
         return np.exp(edges(np.log(values)))
     middle = (values[1:] + values[:-1]) / 2
@@ -280,7 +282,7 @@ def edges(values):
 
 
 def patch_of(name):
-    """Returns the look of a class's cell; None stands for a cell without a number."""
+    """Returns the style of a cell for the class of its run. `name`: the class; None for a cell without a number."""
     if name is None:
         return NO_VALUE
     _, colour, hatch = look_of_class(name)
@@ -288,8 +290,8 @@ def patch_of(name):
 
 
 def on_grid(over, values):
-    """Returns the values of the first field, of the second field, and the metric by both; None if the points form no
-    grid."""
+    """Returns (values of the first field, values of the second field, metric at each pair of values), or None if the
+    points form no grid."""
     (rows, i), (cells, j) = (np.unique(of.values, return_inverse=True) for of in over)
     if len(rows) * len(cells) > 4 * len(values) or min(len(rows), len(cells)) < 2:
         return None
@@ -299,7 +301,8 @@ def on_grid(over, values):
 
 
 def sensitivity_table(sweep):
-    """Returns the lines with the influence of each field of a sample, largest first, and the method."""
+    """Returns the lines of a printed table: the influence of each field of a sample, largest first, and the method.
+    Returns an empty list for sweeps that are not drawn as points."""
     if not (sweep.sampled and sweep.is_cloud):
         return []
     found, runs = sweep.sensitivities(), np.isfinite(sweep.values).sum()
@@ -340,14 +343,15 @@ def sensitivity_table(sweep):
 
 
 def numbers_of(found, logarithm):
-    """Returns the cells of a field's line."""
+    """Returns the cells of the printed line of a field. `logarithm`: true if the line has the index of the
+    logarithm."""
     numbers = [found.rank, found.first_order, found.error]
     numbers += [found.of_logarithm, found.error_of_logarithm] if logarithm else []
     return ["-" if number is None else hundredths(number) for number in numbers]
 
 
 def main_index(found):
-    """Returns the index that orders the fields: the index of the logarithm, if there is one."""
+    """Returns the Sobol index by which the printed fields are sorted: the index of the logarithm if there is one."""
     if found is None:
         return -1
     return found.first_order if found.of_logarithm is None else found.of_logarithm
@@ -382,9 +386,9 @@ class Sensitivity:
 
 
 def sensitivity(column, coordinate, y):
-    """Returns the Sensitivity of y to a field. `column`: values of the field; `coordinate`: their relative positions in
-    the range (0 ... 1), None for listed values. Returns None if there are too few rows, or if y or the field is
-    constant."""
+    """Returns the Sensitivity of y to a field. `column`: values of the field. `coordinate`: relative positions of the
+    values in the range of the field (0 ... 1); None for listed values. Returns None if there are fewer than MIN_ROWS
+    rows, or if y or the field is constant."""
     if len(y) < MIN_ROWS or np.ptp(y) == 0 or len(set(column)) < 2:
         return None
     if coordinate is None:
@@ -401,9 +405,10 @@ def sensitivity(column, coordinate, y):
 
 
 def adjusted_share(functions, y):
-    """Returns the adjusted R^2 of a fit by functions that span the constant, and the jackknife's standard error.
-    Without row i, the sum of the squared residuals e is smaller by e_i^2 / (1 - h_i), with the leverage h_i of the row,
-    and the sum of the squares of y - mean is smaller by n / (n - 1) (y_i - mean)^2."""
+    """Returns (adjusted R^2 of the least-squares fit of y by `functions`, its standard error by the jackknife). The
+    functions must span the constant. Without row i, the sum of the squared residuals e is smaller by e_i^2 / (1 - h_i),
+    with the leverage h_i of the row, and the sum of the squares of y - mean is smaller by n / (n - 1) (y_i - mean)^2.
+    """
     n, fitted = len(y), functions.shape[1]
     q, _ = np.linalg.qr(functions)
     residual, leverage, off = y - q @ (q.T @ y), (q**2).sum(axis=1), y - y.mean()

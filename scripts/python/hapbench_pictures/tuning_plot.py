@@ -1,4 +1,4 @@
-"""The trials of `tune` as a picture."""
+"""Picture of the trials of `tune`."""
 import json
 
 import numpy as np
@@ -25,7 +25,8 @@ QUANTITIES = {
 
 
 class Trials:
-    """The trials of one law at their K: values of QUANTITIES, True for feasible trials, and the chosen trial."""
+    """Trials of one law. `values`: the QUANTITIES of each trial. `feasible`, `chosen`: for each trial, True if it is
+    feasible, and True for the recommended trial."""
 
     def __init__(self, law, trials):
         self.name = law["algorithm"]
@@ -47,9 +48,9 @@ class Trials:
 
 
 def draw_tune(files, sheet=SHEET):
-    """Draws stiffness against depth and against vibration, and depth against vibration with the Pareto front of the
-    feasible trials. Filled marks are feasible, hollow marks are not, and the choice of each law has a ring.
-    """
+    """Draws stiffness against depth, stiffness against vibration, and depth against vibration with the Pareto front of
+    the feasible trials. Filled marks are feasible trials, hollow marks are other trials. A ring marks the recommended
+    trial of each law."""
     trials, laws = files.records(TRIALS), files.records(LAWS)
     drawn = [Trials(law, trials) for law in laws]
     distinguish(of.name for of in drawn)
@@ -67,7 +68,7 @@ def draw_tune(files, sheet=SHEET):
 
 
 def bounds_of(laws):
-    """Returns the values of --bound for each of QUANTITIES. A table of an older version has no bounds."""
+    """Returns for each of QUANTITIES the values of --bound. They are empty for a table of an older version."""
     given = json.loads(laws[0].get("bounds") or "{}")
     return [
         [factor * value for value in given.get(name, {}).values()]
@@ -105,7 +106,8 @@ def draw_panel(ax, x, y, drawn, shown, bounds):
 
 
 def axis_of(title, values):
-    """Returns a logarithmic axis unless a value, such as a vibration of 0, could not be drawn on it."""
+    """Returns an Axis for these values. It is logarithmic unless a value, such as a vibration of 0, cannot be drawn on
+    a logarithmic axis."""
     return Axis(title, np.array([]), log=spread_logarithmically(values))
 
 
@@ -121,7 +123,7 @@ def range_of(values):
 
 
 def legend_of(drawn, bounds):
-    """Returns handles and labels of the drawn elements only."""
+    """Returns (handle, label) of each element in the picture."""
     entries = [
         (Line2D([], [], **look_of(of.name, ls="none", ms=4)), law_name(of.name))
         for of in drawn

@@ -1,4 +1,4 @@
-"""Picture of the settings of `converge --over`: the error of each time step over its processor time, with a panel for
+"""Picture of the results of `converge --over`: the error at each time step over the processor time, with a panel for
 each problem and a curve for each integrator."""
 from itertools import cycle
 
@@ -19,7 +19,7 @@ FRONT = {
     "lw": 0.9,
     "ls": "-",
     "zorder": 1,
-}  # settings that no other setting beats in both error and time
+}  # settings of which no other setting is better in both error and time
 MAX_LABELS = 5  # largest number of labels of a panel
 ROOM = np.array([0.2, 0.13])  # size of a label, as fractions of the panel's width and height
 KNEE = {"marker": "o", "ms": 10, "mfc": "none", "mec": GREY, "ls": "none"}
@@ -29,15 +29,16 @@ SPEED = {"color": GREY, "lw": 0.8, "ls": "--"}
 REAL_TIME = 1000.0
 
 
-LOGARITHMIC_FROM = 10.0  # smallest ratio of the largest to the smallest error of a logarithmic axis
+# Smallest ratio of the largest to the smallest error for which the error axis is logarithmic.
+LOGARITHMIC_FROM = 10.0
 MODEL_ERRORS, MODEL_TIMES = "convergence_model.csv", "convergence_model_timing.csv"
 
 
 def draw_model_errors(files, sheet=SHEET):
-    """Draws laws against a reference: the error of the force's direction, of the force and, where a hand moves the
-    tool, of the tip's position, over the time of a step. A mark is the median, and a line reaches to the 99.9th
-    percentile. Grey: the deadline of a step. Hollow: a law that renders by the constraints of the reference. Marks are
-    not joined, because laws have no order. Laws whose runs failed have no error and are left out.
+    """Draws the errors of laws against a reference over the time of a step. Panels show the errors of the force's
+    direction, of the force and, where a hand moves the tool, of the tip's position. A mark is the median; a line
+    reaches to the 99.9th percentile. A grey line is the deadline of a step. A hollow mark is a law that renders by the
+    constraints of the reference. Marks are not joined, because laws have no order. Laws whose runs failed are omitted.
     """
     errors, times = files.records(MODEL_ERRORS), files.records(MODEL_TIMES)
     median, p99_9 = (1e6 * numbers(times, name) for name in ("step_median_s", "step_p99_9_s"))
@@ -91,8 +92,9 @@ def draw_model_errors(files, sheet=SHEET):
 
 
 def draw_work_precision(files, sheet=SHEET):
-    """Draws the picture. Filled marks: resolved errors. Hollow marks: errors below ten times the error of the reference
-    solution. A ring: the knee of the front. Grey lines: the requested error, and real time."""
+    """Returns the figure. Filled marks are resolved errors. Hollow marks are errors below ten times the error of the
+    reference solution. A ring marks the knee of the front. Grey lines mark the requested error and real time.
+    """
     errors, times = files.records(ERRORS), files.records(TIMES)
     cost, error = 1e3 * numbers(times, "seconds_per_simulated_second"), 1e6 * numbers(
         errors, "position_error_m"
@@ -150,7 +152,7 @@ def draw_work_precision(files, sheet=SHEET):
 
 
 def legend_of(looks, requested, has_knee, has_unresolved, has_real_time):
-    """Returns handles and labels of the elements that are drawn. `looks`: look of each integrator; `requested`:
+    """Returns (handles, labels) of the elements in the picture. `looks`: look of each integrator. `requested`:
     requested error [µm]."""
     integrators = list(looks)
     marks = [
@@ -175,8 +177,9 @@ def legend_of(looks, requested, has_knee, has_unresolved, has_real_time):
 
 
 def draw_front(ax, errors, cost, error, chosen, is_knee):
-    """Draws a line through the settings of the front, and labels of some time steps: the knee, both ends, and settings
-    between them that have room. Labels stand below the front, where there are no settings."""
+    """Draws a line through the settings of the front, and labels some of their time steps: the knee, both ends, and
+    settings between them for which there is space. Labels stand below the front, where no setting can be.
+    """
     rows = np.flatnonzero(chosen & np.isfinite(error) & (error > 0))
     rows = rows[np.argsort(cost[rows])]
     ax.plot(cost[rows], error[rows], **FRONT)
@@ -209,7 +212,8 @@ def is_true(rows, column):
 
 
 def curves(name, series, chosen, errors, cost, error):
-    """Draws the curve of an integrator, and its unresolved errors as hollow marks."""
+    """Yields (label, processor times, errors, style) of the curve of an integrator, and of its unresolved errors as
+    hollow marks."""
     resolved = is_true(errors, "resolved")
     look = {"color": series.colour, "marker": series.marker}
     shown = chosen & np.isfinite(error) & (error > 0)

@@ -24,8 +24,7 @@ from .ledger import load_claims
 from .page import place_live_page, thesis_page
 from .runs import REPLAY_DIRECTORY, load_runs
 
-# Scenes of the replay: a scenario, further settings, and its algorithms. The page initially shows the first two
-# algorithms.
+# Scenes of the replay: (scenario, further settings, algorithms). The page initially shows the first two algorithms.
 REPLAYED = (
     (
         "task2_rotate_signed_distance",
@@ -38,7 +37,8 @@ REPLAYED = (
         ("original_averaging", "shaped_stiffness", "summation", "mean", "exact_shaping"),
     ),
 )
-# Record every step, for the sound and the peaks. Remove the expectations, which are for the scenario's own algorithm.
+# Settings that record every step, for the sound and the peaks. They remove the expectations, which apply only to the
+# scenario's own algorithm.
 RECORDED = (
     "record.contacts=true",
     "record.stiffness_tensor=true",

@@ -1,4 +1,4 @@
-"""The drawn figures from figures.json, each with its caption, and the claims and files that it belongs to."""
+"""Figures that figures.json lists. Each figure has a caption, and the claims and files to which it belongs."""
 import base64
 import re
 from dataclasses import dataclass
@@ -17,7 +17,7 @@ class Figure:
     thesis_figure: str
     caption: str
     sources: list
-    drawing: bytes  # SVG file
+    drawing: bytes  # contents of the SVG file
 
     @property
     def name(self):
@@ -28,8 +28,8 @@ class Figure:
         )
 
     def is_about(self, claim):
-        """Returns True if the claim's location names the figure, or if the figure draws a scenario that decides the
-        claim."""
+        """Returns True if the place of the claim in the thesis names the figure, or if the figure draws a scenario that
+        decides the claim."""
         named = " ".join(re.findall(r"Fig\. (?:[A-F]\.?)?\d+", str(claim.get("place", ""))))
         drawn = {Path(source).parent.name for source in self.sources}
         return bool(
@@ -39,7 +39,7 @@ class Figure:
 
 
 def labels(thesis_figure):
-    """Returns the numbers of figures without their parts: "7a–c, B.4" gives {"7", "B.4"}."""
+    """Returns the numbers of figures without the letters of their panels: "7a–c, B.4" gives {"7", "B.4"}."""
     return {
         prefix + digits
         for prefix, digits in re.findall(
@@ -62,7 +62,7 @@ def figure(entry, i, file):
         member(entry, key, str, file, pointer, "") for key in ("id", "title", "caption")
     )
     sources, files = (member(entry, key, list, file, pointer, []) for key in ("sources", "files"))
-    # Use only the name, because a figure is in the folder of its list.
+    # Only the name is used, because the figure is in the folder of figures.json.
     drawing = next(
         (file.parent / Path(str(name)).name for name in files if str(name).endswith(".svg")), None
     )

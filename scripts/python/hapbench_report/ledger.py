@@ -1,5 +1,5 @@
-"""The ledger: the claims of the thesis, published numbers, measured numbers and verdicts, and the summary of the page.
-"""
+"""The ledger of claims of the thesis: published numbers, measured numbers and verdicts. Also builds the summary of the
+page."""
 from collections import Counter
 
 from hapbench.errors import InputError
@@ -8,8 +8,8 @@ from hapbench.results import at, objects, read_object, shown
 from .figures import claim_link
 from .markup import cell, command, folded, heading_cell, listed, table, text, typeset
 
-# (mark, tone) by verdict, contradicted claims first. The last two verdicts are for findings of this project. The mark
-# distinguishes verdicts without colour.
+# Mark and colour class of each verdict, in the order of the ledger: contradicted claims first. The last two verdicts
+# are for findings of this project. The marks distinguish the verdicts without colour.
 VERDICTS = {
     "contradicted": ("⊘", "bad"),
     "not replicated": ("✗", "bad"),
@@ -29,7 +29,7 @@ FILTER = (
 
 
 def load_claims(file):
-    """Returns the ledger's claims, the sentence with their counts, and the sentences of the abstract."""
+    """Returns (claims, sentence with the number of claims per verdict, sentences of the abstract) of the ledger."""
     ledger = read_object(file)
     claims = objects(ledger, "claims", file)
     for i, claim in enumerate(claims):
@@ -42,7 +42,7 @@ def load_claims(file):
 
 
 def of_thesis(claims):
-    """Returns the claims of the thesis, contradicted claims first."""
+    """Returns the claims of the thesis, without findings of this project, in the order of VERDICTS."""
     order = list(VERDICTS)
     return sorted(
         (claim for claim in claims if not claim.get("ours")),
@@ -83,7 +83,8 @@ def summary_section(runs, claims, headline, abstract, figures):
 
 
 def main_results(claims, abstract):
-    """Returns the sentences of the abstract, with the claims that test them and the command of each claim."""
+    """Returns a table as HTML: each sentence of the abstract, the claims that test it, and the command of each
+    claim."""
     by_id = {claim["id"]: claim for claim in claims}
 
     def each(of_sentence, text_of):
@@ -112,13 +113,14 @@ def main_results(claims, abstract):
 
 
 def warnings(runs):
-    """Returns the runs with an unexpected outcome by name, so that they are visible outside of the long table."""
+    """Returns a paragraph with the names of all runs that did not end as expected. Returns an empty text if all runs
+    did."""
     missed = [f"{text(run.path)} ({text(run.outcome)})" for run in runs if not run.expected]
     return f'<p><b class="bad">✗ Not as expected:</b> {", ".join(missed)}.</p>' if missed else ""
 
 
 def refusals(claims):
-    """Returns the claims of the thesis that are not confirmed, for the summary."""
+    """Returns a list, for the summary, of the claims of the thesis that are not confirmed."""
     items = "".join(
         f"<li>{verdict_mark(c['verdict'])} {claim_link(c)} ({text(c.get('place', ''))}): "
         f"{typeset(c.get('claim', ''))}</li>"

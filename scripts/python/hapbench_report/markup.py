@@ -1,4 +1,4 @@
-"""HTML from values. Every text that is not written in this program is escaped by `text`."""
+"""Functions that format values as HTML. `text` escapes every text that does not come from this program."""
 import html
 import json
 import math
@@ -12,9 +12,10 @@ from hapbench.table import ending_of, unit_of
 
 ABSENT = "–"
 ASSETS = Path(__file__).parent / "assets"
-PER = "seconds_per_"  # prefix of metrics of the time of a step or of a call
-SMALL_M = 0.01  # [m]; smaller lengths are printed in mm
-# Title, unit and factor of the metrics in the program's tables, with the words of its headings (kRunHeadings).
+PER = "seconds_per_"  # prefix of metrics that are the time of one step or of one call
+SMALL_M = 0.01  # lengths below this value [m] are printed in mm
+# Title, unit and factor of each metric in the tables of the program. The titles are the headings kRunHeadings of the
+# program.
 TITLES = {
     "force_max_N": ("largest force", "N", 1),
     "contact_share": ("in contact", "%", 100),
@@ -73,7 +74,8 @@ def cell(value, sort_key=None, classes=""):
 
 def known_number(value, tolerance, max_digits=3):
     """Formats a number with the digits that are significant at its tolerance, at most `max_digits`. If the tolerance is
-    not smaller than the number, returns a bound: "≤ 0.4"."""
+    at least the magnitude of the number, returns a bound instead: "≤ 0.4", or "0 ± 0.4" for a negative number.
+    """
     value = number_or_none(value)
     if value is not None and tolerance and tolerance >= abs(value):
         sign = "≤ " if value >= 0 else "0 ± "
@@ -82,13 +84,15 @@ def known_number(value, tolerance, max_digits=3):
 
 
 def rounded_up(value):
-    """Returns the smallest number with one significant digit that is at least a positive value."""
+    """Returns the smallest number with one significant digit that is at least `value`. Precondition: `value` is
+    positive."""
     size = 10.0 ** math.floor(math.log10(value))
     return math.ceil(value / size * (1 - 1e-12)) * size
 
 
 def number_cell(value, digits=4, tolerance=None):
-    """Returns a cell with a number. `tolerance`: largest error of the number, in its unit."""
+    """Returns a table cell with a number, or with a dash if there is no number. `tolerance`: largest error of the
+    number, in the unit of the number."""
     value = number_or_none(value)
     return cell(
         known_number(value, tolerance, digits), "" if value is None else json.dumps(value), "number"
@@ -96,19 +100,20 @@ def number_cell(value, digits=4, tolerance=None):
 
 
 def heading_cell(title, numeric=False, unit=""):
-    """Returns a heading cell with the unit below the title."""
+    """Returns a heading cell of a table. The unit stands below the title."""
     below = f"<br><span class=unit>{text(unit)}</span>" if unit else ""
     return f'<th scope="col"{" class=number" if numeric else ""}>{title}{below}</th>'
 
 
 def table(headings, rows, caption="", classes="", element_id=""):
-    """Returns a table. Rows are lists of cells (ready HTML). If the page is narrower than the table, the wrapper
-    scrolls; with the class "stack", each row becomes a card with the headings beside its cells."""
+    """Returns a table as HTML. `headings` and the elements of `rows` are cells as HTML. If the table is wider than the
+    page, its frame scrolls. With the class "stack", each row is shown as a card on a narrow page, with the headings
+    beside the cells."""
     identity = f' id="{element_id}"' if element_id else ""
     shown_caption = f"<caption>{caption}</caption>" if caption else ""
     shown_headings, shown_rows, role = "".join(headings), ["".join(row) for row in rows], ""
     if "stack" in classes.split():
-        # Keeps the role of a table for screen readers if the layout of the table changes.
+        # The explicit role keeps the table a table for screen readers, although style sheets change its layout.
         role = ' role="table"'
         names = [
             text(" ".join(strip(heading.replace("<br>", " ")).split())) for heading in headings
@@ -131,7 +136,7 @@ def table(headings, rows, caption="", classes="", element_id=""):
 
 
 def folded(summary, content, classes=""):
-    """Returns a section of ready HTML that opens on a click, or if a link leads into it."""
+    """Returns a folded section as HTML. It opens on a click, or if a link leads to an element in it."""
     attributes = f' class="{classes}"' if classes else ""
     return f"<details{attributes}><summary>{summary}</summary>{content}</details>"
 
@@ -146,18 +151,19 @@ def command(line):
 
 
 def embedded_json(value):
-    """Returns JSON for a script element: it cannot end the element, and contains only valid JSON values."""
+    """Returns JSON for a script element. The text cannot end the element, and it contains only valid JSON values."""
     packed = json.dumps(value, separators=(",", ":"), allow_nan=False, ensure_ascii=False)
     return packed.replace("<", "\\u003c")
 
 
 def in_colour(one, shown):
-    """Returns ready HTML in the colours of a look for light and for dark ground."""
+    """Returns `shown` (HTML) in the colours of a Look: one for a light and one for a dark background."""
     return f'<span class=run-name style="--light:{one.colour};--dark:{one.dark}">{shown}</span>'
 
 
 def column(name, values=()):
-    """Returns title, unit (empty for numbers without a unit) and factor of a column with this name and these values."""
+    """Returns (title, unit, factor) of a column with this name and these values. The unit is empty for numbers without
+    a unit."""
     if name.startswith(PER):
         return f"time of a {name.removeprefix(PER)}", "µs", 1e6
     if name in TITLES:
@@ -174,7 +180,8 @@ def column(name, values=()):
 
 
 def deserved_digits(value, tolerance, max_digits):
-    """Returns the number of significant digits at a tolerance, from 1 to `max_digits`."""
+    """Returns the number of digits of a value that are significant at its tolerance: at least 1 and at most
+    `max_digits`. Returns `max_digits` if the value or the tolerance is zero or missing."""
     if not value or not tolerance:
         return max_digits
     return max(
@@ -184,8 +191,8 @@ def deserved_digits(value, tolerance, max_digits):
 
 
 def columns(names, rows, tolerances):
-    """Returns the heading cells of numbers, and the cells of each row. `names`: names of the columns; `rows`: lists of
-    numbers or None; `tolerances`: errors of the numbers."""
+    """Returns (heading cells, cells of each row) of a table of numbers. `names`: names of the columns. `rows`: lists of
+    numbers, None for a missing number. `tolerances`: largest errors of the numbers."""
     heads = [
         column(name, [v for v in values if v is not None])
         for name, values in zip(names, zip(*rows))
@@ -204,12 +211,12 @@ def columns(names, rows, tolerances):
 
 def fill(file, values):
     """Returns the file's text with each {{name}} replaced by its value."""
-    # A single pass, so that a value which looks like a placeholder is not replaced.
+    # A single pass does not replace text in a value that looks like a placeholder.
     return re.sub(
         r"\{\{(\w+)\}\}", lambda match: values[match[1]], file.read_text(encoding="utf-8")
     )
 
 
 def listed(title, links):
-    """Returns a line of links; empty if there are no links."""
+    """Returns a paragraph with a title and links; empty if there are no links."""
     return f"<p class=links><b>{title}</b> {', '.join(links)}</p>" if links else ""

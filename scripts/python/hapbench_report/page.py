@@ -1,5 +1,5 @@
-"""The page: its sections in order, with inlined style and scripts, and its links to the live page, on which the reader
-moves the tool of a scene."""
+"""The HTML page of a report: sections with inlined style and scripts. A link leads to the live page, on which the
+reader moves the tool of a scene."""
 import json
 import os
 import shutil
@@ -30,13 +30,14 @@ SCRIPTS = (
     "replay_player.js",
     "replay_controls.js",
 )
-LIVE = "live.html"  # a copy of this file is placed beside every page that links to it
+# File name of the live page; a copy is placed in the folder of every page that links to it.
+LIVE = "live.html"
 BUILT = Path(__file__).resolve().parents[3] / "build" / "live" / LIVE  # output of scripts/live/make
 NO_REPLAY = '<p class="note">No recorded runs were given (<code>--program</code>).</p>'
 
 
 def thesis_page(runs, ledger, figures, replayed):
-    """Returns the HTML of the report on the thesis. `ledger`: the result of load_claims(). Depends only on its
+    """Returns the HTML of the report on the thesis. `ledger`: the result of load_claims(). The HTML depends only on the
     arguments."""
     claims, headline, abstract = ledger
     replay = (
@@ -62,7 +63,7 @@ def thesis_page(runs, ledger, figures, replayed):
 
 
 def whole_page(sections, title="hapbench report", further_style=""):
-    """Returns the page. Each section has a key, a short title for the navigation, a title and its HTML."""
+    """Returns the HTML of the page. Each section has a key, a short title for the navigation, a title and its HTML."""
     return fill(
         ASSETS / "page.html",
         {
@@ -79,7 +80,7 @@ def whole_page(sections, title="hapbench report", further_style=""):
 
 
 def section(key, _, title, body):
-    # The summary has the heading of the page as its heading.
+    # The first heading of the page is also the heading of the summary.
     heading = "" if key == "summary" else f"<h2>{text(title)}</h2>"
     return f'<section id="{key}" aria-label="{text(title)}">{heading}{body}</section>'
 
@@ -107,14 +108,16 @@ def rerun_section():
 
 
 def live_page():
-    """Returns the live page, or None. HAPBENCH_LIVE names another file; if it is empty, there is no live page."""
+    """Returns the file of the live page, or None if the file does not exist. HAPBENCH_LIVE names another file; an empty
+    HAPBENCH_LIVE disables the live page."""
     named = os.environ.get("HAPBENCH_LIVE")
     page = BUILT if named is None else Path(named)
     return page if page.is_file() else None
 
 
 def live_link(scenario):
-    """Returns a sentence with the link; empty if there is no live page or if a pointer cannot move the scene's tool."""
+    """Returns a sentence with a link that opens the scenario in the live page. Returns an empty text without a live
+    page, for a tool that is not free to move, or if the scenario names a file."""
     position = at(scenario, "/motion/position")
     is_free = position is None or at(scenario, "/motion/position/type") == "free"
     names_a_file = any(isinstance(part.get("file"), str) for part in objects_in(scenario))
@@ -130,7 +133,7 @@ def live_link(scenario):
 
 
 def place_live_page(folder):
-    """Copies the live page beside the pages in the folder that link to it."""
+    """Copies the live page, if it exists, into the folder of the pages that link to it."""
     page = live_page()
     if page and page != folder / LIVE:
         shutil.copyfile(page, folder / LIVE)

@@ -1,5 +1,5 @@
-"""A recorded run for the replay: its tool, the shown rows, the moments to jump to, and the rendered force above 30 Hz
-as a sound. A hand feels this part of the force as vibration."""
+"""A recorded run for the replay: the tool, the shown rows, and the times of extreme values. Also provides the rendered
+force above 30 Hz, which a hand feels as vibration, as a sound."""
 import base64
 import math
 import sys
@@ -12,8 +12,8 @@ from hapbench.columns import read_columns
 from hapbench.results import at, number_or_none
 
 TENSOR_COLUMNS = ("sxx", "sxy", "sxz", "syy", "syz", "szz")
-# Columns of each row: time, tip, axis, rendered force, range of ratios, largest depth; and the tensor S if it was
-# recorded.
+# Columns of each shown row: time, tip position, tool axis, rendered force, smallest and largest stiffness ratio, and
+# largest depth. The stiffness tensor S follows if it was recorded.
 MEASURED_COLUMNS = (
     "time_s",
     "px_m",
@@ -40,16 +40,17 @@ CONTACT_COLUMNS = (
     "weight",
 )
 NORMAL_COLUMNS = ("nx", "ny", "nz")
-# Number of points of a rounded tip: deviates from the circle by 0.013 % of its radius.
+# Number of points of a rounded tip. The polygon deviates from the circle by 0.013 % of the radius.
 ARC_POINTS = 48
-SPANS = 500  # number of time spans of a run; each keeps up to five rows
+# Number of equal parts into which the rows of a long run are divided; each part keeps up to five rows.
+SPANS = 500
 SETTLING_S = 0.05
 CUTOFF_HZ = 30.0
-# Largest number of rows of a sound: two minutes at 2 kHz, half a megabyte in the page.
+# Largest number of rows of a sound: two minutes at 2 kHz, which take half a megabyte in the page.
 LONGEST = 1 << 18
 MIN_SETTLED_S = (
     1 / 30
-)  # with fewer settled rows, the run bounces and has no metrics of settled contact
+)  # with a shorter settled time [s], the run counts as bouncing and has no metrics of settled contact
 
 
 def tool_profile(scenario, summary):
@@ -95,9 +96,9 @@ def force_steps(columns):
 
 
 def rows_to_show(columns):
-    """Returns all rows of a short run. For a long run, returns from equal spans of rows the rows with the smallest
-    force, the largest force and the largest depth, and both ends of the largest force step, so that no peak is lost.
-    """
+    """Returns the indices of the rows to show: all rows of a short run. For a long run, returns from each of SPANS
+    equal parts the rows with the smallest force, the largest force and the largest depth, and the two rows of the
+    largest force step. No peak is lost."""
     n = len(columns["time_s"])
     if n <= 4 * SPANS:
         return np.arange(n)
@@ -120,9 +121,10 @@ def rows_to_show(columns):
 
 
 def settled_rows(columns, scenario):
-    """Returns True for rows in contact that are not part of a landing, by the settings of the run's metrics. A landing
-    lasts settling_s from a first touch. A first touch is a contact at the start, or a contact after at least settling_s
-    without contact. If from_s is set, it replaces this rule."""
+    """Returns for each row True if it is in contact and not part of a landing, by the settings of the run's metrics. A
+    landing lasts settling_s from a first touch. A first touch is a contact at the start, or a contact after at least
+    settling_s without contact. If from_s is set, all rows in contact from that time on are settled.
+    """
     settling_s, from_s = (
         number_or_none(at(scenario, f"/metrics/{key}")) for key in ("settling_s", "from_s")
     )
@@ -139,8 +141,8 @@ def settled_rows(columns, scenario):
 
 
 def worst_moments(columns, scenario):
-    """Returns (title, time, value, unit) of the largest step of the settled force and of the largest depth. In a run
-    that hardly settles, uses the force of all rows."""
+    """Returns (title, time, value, unit) for the largest force step and for the largest depth. Only settled rows count
+    for the force step. If the settled time is shorter than MIN_SETTLED_S, all rows count."""
     times, step, depth = columns["time_s"], force_steps(columns), columns["depth_max_m"]
     rows = np.flatnonzero(settled_rows(columns, scenario))
     is_settled = len(times) > 1 and len(rows) * (times[1] - times[0]) >= MIN_SETTLED_S
@@ -158,11 +160,11 @@ def worst_moments(columns, scenario):
 
 
 class Recording:
-    """The run of one algorithm in a scene."""
+    """Recorded data of one run for the replay."""
 
     def __init__(self, run):
         self.run, self.tool = run, tool_profile(run.scenario, run.summary)
-        # All rows, for the sound and the moments to jump to.
+        # All recorded rows. The sound and the times of extreme values need them.
         self.columns = read_columns(
             run.folder / "trajectory.csv", ("step", *MEASURED_COLUMNS, "colliding")
         )
@@ -176,8 +178,8 @@ class Recording:
         )  # for every shown row, with their normals
 
     def rows_of(self, table, columns):
-        """Returns the rows of a table for every shown row, in the order of the file; None if the table was not
-        recorded."""
+        """Returns for each shown row the list of its rows in another table, in the order of the file. Returns None if
+        the table was not recorded."""
         steps = self.columns["step"][self.shown]
         rows = {step: [] for step in steps.tolist()}
         if table in self.run.tables:
@@ -219,9 +221,9 @@ def base64_of(code, values):
 
 
 def sound(columns):
-    """Returns sound samples for the page; empty if the recording rate is too low. The sound is the component of the
-    force above 30 Hz along its strongest direction: the magnitude would hide a force that reverses.
-    """
+    """Returns the samples of a sound for the page, or None if the recording rate is too low. The samples are the force
+    above 30 Hz, projected on the direction in which this force is strongest. The magnitude of the force would hide a
+    change of sign."""
     times = columns["time_s"][:LONGEST]
     if len(times) < 3 or not times[-1] > times[0]:
         return None
@@ -246,13 +248,13 @@ def sound(columns):
 
 
 def high_passed(samples, rate):
-    """Applies the fourth-order Butterworth high-pass of results/observe/contact_forces.hpp, with zero output at the
+    """Applies the fourth-order Butterworth high-pass of results/observe/contact_forces.hpp. The output is zero at the
     first sample."""
     sections = signal.butter(4, CUTOFF_HZ, "high", fs=rate, output="sos")
     return signal.sosfilt(sections, samples, zi=signal.sosfilt_zi(sections) * samples[0])[0]
 
 
 def strongest(signals):
-    """Returns the unit vector along which the three signals have the largest power: the last eigenvector of their
-    covariance."""
+    """Returns the unit vector along which the three signals have the largest power: the eigenvector of `signals` times
+    its transpose with the largest eigenvalue."""
     return np.linalg.eigh(signals @ signals.T)[1][:, -1]

@@ -1,6 +1,5 @@
-"""The interactive replay: recorded runs of any scene and the replay's markup. The data is reduced to the number of rows
-and points that a browser can draw in a frame. Contacts have 16 bits, rows have single precision, and both are encoded
-as base64."""
+"""Interactive replay of recorded runs: its data and its markup. The replay shows at most as many rows and points as a
+browser can draw in a frame. Contacts have 16 bits, rows have single precision, and both are encoded as base64."""
 import json
 import subprocess
 import tempfile
@@ -29,26 +28,28 @@ from .recording import (
     worst_moments,
 )
 
-# Margin around the contacts and the tool's path along them within which the shell is shown, in tool radii.
+# Largest distance of a shell point from the touched box (touched_box()) at which the point counts as near, in tool
+# radii.
 MARGIN = 1.8
 SHELL_COLUMNS = ("x_m", "y_m", "z_m", *NORMAL_COLUMNS)
-# Number of points near the contacts, and number of all points.
+# Largest number of drawn shell points near the contacts, and of all drawn shell points.
 NEAR, ALL = 5000, 8000
-SPEEDS = (0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 10)  # equal to the player's menu
-WATCHED_S = 10.0  # initial duration of a replay [s]
+# Factors of the replay's speed; equal to the player's menu.
+SPEEDS = (0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 10)
+WATCHED_S = 10.0  # the initial speed shows the longest recording in about this time [s]
 PATIENCE_S = 120
 
 
 @dataclass(frozen=True, eq=False)
 class Surface:
-    """The surface that the tools touch."""
+    """Points of the surface that the tools touch."""
 
     points: np.ndarray  # rows of position [m] and outward normal
     is_solid: bool  # false for an open mesh, whose inside is not defined
 
 
 def replays(runs, labels):
-    """Returns a packed scene for each environment and tool among the runs."""
+    """Returns one packed scene for each combination of environment and tool that occurs in the runs."""
     scenes = {}
     for run, label in zip(runs, labels):
         key = json.dumps(
@@ -90,7 +91,8 @@ def scene(i, runs, labels):
 
 
 def packed_scene(recordings, shell, labels):
-    """Returns the packed scene. `shell`: points with their normals; all are drawn."""
+    """Returns the packed scene of these recordings. `shell`: points with their normals, which are all drawn. `labels`:
+    name of each recording."""
     scale = float(np.abs(shell[:, :3]).max(initial=0.0)) / 32767 or 1.0
     scenario = recordings[0].run.scenario
     orientation = at(scenario, "/motion/orientation") or {}
@@ -151,8 +153,8 @@ def packed_recording(recording, label):
 
 
 def points_of(run, recordings):
-    """Returns the points of the surface, from the program or else the recorded contact points, and a remark about their
-    origin."""
+    """Returns (points of the surface, remark about the points). The program provides the points. If it does not, the
+    recorded contact points are used."""
     surface, failure = shell(run)
     every = surface and surface.points
     if every is None:
@@ -187,8 +189,8 @@ def touched_box(recordings):
 
 
 def subset(points, box, margin):
-    """Returns a subset of the points. Points near the box are preferred: `margin` is the distance from the box along
-    any axis."""
+    """Returns at most ALL of the points. Up to NEAR points near the box are selected first. `margin`: largest distance
+    from the box, along each axis, of a point that counts as near [m]."""
     low, high = np.array(box)
     near = ((points[:, :3] >= low - margin) & (points[:, :3] <= high + margin)).all(axis=1)
     kept = some(points[near], NEAR)
@@ -203,7 +205,8 @@ def some(points, max_count):
 
 
 def surface_of(runs):
-    """Returns the Surface that all runs share; None if they do not share one or if it is not available."""
+    """Returns the Surface that all runs share. Returns None if their environments differ, or if the surface is not
+    available."""
     environments = [run.scenario.get("environment") for run in runs]
     if any(environment != environments[0] for environment in environments) or not environments[0]:
         return None
@@ -211,13 +214,14 @@ def surface_of(runs):
 
 
 def shell(run):
-    """Returns the Surface and an empty text, or None and the reason."""
+    """Returns (Surface, empty text), or (None, reason) if the surface is not available. A scene of springs has no
+    surface and gives no reason."""
     if at(run.scenario, "/environment/type") == "springs":
         return None, ""
     return shell_of(run.folder / "scenario.effective.json")
 
 
-@lru_cache(maxsize=4)  # cached, because curves and replay of a page use the same surfaces
+@lru_cache(maxsize=4)  # cached, because the curves and the replay of a page use the same surfaces
 def shell_of(scenario):
     program = the_program()
     if not program:
@@ -247,7 +251,7 @@ def shell_of(scenario):
 
 
 def player(scenes):
-    """Returns the replay's markup and data. A page contains one replay."""
+    """Returns the replay's markup and data as HTML. A page contains at most one replay."""
     sides = "".join(fill(ASSETS / "replay_side.html", {"which": which}) for which in "ABCD")
     return (
         fill(ASSETS / "replay.html", {"sides": sides})

@@ -8,12 +8,12 @@ from hapbench.results import at, member, number_or_none
 
 from .markup import cell, heading_cell, table, text
 
-# Runs in this folder were written for the replay and are not results.
+# Folder with runs that were computed for the replay. They are not results.
 REPLAY_DIRECTORY = "replay"
 
 
 class Run(results.Run):
-    """A run for pages. `path` is the path of its folder relative to the results."""
+    """A run that a page shows. `path`: folder of the run, relative to the folder of the results."""
 
     path = ""
 
@@ -23,8 +23,8 @@ class Run(results.Run):
 
     @property
     def expected(self):
-        """False if the run ended otherwise than its scenario expects. The expectation does not apply to other
-        algorithms of a comparison."""
+        """False if the run did not end as its scenario expects. Always true for a run of a comparison, because the
+        expectation applies only to the scenario's own algorithm."""
         return (
             self.summary.get("expected") is not False
             or (self.folder.resolve().parent / "comparison.csv").exists()
@@ -34,7 +34,7 @@ class Run(results.Run):
         return number_or_none(self.metrics.get(key))
 
     def tolerance(self, section, key):
-        """Returns the error of a metric; None if it is unknown."""
+        """Returns the largest error of a metric, in the unit of the metric. Returns None if the error is unknown."""
         return number_or_none(
             self.summary.get("tolerances", {}).get(
                 key if section == "metrics" else f"{section}.{key}"
@@ -43,7 +43,7 @@ class Run(results.Run):
 
     @cached_property
     def sections(self):
-        """Returns the groups of metrics in summary.json by name, as documented in columns.json."""
+        """Returns the metrics of summary.json as a dict by section. columns.json documents the sections."""
         file = self.folder / "columns.json"
         documented = (
             {entry["name"] for entry in results.read_json(file).get("summary.json", ())}
@@ -59,7 +59,7 @@ class Run(results.Run):
 
 
 def load_runs(directory: Path, but=None):
-    """Returns the runs below a directory, except in the folder `but`."""
+    """Returns the runs below a directory, sorted by path. Runs in the subfolder `but` are skipped."""
     paths = [
         file.parent.relative_to(directory).as_posix()
         for file in sorted(directory.rglob(results.SUMMARY))
@@ -68,7 +68,7 @@ def load_runs(directory: Path, but=None):
 
 
 def load_run(directory, path):
-    """Returns the run in a directory, under the name `path`."""
+    """Returns the run in a directory. `path`: Run.path of the result."""
     run = results.load_run(directory, Run)
     for key in ("metrics", "provenance", "targets", "tolerances"):
         member(run.summary, key, dict, directory / results.SUMMARY)
@@ -82,10 +82,10 @@ def plugin_text(run):
 
 
 def provenance_of(runs):
-    """Returns distinct builds and machines, with the number of their runs."""
+    """Returns (provenance, number of runs) for each distinct combination of build and machine."""
     found = {}
     for run in runs:
-        # A build does not depend on the scenario or on a plugin's law.
+        # The hash of the scenario and the plugin do not belong to the build.
         build = {
             k: v
             for k, v in (run.summary.get("provenance") or {}).items()
