@@ -167,7 +167,7 @@ LawForce ModuleLaw::failed(const char* problem) noexcept {
 
 LawForce ModuleLaw::evaluate(ContactBuffer& contacts) noexcept {
   if (contacts.empty()) return {};
-  // Set guard values before and after the weights, and call the module.
+  // Fill the weights and the cells before and after them with guard values, and call the module.
   set_weights(contacts, 0.0);
   const std::size_t n = contacts.size();
   std::fill_n(weights_.begin(), n + 2 * kGuards, std::bit_cast<double>(kUnwritten));

@@ -137,10 +137,11 @@ class PassivityObserver final : public MetricObserver {
  private:
   struct Extremes {
     bool rows = false;  ///< true if there was a step with a force or a moment
-    /// Smallest E of a step [J]; negative if the rendering gave more energy than it had received.
+    /// Smallest value of the accumulated energy E over all steps [J]; negative if the rendering gave more energy than
+    /// it had received.
     double energy_min = 0.0;
     double time_of_min = 0.0;  ///< time of the first step with E = energy_min [s]
-    double energy_end = 0.0;   ///< E of the last step [J], valid after the end of the trial
+    double energy_end = 0.0;   ///< E at the last step [J], valid after the end of the trial
     double net_created() const noexcept { return energy_min >= 0.0 ? 0.0 : -energy_min; }
   };
   Extremes worst() const noexcept;

@@ -347,8 +347,8 @@ void InsideObserver::on_step(const StepRecord& record) noexcept {
     if (depth_ && settled) depths_.settled.push_back(*depth_);
     return;
   }
-  // The key of a pose is the depth of the deepest contact while the front point is outside. While it is inside, the key
-  // is the depth of the tip centre plus the half width.
+  // The key of a pose is the depth of the deepest contact while the front point (struct Passage) is outside of the
+  // solid. While the front point is inside, the key is the depth of the tip centre plus the half width.
   const bool deep = side_ == SolidSide::inside;
   deepest_.add(pose, deep ? tool_->half_width() + std::max(0.0, -tip_phi_.value) : record.force.depth_max);
   if (settled) settled_.add(pose, 0.0);

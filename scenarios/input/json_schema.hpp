@@ -17,7 +17,7 @@ struct ValueGuide {
   Json schema;
   std::string allowed;             ///< allowed values as a text, such as "a number > 0 and <= 10 [m]"
   std::vector<FieldGuide> fields;  ///< fields of an object without alternatives, or of one alternative
-  /// Alternatives from which the field "type" selects; empty if the value is not such an object.
+  /// Alternatives of an object whose field "type" selects one of them; empty for other values.
   std::vector<ValueGuide> choices;
   std::string type, summary;    ///< only for an alternative: its value of the field "type", and a short description
   bool may_be_untyped = false;  ///< only for an alternative: true if the field "type" may be omitted

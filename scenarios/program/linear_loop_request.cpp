@@ -28,7 +28,8 @@ Json finite_or_null(double number) {
   return std::isfinite(number) ? Json(number) : Json();
 }
 
-/// Returns the loop of the device in the scene whose wall holds the handle, without a hand. Throws InputError.
+/// Returns the loop of the device, without a hand, in a scene in which the handle always touches the virtual wall.
+/// Throws InputError.
 SampledLoop loop_at_wall(const ComparedDevice& device, double period, double stiffness, double damping, double delay) {
   const ScenarioText scene = read_scenario_text(installed_folder("scenarios/library/limits") / "wall_on_handle.json");
   LoadedScenario loaded = load_scenario(scene, overrides_on(device, scene,

@@ -19,7 +19,7 @@ std::error_code NewDirectories::create(const fs::path& directory) {
 std::error_code NewDirectories::create_missing(const fs::path& directory) {
   std::vector<fs::path> missing;
   std::error_code error, unknown;
-  // Find the missing parents, innermost first.
+  // Find the missing directories, innermost first.
   for (fs::path path = directory; !path.empty() && path != path.root_path() && !fs::exists(path, unknown);
        path = path.parent_path()) {
     missing.push_back(path);

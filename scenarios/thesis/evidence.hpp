@@ -23,7 +23,7 @@ struct Evidence {
   std::function<void(const std::string& scenario)> provide;
   /// Returns overrides for load_scenario of a bundled scenario. May be empty.
   std::function<std::vector<std::string>(const Scenario&)> overrides = {};
-  /// Called with the name of each bundled scenario that a claim loads directly. May be empty.
+  /// Called with the name of each bundled scenario that scene() reads, in contrast to result files. May be empty.
   std::function<void(const std::string& scenario)> used = {};
   /// True: experiments with subjects have fewer targets (assumption_sets.hpp).
   bool reduced = false;

@@ -45,8 +45,8 @@ class MultiRateContacts final : public ContactSource {
  private:
   /// Sends the query of the step, if one is scheduled, and takes the result that is due.
   void begin_step(std::uint64_t row, const ToolPose& pose) noexcept;
-  /// Replaces the contents of `contacts` by the found contacts with their depths at this pose (linear
-  /// contacts).
+  /// Replaces the contents of `contacts` by the found contacts, with their depths extrapolated linearly to this
+  /// pose.
   void move_found_to(const ToolPose& pose, ContactBuffer& contacts) const noexcept;
 
   std::unique_ptr<ContactSource> source_;

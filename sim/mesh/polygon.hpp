@@ -78,9 +78,9 @@ class PolygonDivider {
   /// Returns true if the ear a, b, c cannot be clipped because remaining corner `j` lies in the ear, or on the ear's
   /// new edge from c to a.
   bool blocks(std::size_t j, const Point& a, const Point& b, const Point& c) const;
-  /// Returns the remaining corner to clip if rounding leaves no ear: the corner with the flattest triangle, or else the
-  /// corner with the largest triangle. Throws PolygonError if no corner has a flat triangle or a triangle with a
-  /// positive area.
+  /// Returns the remaining corner to clip if rounding leaves no ear: the corner with the flattest triangle if a
+  /// triangle is flat, otherwise the corner with the triangle of the largest positive area. Throws PolygonError if
+  /// there is neither.
   std::size_t flattest_corner() const;
   void clip(std::size_t i);
   std::size_t before(std::size_t i) const { return (i == 0 ? points_.size() : i) - 1; }

@@ -127,7 +127,8 @@ def sweep(
     """Run a scenario over a grid or a sample of values of any fields, as `hapbench sweep` does.
 
     `vary`: values by field, such as {"rendering.stiffness_N_per_m": [2e4, 4e4]}; a string is interpreted as by --vary
-    ("1e4:1e5:10:log"). A run that fails ends at its failure and has no metrics, unless `full`. Returns a Report whose
+    ("1e4:1e5:10:log"). A run that fails stops at its failure and has no metrics; with `full`, it
+    continues to its end and has metrics. Returns a Report whose
     table `sweep` has a row for each run.
     """
     words = ["sweep"]

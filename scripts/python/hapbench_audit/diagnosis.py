@@ -281,7 +281,8 @@ def against_encoder(audit):
 def saturated_share(log, contacts, stiffness):
     """Returns the fraction of the rows in contact that are saturated: the force stays at its largest value in
     consecutive rows, although the tool moves. Returns None for fewer than FLAT saturated rows, because the largest
-    force is then no limit. Returns None from the fraction CONSTANT on, because the force is then constant.
+    force is then no limit. Returns None if the fraction is CONSTANT or more, because the force is then
+    constant.
     """
     size = np.linalg.norm(log.force, axis=1)
     rows = np.flatnonzero(contacts.in_contact)

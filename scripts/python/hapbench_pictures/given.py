@@ -219,7 +219,8 @@ def axis(path, among=()):
 
 
 def entry(path, value, among):
-    """Returns a text with a field and its value for a legend: "K = 40 000 N/m". `among`: all fields in the legend."""
+    """Returns a text with a field and its value for a legend, such as "K = 40 000 N/m"; "PATH=VALUE" if another
+    field of the legend has the same title. `among`: all fields in the legend."""
     title, unit = title_and_unit(path)
     if is_ambiguous(path, among):
         return f"{path}={shown(value)}"

@@ -33,7 +33,8 @@ LONGEST_NAME = 90  # largest number of letters of a run's name in the title
 
 
 def draw_runs(runs, quantities, with_path, window, sheet=SHEET):
-    """Returns the figure of runs: a title with their names, their scenes in sections, and the quantities over time."""
+    """Returns the figure of runs: a title with their names, with `with_path` a cross-section of each scene with the
+    paths, and the quantities over time."""
     further = (*PATH_COLUMNS, *AXIS_COLUMNS) if with_path else ()
     samples = [Samples(run, quantities, further, window) for run in runs]
     shown = looks(runs, *named(runs))

@@ -37,7 +37,8 @@ TEST(Sampling, HasItsPointsInTheUnitCubeAndMeansWhatItsSeedSays) {
   }
 }
 
-/// Returns the axes of a file of --points with this text, or the message of the error.
+/// Returns a text of the axes of a file of --points with this content, or the message of the error from the file's name
+/// on.
 std::string points_of(const std::string& text) {
   const test::TemporaryDirectory directory;
   test::write_plainly(directory / "p.csv", text);

@@ -42,8 +42,8 @@ std::optional<InputError> objection_to(const Json& document) {
   }
 }
 
-/// Returns valid scenarios. The scenarios written for tests come first, because they contain every field, while bundled
-/// scenarios are similar to each other.
+/// Returns valid scenarios. rich_scenarios() come first, because they contain every field, while bundled scenarios are
+/// similar to each other.
 std::vector<NamedScenario> valid_scenarios() {
   std::vector<NamedScenario> all = test::rich_scenarios();
   for (const auto& more : {test::minimal_scenarios(), test::bundled_scenario_files()}) {
