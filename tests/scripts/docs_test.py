@@ -270,8 +270,10 @@ class Generated(unittest.TestCase):
         self.assertRegex(stamp, STAMP)
         self.assertTrue(stamp.startswith(f"hapbench {version}, "), stamp)
         self.assertNotRegex(stamp, r"\b[0-9a-f]{7,}\b|dirty")
+        earlier = re.sub(r"\d{4}-\d\d-\d\d", "2020-01-02", stamped)
+        self.assertEqual(program.stamped(session, f"{earlier}\n"), f"{earlier}\n")
         older = stamped.replace(version, "0.1.0")
-        self.assertEqual(program.stamped(session, f"{older}\n"), f"{older}\n")
+        self.assertEqual(program.stamped(session, f"{older}\n"), stamped)
         with_commit = f"{session}\n\nPrinted by commit 0123456789ab-dirty, 2026-11-28, AMD EPYC.\n"
         self.assertEqual(program.stamped(session, with_commit), stamped)
 

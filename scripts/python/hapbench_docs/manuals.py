@@ -317,18 +317,22 @@ class Program:
         return done.stdout
 
     def stamped(self, text, old):
-        """Returns the text with its provenance below. Returns the old block if its text differs only in run times and
-        its provenance matches STAMP."""
+        """Returns the text with its provenance below. Returns the old block if its text differs only in run times, its
+        provenance matches STAMP, and its version is the version of the program."""
         known, _, stamp = old.strip("\n").rpartition("\n\nPrinted by ")
-        if STAMP.fullmatch(stamp) and same_but_for_times(text, known):
+        is_current = STAMP.fullmatch(stamp) and stamp.startswith(f"{self.version()}, ")
+        if is_current and same_but_for_times(text, known):
             return old
         return f"{text}\n\nPrinted by {self.provenance()}."
 
     def provenance(self):
         """Returns version, date and processor, such as "hapbench 0.3.0, 2026-11-21, AMD EPYC". The commit is omitted,
         because a comparison needs only the version."""
-        version = self.run(["--version"], ".").partition(" (")[0].strip()
-        return f"{version}, {datetime.date.today()}, {processor()}"
+        return f"{self.version()}, {datetime.date.today()}, {processor()}"
+
+    def version(self):
+        """Returns the program's name and version, such as "hapbench 0.3.0"."""
+        return self.run(["--version"], ".").partition(" (")[0].strip()
 
 
 def same_but_for_times(a, b):
