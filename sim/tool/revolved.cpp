@@ -84,7 +84,7 @@ struct NearestPoint {
   // If a point is closer to a corner than this, the direction to the corner is dominated by rounding. The segment's
   // normal is then used, which is one of the valid directions.
   const Pack at_line(1e-12 * meridian.widest);
-  NearestPoint nearest{Pack(std::numeric_limits<double>::infinity()), zero, zero, zero < zero};
+  NearestPoint nearest{Pack(std::numeric_limits<double>::infinity()), zero, zero, Pack(1.0) < zero};
   for (const Meridian::Line& line : meridian.lines) {
     const Pack ns(line.ns), nr(line.nr);
     const Pack inwards = line.slack(s, rho);
