@@ -203,8 +203,8 @@ std::string verdict_text(const ConvergeStudy& study) {
   const auto [low, high] = *study.band;
   if (low == high) return fmt::format("no order: {}; the last levels give {}", study.reason, significant(low, 6));
   // The band of an extreme value is wider than its levels, because the extreme lies between two steps.
-  const bool has_spread =
-      std::ranges::none_of(study.levels, [low](const LevelRow& level) { return level.result && *level.result <= low; });
+  const bool has_spread = std::ranges::none_of(
+      study.levels, [low = low](const LevelRow& level) { return level.result && *level.result <= low; });
   return fmt::format("no order: {}; the last levels{} give {} ... {}", study.reason,
                      has_spread ? ", with the sampling error of this metric," : "", number_text(low, high - low),
                      number_text(high, high - low));
