@@ -241,8 +241,8 @@ void add_compare(CommandLine& line) {
   command.footer(
       "Ranking: printed for several scenarios, for several seeds, or with --by. The rank of a law is 1 + the number "
       "of better laws. A law is better if its mean is better by more than 0.1 % and by more than the errors of both "
-      "means together; errors are those of the metrics' definitions. The spread over seeds does not count. Laws with "
-      "a failed run rank last.\n\n"
+      "means together. The errors follow from the metrics' definitions. The spread over seeds does not count. Laws "
+      "with a failed run rank last.\n\n"
       "Other comparisons: compare varies only the law. \"hapbench sweep\" runs a scenario with several values of any "
       "field, such as two stiffnesses.\n\n"
       "Failed run: it diverges, passes through the surface, loses contact or never touches, sticks, is not dragged "

@@ -133,8 +133,9 @@ void add_limit(CommandLine& line) {
       "stable, or if all runs are stable and the range has no linear limit: then try a wider --between.\n\n"
       "Files: limit.csv has one row per search, limit_runs.csv one row per run with its class. They replace the "
       "files of an earlier search in the same folder.\n\n"
-      "Time: 100 to 400 runs for one search, of which {} verify the stable side of the limit at further values "
-      "(verification samples). With --device or --over, a search skips these runs and needs only 30 to 50.\n\n"
+      "Time: 100 to 400 runs for one search, {} of them verify that other values on the stable side "
+      "are stable too (verification samples). With --device or --over, a search skips these runs and "
+      "needs only 30 to 50.\n\n"
       "Exit status: 0 also if no value or every value is stable; 2 bad input; 130 stopped by Ctrl-C.",
       kVerificationSamples + kSamplesNearLimit));
 }

@@ -45,8 +45,8 @@ def force_law(
     The function returns the weights c_i of the springs, either one for each contact or one for all contacts. The force
     is f = -K Σ c_i d_i u_i, with the depths d_i and the gradients u_i, and the stiffness tensor is S = Σ c_i u_i u_iᵀ.
     Alternatively, the function returns a tuple of the force [N] and the symmetric 3 × 3 tensor S in units of K.
-    Damping and friction are computed with S. The energy and the moment of such a force are those of one spring of
-    stiffness K in the middle of the contacts.
+    Damping and friction are computed with S. The energy and the moment of such a force are computed as if one spring
+    of stiffness K in the middle of the contacts rendered it.
 
     A class can replace the function. Each run then creates an object of the class and calls it, so that a law can have
     a state.

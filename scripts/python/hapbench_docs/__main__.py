@@ -20,7 +20,7 @@ from .manuals import (
 )
 
 GALLERY = ROOT / "results" / "reference" / "gallery"
-# Matches the command lines in a manual, the last of which plots, and the picture that follows.
+# Matches consecutive command lines in a manual whose last command plots, and the picture below them.
 ILLUSTRATED = re.compile(r"((?:^    hapbench .*\n)+)\n!\[[^]]*\]\([^)]*/gallery/(\w+\.svg)\)", re.M)
 
 DESCRIPTION = """Renews what is generated in the manuals: sessions (commands with their output),

@@ -169,7 +169,7 @@ TEST(Claims, AreJudgedByTheirThresholds) {
           "damped_1=1 damped_2=1 damped_3=0.96 | | | | average signed_distance: | average binary:",
       vibration = "velocity_variation=0.1 vibration_power=1e-5 force_reversals=6 | | |";
   const std::vector<Rule> rules = {
-      // Of each case, the largest depth over all tilts counts.
+      // The claim takes the largest depth over all tilts of a case.
       {"V1",
        depths,
        {{"", replicated},
