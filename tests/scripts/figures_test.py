@@ -65,7 +65,7 @@ def make_results(directory):
         ("compare", "stiffness_peg"),
         ("limit", "spring_stiffness"),
         ("limit", "spring_damping"),
-        ("sweep", "six_dof", "--jobs=2", "--set=time.step_s=0.1", "--set=time.steps=21"),
+        ("sweep", "six_dof", "--jobs=2", "--set=time.step_s=0.2", "--set=time.steps=11"),
         ("limit", "hardware_paddle", "--resolution=0.5"),
         ("limit", "device_limits", "--device=touch,omega.3", "--resolution=0.5"),
         (
@@ -82,7 +82,7 @@ def make_results(directory):
         hapbench(verb, study, *words, "--out", directory / study)
     make_accuracy(directory / "accuracy")
     shutil.copy(REFERENCE / "claims.json", directory)
-    # With this file, the load of the loop is drawn.
+    # The fraction of the loop's period that a step takes is drawn only if this file exists.
     loop = directory / "step_latency" / "task2_rotate_signed_distance"
     loop.mkdir(parents=True)
     (loop / "timing.json").write_text(
@@ -146,7 +146,7 @@ class Figures(unittest.TestCase):
         cls.directory = scratch_folder(cls)
         cls.results, cls.drawn = cls.directory / "results", cls.directory / "figures"
         make_results(cls.results)
-        # The figures call the program to find knees.
+        # The figures call the program to find the knee of a curve of error over run time.
         program = mock.patch.dict(os.environ, {"HAPBENCH_PROGRAM": str(PROGRAM)})
         program.start()
         cls.addClassCleanup(program.stop)

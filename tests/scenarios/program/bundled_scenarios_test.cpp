@@ -200,8 +200,8 @@ RecordedNumbers numbers_below(const fs::path& directory) {
 }
 
 /// Compares numbers with the stored numbers, either of commands (names with a colon, `of_commands`) or of scenarios.
-/// Fails if a number differs or is not stored. Unless `some`, also fails if stored names are not found. The failure
-/// names file and column. If the variable kRenew is set, stores the numbers instead.
+/// Fails if a number differs or is not stored. If `some` is false, also fails if a stored name is missing in `found`.
+/// The failure names file and column. If the variable kRenew is set, stores the numbers instead.
 void expect_recorded(bool of_commands, const NumbersByName& found, bool some = false) {
   ASSERT_FALSE(found.empty());
   if (std::getenv(kRenew) != nullptr) {
@@ -217,9 +217,9 @@ void expect_recorded(bool of_commands, const NumbersByName& found, bool some = f
       << kRenew << "=1, and say in the commit which change and why.";
 }
 
-/// Returns arguments that shorten a scenario of many steps to milliseconds; empty for other scenarios. The tasks of the
-/// thesis touch the block within these steps. With sanitizers, where brute force takes 0.6 s per step, the number of
-/// steps is an eighth.
+/// Returns arguments that shorten a scenario of many steps, so that its run takes milliseconds; empty for other
+/// scenarios. The tasks of the thesis touch the block within these steps. With sanitizers, where brute force takes
+/// 0.6 s per step, the number of steps is an eighth.
 std::vector<std::string> shortened(const Scenario& scenario) {
   const std::int64_t steps = 1500 / static_cast<std::int64_t>(test::sanitized(8));
   if (scenario.time.steps <= steps) return {};
@@ -233,15 +233,19 @@ std::vector<std::string> shortened(const Scenario& scenario) {
   return arguments;
 }
 
-/// Returns the scenarios that are run in full: all scenarios without AddressSanitizer. With AddressSanitizer, omits
-/// scenarios of more than 10^4 steps, because they take minutes and their first steps find the same errors.
+/// Returns the scenarios that are run in full: all scenarios under scripts/test --all. Otherwise omits studies with
+/// several subjects, which take half of the time; Commands.HaveTheNumbersOnRecord runs one trial of each. With
+/// AddressSanitizer, also omits scenarios of more than 10^4 steps, because they take minutes and their first steps find
+/// the same errors.
 std::vector<BundledScenario> scenarios_in_full() {
   std::vector<BundledScenario> scenarios = bundled_scenarios();
   constexpr std::int64_t kMostSanitizedSteps = 10'000;
-  if (HAPBENCH_TEST_SANITIZED != 0)
-    std::erase_if(scenarios, [](const BundledScenario& bundled) {
-      return load_scenario(bundled.file).scenario.time.steps > kMostSanitizedSteps;
-    });
+  std::erase_if(scenarios, [](const BundledScenario& bundled) {
+    const Scenario scenario = load_scenario(bundled.file).scenario;
+    if (HAPBENCH_TEST_SANITIZED != 0 && scenario.time.steps > kMostSanitizedSteps) return true;
+    const auto* hand = std::get_if<TrackingHandFields>(&scenario.hand);
+    return hand != nullptr && hand->subjects.size() > 1 && !test::runs_all_cases();
+  });
   return scenarios;
 }
 
@@ -308,7 +312,7 @@ std::string summary_without_work(Json summary) {
 }
 
 // Checks that results do not change by a byte in another process, from the scenario that the run wrote, with the scalar
-// build, and with brute force instead of skips. Scenarios of many steps are shortened. Only every eighth scenario is
+// build, and with brute force instead of skips. Scenarios of many steps are shortened. Only every 16th scenario is
 // tested, except in a soak test, because brute force is slow.
 TEST_F(BundledScenarios, GiveTheSameBytesInTheScalarBuildWithoutSkipsFromTheirEffectiveScenarios) {
   const fs::path first = *directory_ / "first", again = *directory_ / "again",
@@ -323,7 +327,7 @@ TEST_F(BundledScenarios, GiveTheSameBytesInTheScalarBuildWithoutSkipsFromTheirEf
     const auto warns_of_it = [start = "hapbench: warning: " + bundled.name + ": "](const std::string& warning) {
       return warning.starts_with(start);
     };
-    if (turn++ % 8 != 0 && !test::runs_all_cases()) {
+    if (turn++ % 16 != 0 && !test::runs_all_cases()) {
       std::erase_if(warnings, warns_of_it);
       continue;
     }
@@ -370,7 +374,15 @@ TEST_F(BundledScenarios, GiveTheSameBytesInTheScalarBuildWithoutSkipsFromTheirEf
 // Tests the results of commands other than `run`, and of every algorithm on scenes of every kind.
 TEST(Commands, HaveTheNumbersOnRecord) {
   const char* kShort = "time={\"step_s\":0.0005,\"steps\":600}";
+  // One subject in one trial, for the scenarios that scenarios_in_full() omits.
+  const auto one_trial = [](const std::string& name) {
+    return std::vector<std::string>{"run", name, "--set", "hand.trials=1", "--set", "hand.subjects=[{}]"};
+  };
   const std::vector<std::pair<std::string, std::vector<std::string>>> commands = {
+      {"run:rotational_averaging", one_trial("rotational_peg_in_hole_original_averaging")},
+      {"run:rotational_shaped", one_trial("rotational_peg_in_hole_shaped_stiffness")},
+      {"run:vertical_averaging", one_trial("vertical_peg_in_hole_original_averaging")},
+      {"run:vertical_shaped", one_trial("vertical_peg_in_hole_shaped_stiffness")},
       {"compare:peg", {"compare", "peg_in_hole_2d_shaped_stiffness"}},
       {"compare:springs", {"compare", "springs_limited_shaped_stiffness"}},
       {"compare:faces", {"compare", "parallel_faces"}},
