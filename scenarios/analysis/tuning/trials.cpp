@@ -340,8 +340,9 @@ void Trials::evaluate(TuneTrial& trial, Need need) {
   if (needs_depth(trial, need)) refine(trial, Refinement::depth);
 }
 
-/// Returns true if Refinement::depth may change the results that `need` requires. The tolerance of inside_max_m bounds
-/// its change. The change of inside_settled_m, a median of a few depths, has no known bound.
+/// Returns true if Refinement::depth may change the results that `need` requires. The change of inside_max_m is at most
+/// its tolerance (TuneTrial::depth_within). The change of inside_settled_m, a median of a few depths, has no known
+/// bound.
 bool Trials::needs_depth(const TuneTrial& trial, Need need) const {
   const MetricValues violated = violated_limits(trial);
   if (need <= Need::softness && !violated.empty()) return false;
@@ -350,7 +351,7 @@ bool Trials::needs_depth(const TuneTrial& trial, Need need) const {
     if (!depends_on_sampled_depth(name) || !value) continue;
     if (name != "inside_max_m") return true;
     const double largest = *value + trial.depth_within, smallest = *value - trial.depth_within;
-    double factor = 1.0;  // largest factor beyond the bound
+    double factor = 1.0;  // largest possible factor by which the depth is beyond its limit
     if (bound.max && largest > *bound.max) factor = ratio_beyond(largest, *bound.max);
     if (bound.min && smallest < *bound.min) factor = std::max(factor, ratio_beyond(*bound.min, smallest));
     // This factor counts only if no other limit is violated by a larger factor.
@@ -361,18 +362,18 @@ bool Trials::needs_depth(const TuneTrial& trial, Need need) const {
 }
 
 /// Returns the first hand with which the loop in contact is unstable at a stiffness between K and `highest` [N/m];
-/// empty if all loops are stable. Samples the stiffness in steps of 10 %.
+/// empty if all loops are stable. Samples the stiffness downwards from `highest` in steps of 10 %, and at K itself.
 std::optional<std::string> Trials::unstable_loop(Scenario scenario, const ContactOfTrial& contact, double K,
                                                  double highest, bool over_hands) const {
   constexpr double kStiffnessStep = 1.1;
-  for (double at = highest; at * kStiffnessStep > K; at /= kStiffnessStep) {
+  for (double at = highest;; at = std::max(K, at / kStiffnessStep)) {
     scenario.rendering.stiffness = at;
     const std::vector<NamedLoop> loops = loops_in_contact(scenario, contact, over_hands);
     if (loops.empty()) return std::nullopt;
     for (const auto& [hand, matrices] : loops)
       if (!is_stable_loop(matrices)) return hand;
+    if (!(at > K)) return std::nullopt;
   }
-  return std::nullopt;
 }
 
 std::vector<NamedLoop> Trials::loops_in_contact(const Scenario& scenario, const ContactOfTrial& contact,
@@ -382,8 +383,9 @@ std::vector<NamedLoop> Trials::loops_in_contact(const Scenario& scenario, const 
   return contact_loops(scenario, scaled(*contact.linear, contact.rendering, scenario.rendering), over_hands);
 }
 
-/// Returns the contact of a settled run, near the last step in which the tool was in contact. Returns no contact if the
-/// contact does not persist, because there is then no linear loop.
+/// Returns the contact of a settled run, linearised at the equilibrium of the tool that is found from the tool's state
+/// in its last step in contact. Returns no contact if the contact does not persist, because there is then no linear
+/// loop.
 ContactOfTrial Trials::contact_of(const CheckedScenario& scene, const RunStability& run) const {
   ContactOfTrial contact;
   contact.rendering = scene.scenario().rendering;
@@ -499,8 +501,8 @@ void Trials::measure_variants(TuneTrial& trial) {
   }
 }
 
-/// Adds the changes of the trial's metrics by a refinement to their errors. A metric that a refined run lacks has no
-/// error.
+/// Raises the error of each metric of the trial (TuneTrial::error) to the change of this metric by a refinement, if the
+/// change is larger. A metric that a refined run lacks has no error.
 void Trials::refine(TuneTrial& trial, Refinement refinement) {
   bool& is_done = refinement == Refinement::depth ? trial.has_error : trial.is_refined;
   if (is_done) return;
