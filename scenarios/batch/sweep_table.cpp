@@ -54,7 +54,7 @@ void SweepCounts::add(std::size_t run, const std::string& outcome, bool is_expec
   count.expected += is_expected;
   failed += is_failure;
   if (is_failure || is_expected) return;
-  unexpected.push_back(run);
+  unexpected[outcome].push_back(run);
 }
 
 std::vector<std::string> SweepTable::metrics() const {

@@ -28,9 +28,9 @@ struct SweepCounts {
   std::map<std::string, Count> outcomes;
   std::size_t runs = 0;
   std::size_t failed = 0;  ///< runs that ended with an exception
-  /// Numbers of the runs whose outcome their scenario does not expect, in the order of the table; failed runs are not
-  /// included.
-  std::vector<std::size_t> unexpected;
+  /// For each outcome, the numbers of the runs whose scenario does not expect this outcome, in the order of the table.
+  /// Runs that ended with an exception are not included.
+  std::map<std::string, std::vector<std::size_t>> unexpected;
 
   void add(std::size_t run, const std::string& outcome, bool is_expected);
 };

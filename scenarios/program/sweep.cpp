@@ -123,8 +123,14 @@ Json summary_json(const SweepTable& table) {
   const SweepCounts& counts = table.kept;
   Json outcomes = Json::object();
   for (const auto& [outcome, count] : counts.outcomes) outcomes[outcome] = count.runs;
-  Json json = {{"definition", table.about["definition"]}, {"runs", counts.runs},     {"outcomes", std::move(outcomes)},
-               {"unexpected", counts.unexpected.size()},  {"failed", counts.failed}, {"file", table.file.string()}};
+  std::size_t unexpected = 0;
+  for (const auto& [outcome, runs] : counts.unexpected) unexpected += runs.size();
+  Json json = {{"definition", table.about["definition"]},
+               {"runs", counts.runs},
+               {"outcomes", std::move(outcomes)},
+               {"unexpected", unexpected},
+               {"failed", counts.failed},
+               {"file", table.file.string()}};
   if (counts.runs > SweepTable::kMaxRows) return json;
   Json& rows = json["rows"] = Json::array();
   for (const SweepRow& row : table.rows) {
@@ -152,7 +158,7 @@ constexpr const char* kNoScene =
     "finished sweep";
 
 /// Throws the InputError of a sweep without --vary and --points. `scenario`: argument of the command, empty if it is
-/// missing. Precondition: it is not the folder of a finished sweep, which needs no such option.
+/// missing. Precondition: `scenario` is not the folder of a finished sweep, which needs neither option.
 [[noreturn]] void fail_without_axes(const std::string& scenario) {
   if (scenario.empty()) throw InputError(kNoScene);
   throw InputError(
@@ -190,14 +196,6 @@ Cases cases_of(const SweepCommand& command) {
   return {std::move(scenes), command.overrides, std::move(axes), std::move(sampling)};
 }
 
-/// Returns the outcomes that are failures, with their numbers of runs: "went_through 12, diverges 3".
-std::string failures_text(const SweepCounts& counts) {
-  std::vector<std::string> texts;
-  for (const auto& [outcome, count] : counts.outcomes)
-    if (is_failure(outcome)) texts.push_back(fmt::format("{} {}", outcome, count.runs - count.expected));
-  return fmt::format("{}", fmt::join(texts, ", "));
-}
-
 /// Prints the number of runs that failed or ended unexpectedly, and the first of these runs. Returns the exit status.
 int verdict(const Cases& cases, const SweepReport& report, const SweepCounts& counts, ProgramContext& context) {
   const std::string scene = cases.scenes().front().file.string();
@@ -211,14 +209,20 @@ int verdict(const Cases& cases, const SweepReport& report, const SweepCounts& co
   }
   // Runs that fail by their physics are results. Only an unmet "expect" of the user is an error.
   std::vector<std::size_t> unmet, failures;
-  for (const std::size_t run : counts.unexpected) (states_expectations(cases, run) ? unmet : failures).push_back(run);
+  std::vector<std::string> failures_by_outcome;  // "went_through 12"
+  for (const auto& [outcome, runs] : counts.unexpected) {
+    const std::size_t before = failures.size();
+    for (const std::size_t run : runs) (states_expectations(cases, run) ? unmet : failures).push_back(run);
+    if (failures.size() > before)
+      failures_by_outcome.push_back(fmt::format("{} {}", outcome, failures.size() - before));
+  }
   if (!failures.empty()) {
     print_note(context, fmt::format("{}: {} of {} runs failed ({}), the first: {}", scene, failures.size(), counts.runs,
-                                    failures_text(counts), run_text(failures.front())));
+                                    fmt::join(failures_by_outcome, ", "), run_text(std::ranges::min(failures))));
   }
   if (unmet.empty()) return kSuccess;
   print_note(context, fmt::format("{}: {} of {} runs did not meet the scenario's expect, the first: {}", scene,
-                                  unmet.size(), counts.runs, run_text(unmet.front())));
+                                  unmet.size(), counts.runs, run_text(std::ranges::min(unmet))));
   return kUnexpectedOutcome;
 }
 
