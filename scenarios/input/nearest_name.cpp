@@ -41,7 +41,7 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   return smallest;
 }
 
-/// Returns the new name of a renamed name if it is valid here, else an empty text.
+/// Returns the new name of `given` if `given` was renamed and the new name is in `valid`; else an empty text.
 std::string_view valid_new_name(std::string_view given, std::span<const std::string> valid) {
   const std::string_view now = new_name_of(given);
   return !now.empty() && std::ranges::find(valid, now) != valid.end() ? now : std::string_view();
@@ -53,15 +53,16 @@ std::string nearest_name(std::string_view given, std::span<const std::string> va
   if (const std::string_view now = valid_new_name(given, valid); !now.empty()) return std::string(now);
   const std::string lower = lower_case(given);
   std::string best;
-  // Accept a distance of up to a third of the number of letters, and always a distance of 2. For names of up to 4
-  // letters accept only 1, because short names would otherwise match almost any name.
+  // The largest accepted distance is a third of the number of letters in `given`, but at least 2. If `given` has at
+  // most 4 letters, the largest distance is 1, because so short a name would otherwise match almost any name.
   std::size_t best_distance = std::max<std::size_t>(given.size() > 4 ? 2 : 1, given.size() / 3) + 1;
   for (const std::string& name : valid) {
-    // Skip names whose difference in length alone exceeds the distance. A name from an untrusted file may be
-    // megabytes long.
+    // Skip a name that is so much shorter than `given` that it cannot be nearer than the best name. Without this check,
+    // edit_distance() would take too long for a `given` of megabytes, which an untrusted file may contain.
     if (given.size() >= name.size() + best_distance) continue;
-    const bool contains = given.size() >= 3 && name.find(given) != std::string::npos;
-    const std::size_t distance = contains ? 1 : edit_distance(lower, lower_case(name));
+    const std::string lower_name = lower_case(name);
+    const bool contains = given.size() >= 3 && lower_name.find(lower) != std::string::npos;
+    const std::size_t distance = contains ? 1 : edit_distance(lower, lower_name);
     if (distance < best_distance) {
       best_distance = distance;
       best = name;

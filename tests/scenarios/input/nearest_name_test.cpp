@@ -21,6 +21,7 @@ TEST(NearestName, ForgivesOneSlipOfTheFingers) {
 
 TEST(NearestName, KnowsANameByItsBeginningOrAPart) {
   EXPECT_EQ(nearest_name("stiffness", kNames), "stiffness_N_per_m");
+  EXPECT_EQ(nearest_name("STIFFNESS", kNames), "stiffness_N_per_m") << "upper and lower case are equal";
   EXPECT_EQ(nearest_name("ratio", kNames), "damping_ratio");
 }
 
