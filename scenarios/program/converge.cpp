@@ -42,7 +42,7 @@ constexpr const char *kOrders = "converge.csv", *kLevels = "converge_levels.csv"
                      *kTimes = "converge_levels_timing.csv";
 constexpr double kLargestRatio = 10.0;
 constexpr int kLevelsOfMetrics = 5, kLevelsOfSettings = 4;  ///< default numbers of levels, without and with --over
-constexpr double kMaxRequestedError = 0.01;                 ///< largest --to with --over [m]; more is a wrong unit
+constexpr double kMaxRequestedError = 0.01;                 ///< largest --to with --over [m]; more is in another unit
 constexpr double kRequestedError = 1e-6;                    ///< default of --to with --over [m]
 
 struct ConvergeOptions : CommonOptions {
@@ -50,7 +50,7 @@ struct ConvergeOptions : CommonOptions {
   std::vector<std::string> metrics;
   std::string field = kStepPath;
   std::vector<std::string> over;  ///< axes of a work-precision study; empty: the convergence of metrics
-  int levels = 0;                 ///< 0: the default
+  int levels = 0;                 ///< number of levels; 0: the default number
   double ratio = 2.0;
   std::string to;
 };
@@ -169,8 +169,8 @@ Columns<ConvergeStudy> order_columns() {
        "factor of safety; empty without an order",
        &Row::gci},
       {"asymptotic", "",
-       "true if the order is asymptotic: GCI_21 / (r^p GCI_32) is within 0.1 of 1 for the last three levels and for "
-       "the three before",
+       "true if the order is asymptotic: GCI_21 / (r^p GCI_32) is within 0.1 of 1 for the last three levels (level 3 "
+       "is the finest) and for the three before",
        &Row::asymptotic},
       {"low", "unit of the metric",
        "smallest result of the band (the last three levels that have the outcome of the finest level), for an extreme "
@@ -202,7 +202,8 @@ std::string verdict_text(const ConvergeStudy& study) {
   if (!study.band) return fmt::format("no order: {}", study.reason);
   const auto [low, high] = *study.band;
   if (low == high) return fmt::format("no order: {}; the last levels give {}", study.reason, significant(low, 6));
-  // The band of an extreme value is wider than its levels, because the extreme lies between two steps.
+  // The band of an extreme value is wider than the range of the levels' results, because the extreme lies between two
+  // time steps.
   const bool has_spread = std::ranges::none_of(
       study.levels, [low = low](const LevelRow& level) { return level.result && *level.result <= low; });
   return fmt::format("no order: {}; the last levels{} give {} ... {}", study.reason,
