@@ -148,7 +148,8 @@ class KnownAnswers(unittest.TestCase):
             true_work = float(np.sum(force[:-1] * np.diff(z)))
             energy = found["energy"]
             self.assertLessEqual(abs(energy["work_J"] - true_work), energy["work_error_J"])
-            # The bound must be useful: smaller than the energy stored in one cycle.
+            # The error bound must be useful: smaller than stiffness * mean depth * amplitude for each of the 20 cycles,
+            # which is half of the energy that the spring takes up in a cycle.
             self.assertLess(energy["work_error_J"], 20.0 * 1500.0 * 3e-3 * 1e-3)
 
     def test_position_that_moves_by_few_counts(self):
@@ -214,7 +215,7 @@ class KnownAnswers(unittest.TestCase):
 
 
 def handle_at_wall(mass, viscous, delay, stiffness, seconds=3.0):
-    """Returns the log of a handle that a hand of 200 N/m presses into a wall, integrated with twenty steps per
+    """Returns the log of a handle that a hand of 200 N/m presses into a wall, integrated with twenty steps per sampling
     period."""
     z, v, waiting, rows = 1e-3, 0.0, [0.0] * delay, []
     parts = 20
@@ -257,6 +258,21 @@ class Clocks(unittest.TestCase):
         log = table(z, wall(z, 1000.0))
         log["t"] = log["t"] + np.where(np.arange(len(z)) >= 1000, 0.2, 0.0)
         self.assertEqual(audit(log)["metrics"]["contacts"], 2)
+
+    def test_nothing_is_said_about_the_force_between_rows_with_missing_rows_between(self):
+        """Checks that the step and the reversal of a force that changes its sign while rows are missing are not
+        counted, and that they are counted if no row is missing."""
+        z = pressed(20)
+        force = wall(z, 1000.0)
+        force[1000:] *= -1.0
+        log = table(z, force)
+        self.assertEqual(audit(log)["metrics"]["force_reversals"], 1)
+        kept = np.ones(len(z), bool)
+        kept[[1000, 1001]] = False
+        found = audit({name: values[kept] for name, values in log.items()})["metrics"]
+        self.assertEqual(found["force_reversals"], 0)
+        # Without the change of sign, the force changes by at most 1000 N/m times the motion of a row, below 0.1 N.
+        self.assertLess(found["force_step_max_N"], 0.1)
 
 
 class Formats(unittest.TestCase):
@@ -323,7 +339,8 @@ class Formats(unittest.TestCase):
             self.assertEqual("in other units" in warned, is_reported, (factor, warned))
 
     def test_the_reason_is_of_the_contact_that_moves_furthest(self):
-        # The first contact moves by only a few counts. In both contacts, the force has the wrong sign.
+        # In the first contact, the position changes by only a few counts. In both contacts, the force has the wrong
+        # sign.
         short, far = -4e-5 * np.hanning(40), -2e-3 * np.hanning(400)
         z = np.concatenate([np.full(60, 1e-4), short, np.full(60, 1e-4), far, np.full(60, 1e-4)])
         z = 2e-5 * np.round(z / 2e-5)

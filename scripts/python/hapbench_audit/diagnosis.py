@@ -1,5 +1,5 @@
-"""Diagnoses a log with the rules of the diagnosis of `run`: the same texts and thresholds, but advice that applies to
-any engine."""
+"""Diagnoses a log with the rules by which `hapbench run` diagnoses a run: the same texts and thresholds, but advice
+that applies to any engine."""
 import json
 import math
 from functools import lru_cache
@@ -18,27 +18,28 @@ FLAT = 20  # smallest number of saturated rows for which the largest force count
 # Ratio of the rms vibration to the mean force above which the force vibrates; equals kMaxBuzz of the program.
 HAS_BUZZ = 0.1
 GAIN_MARGIN = 2.0  # linear limit divided by the stiffness that the advice recommends
-# Smallest force of a reversal, in standard deviations of the noise. Of 16 000 normal errors, one is larger.
+# Smallest force of a reversal, in standard deviations of the noise. On average, one of 16 000 normally distributed
+# errors is larger.
 NOISE = 4.0
 
 
 @lru_cache
 def rules():
     """Returns the rules of the program by name. Each rule has a unit, a threshold, and a sentence `says` in which {}
-    stands for the number of the rule."""
+    stands for the measured value."""
     answer = output_of_program("has the rules of the diagnosis", "describe", "diagnosis", "--json")
     return {rule["rule"]: rule for rule in json.loads(answer)}
 
 
 class Findings:
-    """The rules whose number exceeds the threshold, in the order of rules()."""
+    """The rules whose measured value exceeds the threshold, in the order of rules()."""
 
     def __init__(self):
         self._found = {}
 
     def add(self, name, value, attempt, more=""):
-        """Adds the rule `name` if its number `value` exceeds the threshold. `value` is None if the log does not
-        determine it. `attempt`: advice. `more`: text that is appended to the sentence of the rule.
+        """Adds the rule `name` if its measured value `value` exceeds the threshold. `value` is None if the log does not
+        determine the value. `attempt`: advice. `more`: text that is appended to the sentence of the rule.
         """
         rule = rules()[name]
         if value is None or not value > rule["threshold"]:
@@ -210,8 +211,8 @@ def against_pop(log, contacts, audit):
 
 
 def travel_share(log, contacts, row):
-    """Returns the displacement along the force from the row before to `row`, as a fraction of the travel of all rows in
-    contact."""
+    """Returns the displacement from the row before `row` to `row`, as a fraction of the travel of all rows in contact.
+    Displacement and travel are along main_direction() of the contact forces."""
     rows = np.flatnonzero(contacts.in_contact)
     position = log.position @ main_direction(log.force[rows])
     travel = float(np.ptp(position[rows]))
@@ -221,15 +222,15 @@ def travel_share(log, contacts, row):
 
 
 def share_of_largest(log, row):
-    """Returns the force step from the row before to `row`, as a fraction of the largest force of the log."""
+    """Returns the force step from the row before `row` to `row`, as a fraction of the largest force of the log."""
     size = float(np.linalg.norm(log.force, axis=1).max())
     return float(np.linalg.norm(log.force[row] - log.force[row - 1])) / size
 
 
 def motion_at(log, stiffness, row):
     """Returns the motion that can cause the force step at `row`: (largest displacement from one row to the next [m],
-    largest force change that the stiffness causes by such a displacement [N]). The rows go back from `row` by the
-    longest delay that the log allows, plus the rows of a held position. The force change is None without a
+    largest force change that the stiffness causes by such a displacement [N]). Considers `row` and the rows before it,
+    over the longest delay that the log allows plus the rows of a held position. The force change is None without a
     stiffness."""
     delay = 0 if not stiffness else round(stiffness["delay_interval_s"][1] / log.interval)
     held = 1 if log.held is None else round(log.held.rows)
@@ -244,9 +245,9 @@ def motion_at(log, stiffness, row):
 
 
 def reversals_per_s(log, contacts, audit):
-    """Returns the number of force reversals per second of settled contact. A reversal counts only if both forces exceed
-    NOISE times the noise. The noise is the median of `noise_N` over the contacts (see evidence_of_rows()).
-    """
+    """Returns the number of force reversals per second of settled contact. A reversal counts only if no row is missing
+    between the forces before and after it, and if both exceed NOISE times the noise. The noise is the median of
+    `noise_N` over the contacts (see evidence_of_rows())."""
     settled, force = contacts.settled, log.force
     seconds = audit["metrics"]["settled_s"]
     if audit["metrics"]["force_reversals_per_s"] is None:
@@ -256,7 +257,7 @@ def reversals_per_s(log, contacts, audit):
     ]
     size = np.linalg.norm(force, axis=1)
     is_large = size > (NOISE * float(np.median(noises)) if noises else 0.0)
-    reverses = np.einsum("ij,ij->i", force[1:], force[:-1]) < 0.0
+    reverses = (np.einsum("ij,ij->i", force[1:], force[:-1]) < 0.0) & (log.missing == 0)
     return float(np.sum(reverses & is_large[1:] & is_large[:-1] & settled[1:]) / seconds)
 
 

@@ -1,5 +1,5 @@
 """Computes metrics of the force: steps, vibration and frequencies. The metrics have the names and definitions of the
-metrics of `run`."""
+metrics of `hapbench run`."""
 import math
 
 import numpy as np
@@ -61,13 +61,14 @@ def even(log, contacts):
 
 
 def force_of(log, contacts):
-    """Returns the metrics of the force for the JSON. Force steps across missing rows are not counted."""
+    """Returns the metrics of the force for the JSON. Force steps and reversals across missing rows are not counted."""
     interval = log.interval
     size = np.linalg.norm(log.force, axis=1)
     change = np.diff(log.force, axis=0, prepend=log.force[:1])
     step = np.linalg.norm(change, axis=1)
     step[1:][log.missing > 0] = 0.0
     reverses = np.append(False, np.einsum("ij,ij->i", log.force[1:], log.force[:-1]) < 0.0)
+    reverses[1:][log.missing > 0] = False
     settled, landing = contacts.settled, contacts.landing
     settled_s = float(settled.sum() * interval)
     enough = settled_s >= MIN_SETTLED
@@ -177,16 +178,17 @@ def is_same(frequency, other, resolution):
 
 def peaks_of(log, contacts, spectrum, mean):
     """Returns frequency [Hz] and amplitude [N] of the strongest oscillations above LOWEST_PEAK, strongest first. A peak
-    exceeds the median amplitude of its neighbourhood, is no multiple of a stronger peak, and persists in the middle
-    third of the contact. `mean`: mean force in contact [N]."""
+    is at least 4 times as large as the median amplitude of its neighbourhood. Its frequency is no multiple of the
+    frequency of a stronger peak. The oscillation persists in the middle third of longest_stretch(). `mean`: mean force
+    in contact [N]."""
     if spectrum is None or not mean:
         return []
     frequency, amplitude, seconds = spectrum
     resolution = 4.0 / seconds  # width of a peak of the Hann window
     above = frequency > max(LOWEST_PEAK, MIN_PERIODS / seconds)
     if log.held_force is not None:
-        # A held force repeats its spectrum around multiples of the loop's rate. Frequencies above half of this rate are
-        # such copies.
+        # Holding a force repeats its spectrum around multiples of the rate of the loop. Oscillations above half of this
+        # rate are copies of lower frequencies.
         above &= frequency <= 0.5 / (log.interval * log.held_force.rows)
     # At each frequency, the amplitude of white noise exceeds r times its median with the probability 2^(-r^2).
     stands_out = math.sqrt(math.log2(seconds * frequency[-1] / FALSE_ALARM))
