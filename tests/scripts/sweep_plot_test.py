@@ -119,6 +119,13 @@ class Sweeps(Given):
             plotted(folder, "--where", "index>9", expected=2),
             f"hapbench: error: {table}: holds no row with index>9\n",
         )
+        first_metric = names.index("outcome") + 1
+        empty = [[*row[:first_metric], *[""] * (len(row) - first_metric)] for row in cells]
+        table.write_text("\n".join([first, *(",".join(row) for row in empty)]) + "\n")
+        self.assertEqual(
+            plotted(folder, expected=2),
+            f"hapbench: error: {table}: no row has a metric with a number\n",
+        )
 
     def test_first_order_indices_of_a_function_that_is_known(self):
         """Compares Sobol indices with the analytic values of Ishigami's function (Sobol and Levitan 1999). Its third

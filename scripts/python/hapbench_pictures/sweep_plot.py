@@ -60,6 +60,8 @@ class Sweep:
             for name in names[names.index("outcome") + 1 :]
             if any(is_number(row[name]) for row in self.rows)
         ]
+        if not metrics:
+            raise InputError(f"{file}: no row has a metric with a number")
         self.metric = metric or next((name for name in USUAL if name in metrics), metrics[0])
         if self.metric not in metrics:
             raise InputError(
@@ -85,8 +87,8 @@ class Sweep:
         return np.array([float(text) for text in texts]) if all(map(is_number, texts)) else texts
 
     def is_logarithmic(self, i):
-        """Returns True if the field was varied in equal ratios, and False if it was varied in equal steps. For a list
-        of other values, the ratio of the largest to the smallest value decides."""
+        """Returns True if the field was varied in equal ratios, and False if it was varied in equal steps. For all
+        other lists of numbers, spread_logarithmically() decides. Returns False for texts."""
         if "scale" in self.axes[i]:
             return self.axes[i]["scale"] == "log"
         values = self.column(self.fields[i])
@@ -191,7 +193,7 @@ def draw_cloud(sweep, over, sheet):
 
 
 def mark_classes(ax, sweep, x):
-    """Draws a mark below the axis for each run without a number, in the style of its class."""
+    """Draws a mark on the lower edge of the panel for each failed run, in the colour of its class."""
     for name, mine in sweep.classes.items():
         title, colour, _ = look_of_class(name)
         ax.plot(
@@ -290,8 +292,9 @@ def patch_of(name):
 
 
 def on_grid(over, values):
-    """Returns (values of the first field, values of the second field, metric at each pair of values), or None if the
-    points form no grid."""
+    """Returns (values of the first field, values of the second field, metric at each pair of values; NaN at a pair
+    without a run). Returns None if the runs form no grid: a field has one value only, or there are more than four pairs
+    for each run."""
     (rows, i), (cells, j) = (np.unique(of.values, return_inverse=True) for of in over)
     if len(rows) * len(cells) > 4 * len(values) or min(len(rows), len(cells)) < 2:
         return None
@@ -363,16 +366,17 @@ def spans_decades(values):
 
 @dataclass(frozen=True)
 class Sensitivity:
-    """Influence of each field of a sampled sweep on a metric, computed from the sweep's rows: Spearman's rank
+    """Influence of one field i of a sampled sweep on a metric y, computed from the sweep's rows: Spearman's rank
     correlation, and the first-order Sobol index S_i = Var(E[y | x_i]) / Var(y), the fraction of the metric's variance
     that field i explains alone.
 
-    E[y | x_i] is a least-squares fit. For a field with a range, it has up to six cosines cos(pi k u) of the relative
-    position u in the range (Plischke, "How to compute variance-based sensitivity indicators with your spreadsheet
-    software", Environmental Modelling & Software 35, 2012). For listed values, it is the mean at each value. S_i is the
-    R^2 of the fit, adjusted for the number of functions (Ezekiel), so that a field without influence has the mean 0.
-    Its standard error is the jackknife's over the rows; the error of a Latin hypercube or a Sobol sequence is smaller.
-    Variation faster than the sixth cosine, such as a jump, is underestimated: for a step in the middle by a fifteenth.
+    E[y | x_i] is a least-squares fit. For a field with a range, the fit has up to six cosines cos(pi k u) of the
+    relative position u in the range (Plischke, "How to compute variance-based sensitivity indicators with your
+    spreadsheet software", Environmental Modelling & Software 35, 2012). For listed values, the fit is the mean at each
+    value. S_i is the R^2 of the fit, adjusted for the number of functions (Ezekiel), so that S_i has the mean 0 for a
+    field without influence. The standard error of S_i comes from a jackknife over the rows; the error of a Latin
+    hypercube or a Sobol sequence is smaller. Variation faster than the sixth cosine, such as a jump, is underestimated:
+    for a step in the middle by a fifteenth.
 
     The largest values dominate a variance. For a positive metric that spans more than a decade, the index of the
     logarithm is also computed, so that three outliers do not hide a field that determines all other values.
