@@ -62,6 +62,21 @@ class Page(Given):
             (self.root / "springs" / "trajectory.csv").read_bytes(),
         )
 
+    def test_the_commands_load_the_modules(self):
+        """Checks that the command that repeats a run loads the module of the run, and that the page says that the
+        module is recorded without its path."""
+        run = self.copy("mesh")
+        summary = json.loads((run / "summary.json").read_text())
+        summary["provenance"]["plugin"] = {"file": "mine.so", "hash": "0"}
+        (run / "summary.json").write_text(json.dumps(summary))
+        page = self.page(run, self.root / "springs")
+        self.assertEqual(
+            re.findall(r"scenario.effective.json( --module \S+)? --out", page),
+            [" --module mine.so", ""],
+        )
+        self.assertIn("replace mine.so by the path on this machine", page)
+        self.assertNotIn("on this machine.</p>", self.page(self.root / "springs"))
+
     def test_the_replay_has_every_run_and_a_scene_for_each_surface(self):
         (scene,) = self.scenes(self.root / "peg")
         self.assertEqual(

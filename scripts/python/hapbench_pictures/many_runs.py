@@ -1,7 +1,6 @@
 """Page of `hapbench report` for many runs. It begins with a table of metrics for each law, with mean and spread. Then
 follow the differences between laws, curves of the mean with a band, and every run in a folded section."""
 import re
-from collections import Counter
 
 import numpy as np
 from scipy import stats
@@ -33,7 +32,15 @@ from .quantities import SHORT, TRAJECTORY, USUAL, Samples, tables_of
 from .ranking_plot import failures_text, ranking_figure
 from .ranking_values import RESOLUTION, has_repetitions, value_of
 from .run_plot import profile_of
-from .sections import FIRST, diagnosed, first_table, metric_names, plugin_option, scenario_section
+from .sections import (
+    FIRST,
+    diagnosed,
+    first_table,
+    metric_names,
+    module_options,
+    note_on_modules,
+    scenario_section,
+)
 
 MANY_LAWS = 8  # number of laws, over all scenes, above which several scenes count as many runs
 ON_PAGE = Sheet(10.0, 3)  # size of the pictures on the page [inch]
@@ -364,13 +371,13 @@ def scenarios(scenes):
 
 def again(runs, words):
     given = shell_line(*words)
-    modules = Counter(plugin_option(run) for run in runs)
     repeat = (
         f"find {given} -name scenario.effective.json | while read -r s; do hapbench run "
-        f'"$s"{next(iter(modules))} --quiet --out "again/${{s%/*}}"; done'
+        f'"$s"{module_options(runs)} --quiet --out "again/${{s%/*}}"; done'
     )
     return (
-        f"<p>This command repeats all {len(runs)} runs, with identical results:</p>{command(repeat)}"
+        f"<p>This command repeats all {len(runs)} runs, with identical results:</p>"
+        f"{command(repeat)}{note_on_modules(runs)}"
         "<p>These commands write the picture and this page again:</p>"
         f"{command(f'hapbench plot {given}{chr(10)}hapbench report {given}')}"
         "<p class=note>The paths belong to the machine that wrote this page.</p>"

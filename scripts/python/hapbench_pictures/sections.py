@@ -1,5 +1,6 @@
 """Sections with texts and tables of the page about runs."""
 import json
+from pathlib import Path
 
 from hapbench.results import at
 from hapbench_command import file_word, shell_line
@@ -153,7 +154,7 @@ def scenario_section(runs, labels):
 
 def commands_section(runs, words):
     lines = [
-        f"hapbench run {shell_line(file_word(run.folder / 'scenario.effective.json'))}{plugin_option(run)} "
+        f"hapbench run {shell_line(file_word(run.folder / 'scenario.effective.json'))}{module_options([run])} "
         f"--out {shell_line(file_word(run.folder.name + '_again'))}"
         for run in runs
         if run.scenario
@@ -162,6 +163,7 @@ def commands_section(runs, words):
     return (
         (
             f"<p>These commands repeat each run, with identical results:</p>{command(chr(10).join(lines))}"
+            f"{note_on_modules(runs)}"
             if lines
             else ""
         )
@@ -172,10 +174,27 @@ def commands_section(runs, words):
     )
 
 
-def plugin_option(run):
-    """Returns the options --module that load the modules of a run: its force law, and its source of contacts."""
+def note_on_modules(runs):
+    """Returns a note that the commands need the paths of the modules. A summary records only the name of a module that
+    has a force law."""
+    files = (Path(file) for run in runs for file in module_files(run))
+    names = sorted({file.name for file in files if len(file.parts) == 1})
+    if not names:
+        return ""
+    return f"<p class=note>In the commands, replace {text(', '.join(names))} by the path on this machine.</p>"
+
+
+def module_options(runs):
+    """Returns the options --module that load the modules of runs, each module once: force laws, and sources of
+    contacts."""
+    files = dict.fromkeys(file_word(file) for run in runs for file in module_files(run))
+    return "".join(f" --module {shell_line(file)}" for file in files)
+
+
+def module_files(run):
+    """Returns the files of the modules of a run: of its force law, and of its source of contacts."""
     files = [at(run.summary, "/provenance/plugin/file")]
     source = at(run.scenario, "/rendering/contact_source")
     if isinstance(source, dict) and source.get("type") == "plugin":
         files.append(run.folder / source["file"])
-    return "".join(f" --module {shell_line(file_word(file))}" for file in files if file)
+    return [file for file in files if file]
