@@ -1,9 +1,11 @@
-// Tests the lines with which `tune` describes how to open its scenario in a haptic loop, for other scales of the mount.
+// Tests the lines with which `tune` describes how to open its scenario in a haptic loop. Also tests the overrides for a
+// mount with another scale.
 
 #include "scenarios/program/tune/loop_lines.hpp"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -46,7 +48,7 @@ std::vector<double> forces(double scale, const std::vector<std::string>& overrid
 
 TEST(LoopLines, GiveTheForceOfScaleOneAtEveryScale) {
   const std::vector<double> known = forces(1.0, {});
-  const double largest = std::abs(*std::max_element(known.begin(), known.end()));
+  const double largest = std::abs(*std::ranges::max_element(known, {}, [](double force) { return std::abs(force); }));
   ASSERT_GT(largest, 1.0);
   for (const double scale : {0.25, 2.0, 3.0}) {
     const std::vector<std::string> overrides = overrides_for_scale(Json::parse(kScene), scale);

@@ -16,6 +16,7 @@
 #include "sim/loop/simulation.hpp"
 #include "tests/support/contact_sets.hpp"
 #include "tests/support/scale.hpp"
+#include "tests/support/searches.hpp"
 
 namespace hapbench::contacts_test {
 namespace {
@@ -258,9 +259,10 @@ TEST_P(MultiRateContactsOfEverySchedule, AreTheFreshOnesOfTheQueryMovedAsTheTool
       }
       EXPECT_EQ(contacts.size(), next);
       // A second query within the step gives the same contacts.
-      ContactBuffer before = contacts;
+      const ContactBuffer before = contacts;
       source.contacts_at(now, contacts);
-      EXPECT_EQ(before.size(), contacts.size());
+      EXPECT_TRUE(test::same_contacts(before, contacts));
+      for (std::size_t i = 0; i < contacts.size(); ++i) EXPECT_EQ(before.depth[i], contacts.depth[i]);
     }
     EXPECT_EQ(source.schedule()->queries, 1 + (kRows - 1) / static_cast<std::uint64_t>(schedule.every));
     EXPECT_EQ(source.schedule()->lost, lost.size());
