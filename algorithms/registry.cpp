@@ -23,7 +23,8 @@ HAPBENCH_ALGORITHMS(HAPBENCH_DECLARE)
 
 namespace {
 
-/// The table. Built at first use, because initialisers of static variables in other files may call it.
+/// The algorithm table. It is built at its first use, because initialisers of static variables in other files may
+/// already use the table.
 struct Table {
 #define HAPBENCH_ENTRY(name) name##_entry(),
   std::deque<AlgorithmEntry> entries = {HAPBENCH_ALGORITHMS(HAPBENCH_ENTRY)};

@@ -118,8 +118,8 @@ std::unique_ptr<DepthModel> make_depth_model(const RenderingConfig& config);
 /// no such law.
 std::unique_ptr<ForceLaw> make_law(std::string_view name, const RenderingConfig& config);
 
-/// Creates the algorithm of `config` with its prescribed stages, followed by its force stage and its passivity
-/// controller if configured. Throws std::invalid_argument for unknown names.
+/// Creates the algorithm of `config` with the stages that the algorithm prescribes, followed by the force stage and by
+/// the passivity controller, each only if `config` sets it. Throws std::invalid_argument for unknown names.
 std::unique_ptr<ForceAlgorithm> make_algorithm(const RenderingConfig& config);
 
 }  // namespace hapbench

@@ -20,7 +20,7 @@ class DepthModel {
   virtual ~DepthModel() = default;
   /// Called before the first step with the shell of the contacts. Only this function may allocate.
   virtual void prepare(const PointShell& shell) { static_cast<void>(shell); }
-  /// Returns to t = 0.
+  /// Resets the memory of the model to t = 0.
   virtual void reset() noexcept {}
   /// Writes depth and gradient of all contacts and pads the buffer. Called once in every step. In consecutive
   /// steps without contacts, all calls but the first may be skipped. Precondition: every point lies inside the
@@ -42,8 +42,8 @@ const DepthModelEntry* find_depth_model(std::string_view name);
 std::unique_ptr<DepthModel> make_depth_model(std::string_view name);
 
 /// Contact source of a shell: a search finds the colliding points, and a depth model computes their depths and
-/// gradients. In consecutive steps without contacts, the depth model is called in the first step only, unless
-/// `skips` is off.
+/// gradients. With Skips::on, the depth model is called only in the first of consecutive steps without contacts. With
+/// Skips::off, it is called in every step.
 class ShellSource final : public ContactSource {
  public:
   /// Shell and tool must outlive the source. `search` must refer to this shell and this tool.

@@ -47,7 +47,7 @@ class SeriesLaw : public ForceLaw {
 
   bool gives_weights() const noexcept override { return false; }
 
-  /// The coupling reduces the normal velocity by the same matrix as the stiffness tensor.
+  /// The coupling multiplies the normal velocity by M^-1, as it does the stiffness tensor S_sum.
   Vec3 turning_velocity(const ContactBuffer& contacts, const Mat3& S, const ToolState& tool) const noexcept override {
     return series_.solve(ForceLaw::turning_velocity(contacts, S, tool));
   }
@@ -139,15 +139,17 @@ constexpr AlgorithmParameter kSaturation[] = {
      30.0,
      "F_s: largest force of the coupling spring; default: the force limit of the trainer"}};
 
-/// Limits of Newton's method: number of steps and smallest fraction of a step. If the method ends before the balance
-/// is reached, the rendered force is still the force of the coupling at the last displacement.
+/// Limits of Newton's method in StaticCoupling: number of Newton steps, and smallest fraction of a Newton step that is
+/// tried. If the method ends before the forces on the copy of the tool balance, the rendered force is still the force
+/// of the coupling at the last displacement.
 constexpr int kMaxSteps = 30;
 constexpr double kMinFraction = 1e-6;
 /// Smallest stiffness of the coupling along its force, relative to the stiffness perpendicular to it. Far beyond
 /// saturation, rounding would make this stiffness zero or negative.
 constexpr double kMinStiffnessRatio = 1e-12;
-/// Tolerated imbalance, relative to K sqrt(sum p_i^2) with the depths p_i of the copy (see StaticCoupling). The
-/// rounding error of a sum of n forces is below 1e-16 sqrt(n) times K sqrt(sum p_i^2).
+/// Tolerated norm of the sum of the forces on the copy of the tool (see StaticCoupling), relative to K sqrt(sum p_i^2)
+/// with the depths p_i of the contacts in the copy. The rounding error of a sum of n forces is below 1e-16 sqrt(n)
+/// times K sqrt(sum p_i^2).
 constexpr double kMaxImbalance = 1e-13;
 
 double saturation_of(const RenderingConfig& config) {
@@ -160,8 +162,9 @@ double saturation_of(const RenderingConfig& config) {
 ///
 ///   W(s) + K/2 sum p_i^2,  W(s) = F_s^2 / K_vc (sqrt(1 + (K_vc |s| / F_s)^2) - 1)
 ///
-/// with the depths p_i of the copy. The balance does not depend on the previous step, so the force is the
-/// derivative of a potential of the contacts.
+/// with the depths p_i of the contacts in the copy, the stiffness K_vc of the spring at s = 0 and its saturation force
+/// F_s. The balance does not depend on the previous step, so the force is the derivative of a potential of the
+/// contacts.
 class StaticCoupling final : public ForceLaw {
  public:
   explicit StaticCoupling(const RenderingConfig& config)
@@ -192,7 +195,7 @@ class StaticCoupling final : public ForceLaw {
 
   bool gives_weights() const noexcept override { return false; }
 
-  /// The coupling reduces the normal velocity by the same matrix as the stiffness tensor.
+  /// The coupling multiplies the normal velocity by `transmission_`, as it does the stiffness tensor of the contacts.
   Vec3 turning_velocity(const ContactBuffer& contacts, const Mat3& S, const ToolState& tool) const noexcept override {
     return transmission_ * ForceLaw::turning_velocity(contacts, S, tool);
   }
@@ -270,7 +273,8 @@ class StaticCoupling final : public ForceLaw {
                                       ///< the contacts' force on a tool without coupling to the force with coupling
 };
 
-/// Bound of |f_spring| / K: the coupling force balances the contacts, at most n K d, and is below F_s.
+/// Bound of |f_spring| / K for n contacts with depths <= d: the coupling force equals the sum of the contact forces,
+/// which is at most n K d. The coupling force is also below its saturation F_s.
 double static_coupling_bound(const RenderingConfig& config, const ToolShape&, std::size_t n, double depth) {
   const double summed = static_cast<double>(n) * depth;
   return config.stiffness > 0.0 ? std::min(summed, saturation_of(config) / config.stiffness) : summed;

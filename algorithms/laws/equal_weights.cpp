@@ -65,7 +65,7 @@ AlgorithmEntry summation_entry() {
           "integrator's limit (thesis A.3)",
       .parameters = kStiffnessAlone,
   };
-  // All springs may pull in one direction.
+  // The bound is the force of all n springs, because all of them may pull in the same direction.
   return {.info = &kInfo, .make_law = law_of<Summation>, .force_bound = bound_of_springs<>};
 }
 

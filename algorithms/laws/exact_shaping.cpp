@@ -29,8 +29,8 @@ constexpr int kMaxNewtonSteps = 1000;  ///< maximum number of Newton steps for e
                                        ///< arithmetic
 constexpr int kMaxLineSearchSteps = 40;
 constexpr int kMaxRefinements = 5;
-/// Largest residual of the optimality condition that is only rounding: S is computed from up to n terms of at most 1 in
-/// eight partial sums.
+/// A residual of the optimality condition up to this value counts as rounding error. S, which the residual contains, is
+/// the sum of up to n terms of at most 1 each, added in eight partial sums.
 constexpr double kResidualRounding = 1e-14;
 
 /// The identity tensor in the basis of TensorPack.
@@ -114,10 +114,12 @@ Vec6 dual_gradient(const Vec6& w, double eps, const TensorSums& sums) noexcept {
   return eps * w - identity6() + sums.S;
 }
 
-/// Line search by bisection: moves w towards `target` until the slope of the dual function along the path has
-/// halved. The function is convex and piecewise quadratic, so its slope is monotone. The line search decreases the
-/// function, and Newton's method therefore converges from any start. On entry `sums` holds the sums at `target`, on
-/// return at w. Returns false if the slope is only rounding.
+/// Line search by bisection: moves w to `target` if the dual function still decreases there. Otherwise moves w towards
+/// `target` to a point where the slope of the dual function along this line is at most half of `slope_at_w`, the slope
+/// at the start (both as absolute values). The function is convex and piecewise quadratic, so its slope is monotone.
+/// The line search decreases the function, and Newton's method therefore converges from any start. On entry `sums`
+/// holds the sums at `target`, on return at w. Returns false if no such point is found, because `slope_at_w` is only
+/// rounding.
 template <class Tensors>
 bool line_search(const Tensors& tensors, const Vec6& target, double eps, double slope_at_w, Vec6& w,
                  TensorSums& sums) noexcept {
@@ -137,7 +139,7 @@ bool line_search(const Tensors& tensors, const Vec6& target, double eps, double 
 }
 
 /// Newton's method for one epsilon. On entry `sums` holds the sums at w; updates w and `sums`. Adds the number of
-/// steps to `steps`. Returns true if it has converged to rounding.
+/// steps to `steps`. Returns true if the method has converged up to rounding.
 template <class Tensors>
 bool newton(const Tensors& tensors, double eps, int max_steps, Vec6& w, TensorSums& sums, int& steps) noexcept {
   const double n = static_cast<double>(tensors.size);
@@ -188,13 +190,14 @@ int solve(const Tensors& tensors) noexcept {
   if (!newton(tensors, kEps, kDirectSteps, w, sums, steps)) {
     // The direct steps do not converge for dense clusters of nearly equal gradients. The optimum gives positive weights
     // to a few of hundreds of contacts, and Newton's method would find these contacts one by one. Following the optimum
-    // from a large epsilon to a small one takes a few steps for each epsilon. Measured: at most 32 steps in total for
-    // 6e6 adversarial sets instead of a hundred, and 135 for the worst of 1e6 mixtures of such sets.
+    // from a large epsilon to a small epsilon takes a few steps for each epsilon. Measured total number of steps: at
+    // most 32 for 6e6 adversarial sets of contacts, which take a hundred direct steps, and 135 for the worst of 1e6
+    // mixtures of such sets.
     double eps = kPath[0];
     w = identity6() / eps;
     sums = evaluate_at(tensors, w);
     for (const double next : kPath) {
-      // Keep Y = eps w at the next epsilon: the weights scale, and the active set stays.
+      // Keep the product eps w at the next epsilon: w and the weights scale by eps / next, and the active set stays.
       w *= eps / next;
       sums.S *= eps / next;
       eps = next;
@@ -283,8 +286,8 @@ struct Groups {
   }
 };
 
-/// Exact shaping of groups of contacts. Unlike the reduction, it drops no contact and does not depend on their
-/// order.
+/// Exact shaping of groups of contacts. Unlike the point reduction, it drops no contact, and its result does not depend
+/// on the order of the contacts.
 ///
 /// The sphere of directions is divided into 1350 fixed cells, kDirectionCells x kDirectionCells on each face of
 /// a cube. Contacts whose gradients lie in the same cell form a group k and share a weight c_k. A group acts by
@@ -292,8 +295,8 @@ struct Groups {
 ///
 /// In each group with positive weight, the mean stiffness ratio is 1. As for exact_shaping, lambda_max(S) <= (1
 /// + sqrt 3)/2; the proof needs tensors of trace 1, not of rank 1. With one contact in each group the law
-/// equals exact_shaping. Contacts on both sides of a cell's border form two groups, which share the weight.
-/// O(n) once, then O(groups) for each Newton step.
+/// equals exact_shaping. Contacts with nearly equal gradients on both sides of a cell's border form two groups, and the
+/// weight is divided between the two. O(n) once, then O(groups) for each Newton step.
 class MergedShaping final : public ForceLaw {
  public:
   explicit MergedShaping(const RenderingConfig& config) : ForceLaw(config) { groups_.weight = weight_.data(); }

@@ -37,14 +37,15 @@ class ForceLaw {
   /// `tip` [m]. The arguments are the contacts and the spring force [N] of that call. Default for weighted
   /// springs: energy 1/2 K sum c_i d_i^2, and each spring force acts at its colliding point.
   virtual SpringState spring_state(const ContactBuffer& contacts, const Vec3& spring, const Vec3& tip) const noexcept;
-  /// Returns the contribution of the tool's angular velocity omega to the normal velocity [m/s] of the last
-  /// `evaluate`; the contribution of its translation v is S v. The arguments are the contacts and S of that
-  /// call. Default for weighted springs: sum c_i <omega x r_i, u_i> u_i, with r_i from the tip centre to the
-  /// colliding point. O(n).
+  /// Returns the part of the normal velocity [m/s] that the tool's angular velocity omega contributes. The tool's
+  /// translational velocity v contributes S v. The arguments are the contacts and S of the last `evaluate`, and the
+  /// tool in that step. Default for weighted springs: sum c_i <omega x r_i, u_i> u_i, with r_i from the tip centre to
+  /// the colliding point. O(n).
   virtual Vec3 turning_velocity(const ContactBuffer& contacts, const Mat3& S, const ToolState& tool) const noexcept;
   /// Returns false for laws that are not weighted springs. Their contacts have no individual loads.
   virtual bool gives_weights() const noexcept { return true; }
-  /// Returns the fault of external code since the last reset, or null. After a fault the force is NaN.
+  /// Returns the text of the fault of external code since the last reset; null without a fault. After a fault the force
+  /// is NaN.
   virtual const char* fault() const noexcept { return nullptr; }
   /// Returns the number of solver iterations since the last reset.
   std::uint64_t iterations() const noexcept { return iterations_; }
@@ -75,8 +76,8 @@ void set_weights(ContactBuffer& contacts, double c) noexcept;
 /// Returns the sum of the gradients u_i. O(n).
 Vec3 gradient_sum(const ContactBuffer& contacts) noexcept;
 
-/// Returns the mean of the vectors from the tip centre `tip` to the colliding points [m], with the buffer's
-/// weights; zero if the weights sum to zero. O(n).
+/// Returns the mean of the vectors from the tip centre `tip` to the colliding points [m], weighted by the weights in
+/// the buffer; zero if the weights sum to zero. O(n).
 Vec3 mean_arm(const ContactBuffer& contacts, const Vec3& tip) noexcept;
 
 /// Returns f_spring = -K sum c_i d_i u_i and S = sum c_i u_i u_i^T for the weights in the buffer. O(n).

@@ -12,8 +12,9 @@ namespace {
 /// noise, and the force is zero.
 constexpr double kMinMeanGradient = 1e-9;
 
-/// A law with one spring, compressed by d_r = depth(contacts, |sum u_i|) [m]. Sets all weights to 1, because
-/// these laws define no point of application.
+/// A law with one spring, compressed by d_r = depth(contacts, |sum u_i|) [m]. original_averaging and highest_depth
+/// define no point of application. All weights are therefore set to 1, so that the force acts at the mean position of
+/// the contacts.
 template <double (*depth)(const ContactBuffer&, double) noexcept>
 class AveragedDirection final : public SingleSpringLaw {
  public:
@@ -40,13 +41,14 @@ double highest_depth(const ContactBuffer& contacts, double) noexcept {
   return *std::max_element(depths, depths + static_cast<std::ptrdiff_t>(contacts.size()));
 }
 
-/// Bound of |f_spring| / K = sum d_i / |sum u_i|. The force is zero unless |sum u_i| > kMinMeanGradient n.
+/// Bound of |f_spring| / K for n contacts with depths <= d. The force is zero unless |sum u_i| > kMinMeanGradient n.
+/// Then |f_spring| / K = sum d_i / |sum u_i| < d / kMinMeanGradient.
 double original_averaging_bound(const RenderingConfig&, const ToolShape&, std::size_t n, double depth) {
   return 1e9 * std::min(1.0, static_cast<double>(n)) * depth;
 }
 
-/// Smallest ratio of scaled to unscaled energy. Below this value, the springs cancel each other, and a division by
-/// the ratio would amplify rounding noise.
+/// Smallest ratio sigma of scaled to unscaled energy that gives a force. Up to this value, the springs cancel each
+/// other, a division by sigma would amplify rounding noise, and the force is zero.
 constexpr double kMinEnergyRatio = 1e-12;
 
 class Tandpasta final : public ForceLaw {
@@ -131,7 +133,7 @@ AlgorithmEntry highest_depth_entry() {
   };
   return {.info = &kInfo,
           .make_law = law_of<AveragedDirection<highest_depth>>,
-          // d_r is one of the depths and u_r a unit vector.
+          // d_r is one of the depths and u_r a unit vector, so the force is at most the force of one spring.
           .force_bound = bound_of_springs<1>,
           .may_reduce = false};
 }

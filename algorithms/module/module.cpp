@@ -18,8 +18,8 @@ namespace {
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t kMaxParameters = 1000;
 
-/// Number of guard values before and after a law's weights, and the value of guards and of weights that the law
-/// has not written. No computation produces this signalling NaN.
+/// kGuards: number of guard values on each side of a law's weights. kUnwritten: the value of guards, and of weights
+/// that the law has not written. No computation produces this signalling NaN.
 constexpr std::size_t kGuards = 8;
 constexpr auto kUnwritten = std::uint64_t{0x7ff4deadc0ffee00};
 

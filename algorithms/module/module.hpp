@@ -25,8 +25,8 @@ struct Module {
 inline constexpr std::size_t kFaultTextSize = 320;
 
 /// The state of a module in one run. An exception counts as a fault, like a fault that the module reports. After a
-/// fault, the module is not called again until the next reset. If the module could not create its state, it is never
-/// called.
+/// fault, the module is not called again until the next reset. If the module could not create its state, it is not
+/// called again, even after a reset.
 class ModuleState {
  public:
   explicit ModuleState(Module module) : module_(std::move(module)) {}
@@ -37,7 +37,7 @@ class ModuleState {
   /// Creates a new state for `run`, after setting HapbenchRun::data from the module's table. Returns false after a
   /// fault.
   bool create(const double* values, const char* config, HapbenchRun run) noexcept;
-  /// Returns to t = 0 and clears the fault, unless the state could not be created.
+  /// Resets the state to t = 0 and clears the fault. Does nothing if the state could not be created.
   void reset() noexcept;
   /// Evaluates one step. Returns false after a fault in this step or in an earlier step.
   bool step(const HapbenchPose* pose, HapbenchContacts& contacts, HapbenchForce* force) noexcept;
@@ -49,8 +49,9 @@ class ModuleState {
 
  private:
   void destroy() noexcept;
-  /// Calls `call(fault)`, which calls the module's function with this name and returns true if it succeeded.
-  /// Turns a failure or an exception into a fault and returns false.
+  /// Returns true if `call(text)` returns true. `call` calls a function of the module, which may write the reason of a
+  /// failure into the buffer `text`. If `call` returns false or throws, records a fault that names `function`, and
+  /// returns false.
   template <class Call>
   bool call_guarded(const char* function, const Call& call) noexcept;
 

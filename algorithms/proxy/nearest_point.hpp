@@ -9,8 +9,8 @@
 
 #include "sim/core/types.hpp"
 
-/// Nearest point of a polyhedron in N dimensions: the quadratic programs of the proxies. N = 3 for a proxy that only
-/// translates, N = 6 for a proxy that also rotates.
+/// Finds the point x of a polyhedron in N dimensions that is nearest to a given point t. These are the quadratic
+/// programs of the proxies: N = 3 for a proxy that only translates, N = 6 for a proxy that also rotates.
 ///
 ///   minimise |x - t|^2   subject to   d_i + <u_i, x> <= 0
 ///
@@ -28,8 +28,9 @@ template <int N>
 using Matrix = Eigen::Matrix<double, N, N>;
 
 /// Threshold for the squared sine of the angle between a gradient and the span of other gradients. Below it, the
-/// gradient counts as part of the span. Gradients on one flat face of the tool, or along one line of its side, differ
-/// only by rounding (1e-15). The threshold is an angle of 3e-8 rad. Other neighbouring gradients differ by far more.
+/// gradient counts as part of the span. Gradients on one flat face of the tool, or along one straight line of its
+/// curved side, differ only by rounding (1e-15). The threshold is an angle of 3e-8 rad. Other neighbouring gradients
+/// differ by far more.
 inline constexpr double kInSpan = 1e-15;
 inline constexpr int kMaxIterations = 100;
 inline constexpr double kNever = std::numeric_limits<double>::infinity();
@@ -168,11 +169,11 @@ bool solve_exactly(const Rows& rows, double tolerance, Vector<N>& x, ActiveSet<N
   return true;
 }
 
-/// The least-squares compromise of contradictory constraints at one move x,
+/// Value, gradient and Hessian at one move x of the function
 ///
-///   1/2 sum max(0, d_i + <u_i, x>)^2 + epsilon/2 |x - t|^2:
+///   1/2 sum max(0, d_i + <u_i, x>)^2 + epsilon/2 |x - t|^2,
 ///
-/// value, gradient and Hessian.
+/// whose minimum is the least-squares compromise between contradictory constraints. `wanted` is t.
 template <int N>
 struct Compromise {
   double value;
@@ -196,9 +197,9 @@ struct Compromise {
   }
 };
 
-/// Minimises the compromise by Newton's method with a line search. The method converges, because the problem is convex
-/// and piecewise quadratic. On entry, `x` is t; on return, `x` is the minimum. Returns value, gradient and Hessian at
-/// the minimum. Adds the number of Newton steps to `iterations`.
+/// Minimises the function of Compromise by Newton's method with a line search. The method converges, because the
+/// function is convex and piecewise quadratic. On entry, `x` is t; on return, `x` is the minimum. Returns value,
+/// gradient and Hessian at the minimum. Adds the number of Newton steps to `iterations`.
 template <int N, class Rows>
 Compromise<N> solve_least_squares(const Rows& rows, double epsilon, double tolerance, Vector<N>& x,
                                   int& iterations) noexcept {

@@ -55,8 +55,8 @@ double largest_length(const ContactBuffer& c, const Vec3& wanted) noexcept {
 /// Factor on the margin of the contact search. The margin of the search must exceed the largest move of the proxy by
 /// the rounding errors of margin and move.
 constexpr double kQueryMargin = 1.0 + 1e-6;
-/// Distance, relative to the spacing, by which a point may lie inside one of the two faces at an edge and still count
-/// as beyond the edge.
+/// At an edge of the tool, a point counts as beyond both faces if it lies beyond one face and inside the other face by
+/// at most this distance, relative to the spacing.
 constexpr double kEdgeSlack = 1e-3;
 
 /// Largest number of shell points at which typical_spacing() measures the distance to the neighbours.
@@ -68,7 +68,7 @@ constexpr double kPatch = 0.75;
 constexpr double kMaxPatchDepth = 0.1;
 
 /// Points closer than this fraction of the diagonal of the shell's bounding box count as one point, because a shell may
-/// list a vertex once for each of the vertex's cells.
+/// list a vertex once for each grid cell that has the vertex on an edge.
 constexpr double kSamePosition = 1e-7;
 
 /// Returns the distance [m] from a point to the second nearest of the other points. Points at the same position count
@@ -148,9 +148,9 @@ ShellConstraints::ShellConstraints(const PointShell& shell, const ToolShape& too
 /// could sink by up to 0.05 mm between two lines of points 0.1 mm apart, because it touches points with both of
 /// its faces.
 ///
-/// The surface around each point x_i with normal n_i is assumed to be flat up to the neighbouring points. Let v_i be
-/// the tool's support point towards the surface, argmin <q, n_i> over the tool. If v_i lies on this patch, the tool
-/// must stay above the patch:
+/// The surface around each point x_i with normal n_i is assumed to be flat up to the neighbouring points. This flat
+/// piece is called a patch. Let v_i be the tool's support point towards the surface, argmin <q, n_i> over the tool. If
+/// v_i lies above or below the patch, the tool must stay above the patch after the move x:
 ///
 ///   <n_i, v_i + x - x_i> >= 0, appended as a contact with depth <n_i, x_i - v_i> and gradient -n_i.
 ///

@@ -12,8 +12,8 @@
 namespace hapbench {
 
 /// Tolerance of the constraints, relative to the largest of the depths and of the components of the wanted move. It is
-/// above the rounding errors of solution and gradients, and far below anything that can be felt (1e-11 m in a search of
-/// 0.1 mm).
+/// above the rounding errors of solution and gradients, and far below anything that can be felt: 1e-11 m if the largest
+/// of these lengths is 0.1 mm.
 inline constexpr double kViolationTolerance = 1e-7;
 /// Weight epsilon of the compromise between contradictory contacts (nearest_allowed).
 inline constexpr double kCompromiseEpsilon = 1e-6;
@@ -47,10 +47,10 @@ struct AllowedMove {
 ///   1/2 sum max(0, d_i + <u_i, x>)^2 + epsilon/2 |x - t|^2,   epsilon = 1e-6,
 ///
 /// so that the tool enters opposite walls equally deep. The weights are then the violations w_i = max(0, d_i + <u_i,
-/// x>). The multipliers are lambda_i = w_i + <u_i, share> and may be negative. They satisfy the same identity up to
-/// epsilon: violations of opposite walls cancel, and share = H^-1 (t - x) distributes the rest, with H = sum u u^T +
-/// epsilon I over the violated contacts. These lambda_i are the derivatives by d_i of 1/2 |x - t|^2 + 1/2 sum w^2, so
-/// forces and moments computed from them create no energy.
+/// x>). The multipliers are lambda_i = w_i + <u_i, share> and may be negative. They also satisfy x = t - sum lambda_i
+/// u_i, up to epsilon: violations of opposite walls cancel, and share = H^-1 (t - x) distributes the rest, with H = sum
+/// u u^T + epsilon I over the violated contacts. These lambda_i are the derivatives by d_i of 1/2 |x - t|^2 + 1/2 sum
+/// w^2, so forces and moments computed from them create no energy.
 ///
 /// O(n) for each iteration, usually one to five iterations. Allocates nothing. Preconditions: the contacts are
 /// padded, and the gradients are unit vectors. Without unit vectors the result is still finite.
@@ -118,8 +118,8 @@ class ShellConstraints final : public ProxyConstraints {
   AlignedDoubles support_x_, support_y_, support_z_;
 };
 
-/// Constraints from springs: planes that act on the tool at any distance. A bilateral spring holds the tool from both
-/// sides, so it gives two constraints, (d, u) and (-d, -u).
+/// Constraints from the springs of a SpringSet. Each spring is a plane that holds the tool at any distance. A bilateral
+/// spring holds the tool from both sides, so it gives two constraints, (d, u) and (-d, -u).
 class SpringConstraints final : public ProxyConstraints {
  public:
   /// The spring set must outlive the constraints.

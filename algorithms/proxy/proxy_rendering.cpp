@@ -21,11 +21,11 @@ constexpr double kNoSpan = 1e-6;
 constexpr double kConverged = 0.03;
 /// Longest cycle of proxy positions that is recognised, in passes.
 constexpr std::size_t kLongestCycle = 4;
-/// Positions closer than this fraction of the margin count as equal.
+/// Two positions of the proxy count as equal if their distance is at most this fraction of the margin.
 constexpr double kEqualPositions = 1e-3;
 /// Maximum number of times that next_move() shortens the move of a proxy with points inside. After these shortenings,
-/// the length of the move differs from the allowed length by a few per cent. It may be longer if the tool pulls the
-/// proxy away.
+/// the length of the move is within a few per cent of the allowed length, except that the move may be longer if the
+/// tool pulls the proxy away.
 constexpr int kMaxShortenings = 3;
 
 constexpr AlgorithmParameter kOwnParameters[] = {
@@ -39,8 +39,8 @@ constexpr AlgorithmParameter kOwnParameters[] = {
      "stiffness of the spring that turns the proxy to the tool; null: infinite, so that the proxy has the tool's "
      "orientation"}};
 
-/// Calls `use(i)` for each contact that holds the proxy back, in order. Tests eight contacts at a time, because
-/// only about three of some hundred contacts near the proxy hold it. Precondition: the contacts are padded.
+/// Calls `use(i)` for each contact i that holds the proxy back, in ascending i. Tests eight contacts at a time, because
+/// only about three of some hundred contacts near the proxy hold it back. Precondition: the contacts are padded.
 template <class Use>
 void for_each_holding(const ContactBuffer& contacts, const Use& use) {
   for (std::size_t i = 0; i < contacts.padded_size(); i += simd::lanes) {
@@ -71,17 +71,17 @@ void for_each_holding(const ContactBuffer& contacts, const Use& use) {
 /// springs have no inside.
 ///
 /// With multi-rate contacts (ContactSchedule), the proxy follows the tool and searches points only in steps in
-/// which a query returns, for the tool's pose in the query. If contacts are held, the spring force stays constant
-/// until the next query returns. If they are linear (MultiRateSchedule), the constraints of the last pass become
-/// planes in space that rotate with the tool's material, and in every step the proxy moves to the allowed position
-/// nearest to the tool, without passes. Points beyond the margin are not found before the next query.
+/// which a query returns, for the tool's pose in the query. If MultiRateSchedule::linear is false, the spring force
+/// stays constant until the next query returns. If it is true, the constraints of the last pass become planes in space
+/// that rotate with the tool's material, and in every step the proxy moves to the allowed position nearest to the tool,
+/// without passes. Points beyond the margin are not found before the next query.
 ///
 /// f_spring = K (x - p) with the tool's position p. S is the projector onto the span of the gradients that hold the
 /// proxy back. With angular damping, v_n is S v plus the shortest velocity in this span whose components along the u_i
 /// are the rotating tool's components <omega x r_i, u_i>. Normal damping and friction may follow S with a time constant
 /// (`damping_time_s`), because S, and with it -B S v, changes abruptly when points come into contact or leave. A mean
-/// of projectors lies between 0 and I, so both stay passive. The rendered contacts are the contacts that hold the
-/// proxy, with depth lambda_i [m] and weight 1: f_spring = -K sum lambda_i u_i.
+/// of projectors lies between 0 and I, so damping and friction stay passive. The rendered contacts are the contacts
+/// that hold the proxy back, with depth lambda_i [m] and weight 1: f_spring = -K sum lambda_i u_i.
 class ProxyRendering final : public ForceAlgorithm {
  public:
   explicit ProxyRendering(const RenderingConfig& config)
@@ -139,8 +139,8 @@ class ProxyRendering final : public ForceAlgorithm {
     out.friction = damping_and_limits_.friction_state();
   }
 
-  /// Returns the energy of the spring from tool to proxy and the moment of the holding points about the proxy's
-  /// tip centre. Each holding point pushes the proxy with its multiplier lambda_i.
+  /// Returns the energy of the spring from tool to proxy, and the moment about the proxy's tip centre of the points
+  /// that hold the proxy back. Each of these points pushes the proxy with the force K lambda_i.
   SpringState spring_state(const ToolState&, const ContactBuffer&) const noexcept override {
     if (K_ == 0.0) return {};
     SpringState state{spring_.squaredNorm() / (2.0 * K_) + damping_and_limits_.stored_energy(), Vec3::Zero()};
@@ -213,7 +213,8 @@ class ProxyRendering final : public ForceAlgorithm {
   }
 
   /// Low-pass filters S for damping and friction. If an integrator evaluates several states within a step, the filter
-  /// starts each evaluation from the S of the previous step. In the first step with contact, the filtered S equals S.
+  /// starts each evaluation from the filtered S of the previous step. In the first step with contact, the filtered S
+  /// equals S.
   void filter_directions() noexcept {
     damping_S_ = allowed_.held;
     if (damping_time_ == 0.0) return;
@@ -269,7 +270,8 @@ class ProxyRendering final : public ForceAlgorithm {
     if (!(deepest > recovery_)) return nearest_allowed(wanted, *near_contacts_);
     scale_depths(recovery_ / deepest);
     AllowedMove allowed = nearest_allowed(wanted, *near_contacts_);
-    // Points between nearly opposite walls leave by a long move. The move is nearly proportional to the depths.
+    // If points of nearly opposite walls are inside the proxy, the move is much longer than the depths. It is nearly
+    // proportional to the depths, so smaller depths shorten the move.
     for (int k = 0; k < kMaxShortenings && allowed.move.norm() > recovery_; ++k) {
       scale_depths(recovery_ / allowed.move.norm());
       allowed = nearest_allowed(wanted, *near_contacts_);

@@ -15,10 +15,11 @@ namespace {
 
 constexpr int kMaxPasses = 100;
 constexpr int kMaxNewtonSteps = 60;
-/// Largest number of sub-steps of a step of the intent.
+/// Largest number of sub-steps into which a step of the hand's intended pose (Intent) is divided.
 constexpr double kMaxSubsteps = 64.0;
-/// Imbalance [N] at which Newton's method stops, and change of the imbalance [N] at which a law with a memory counts as
-/// converged. The rounding error of a force of 20 000 N/m times 10 mm is 1e-13 N.
+/// Imbalance between hand and device [N] at which Newton's method stops. Also the change of this imbalance [N] between
+/// two calls at one pose at which a law with a memory counts as converged. The rounding error of a force of 20 000 N/m
+/// times 10 mm is 1e-13 N.
 constexpr double kExact = 1e-11;
 /// Change of the force for difference quotients [N]. It moves the handle by 20 nm at 500 N/m.
 constexpr double kForceStep = 1e-5;
@@ -27,7 +28,7 @@ constexpr double kSmallestStep = 1.0 / 1024.0;
 
 /// Limits for a law with a memory. kMaxSettling: largest number of repeated calls at one pose. kStillMoves: if the line
 /// search fails, the iteration continues only if repeated calls reduce the imbalance between hand and device to less
-/// than this fraction.
+/// than this fraction of its value before the line search.
 constexpr int kMaxSettling = 20;
 constexpr double kStillMoves = 0.5;
 
@@ -204,8 +205,8 @@ double ThreeDofDevice::balance(const Intent& intent) noexcept {
       rest = next;
       continue;
     }
-    // If the line search fails, the steps may have moved the memory of the law. Continue from there if the imbalance is
-    // smaller.
+    // If the line search fails, its calls may have changed the memory of the law. Continue with the changed memory if
+    // it reduces the imbalance enough.
     next = settled(intent, force);
     if (!(next.norm() < kStillMoves * rest.norm())) break;
     rest = next;

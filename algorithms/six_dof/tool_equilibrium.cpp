@@ -19,14 +19,15 @@ constexpr double kQueryMargin = 1.0 + 1e-6;
 /// Relative step of the difference quotients for the second derivatives of the constraints. Their error, of second
 /// order in the step, affects the speed of convergence but not the solution.
 constexpr double kDifference = 1e-4;
-/// Tolerances of a quadratic program, relative to its largest length (1e-4 m). The first corresponds to 1e-17 m, ten
-/// times the rounding error of a depth. Constraints of points on one line of the tool are linearly dependent up to
-/// rounding, and may contradict each other within the first tolerance. The second tolerance corresponds to 1e-15 m, or
-/// 2e-11 N at 20 000 N/m.
+/// Tolerances of a quadratic program, relative to its largest length (1e-4 m). The second tolerance is used only if the
+/// program is not solved with the first. The first corresponds to 1e-17 m, ten times the rounding error of a depth.
+/// Constraints of points on one straight line of the tool's surface are linearly dependent up to rounding, and may
+/// contradict each other within the first tolerance. The second corresponds to 1e-15 m, or 2e-11 N at 20 000 N/m.
 constexpr double kProgramTolerances[] = {1e-13, 1e-11};
 /// Length of the first move off a saddle, in margins. Later moves are longer.
 constexpr double kNudge = 0.02;
-/// Smallest move off a saddle relative to the first move, used if another point is close: 2e-12 m for a drill of 1 mm.
+/// Smallest move off a saddle relative to the first move, used if another point blocks a longer move: 2e-12 m for a
+/// drill of 1 mm.
 constexpr double kShortestNudge = 1e-6;
 /// Smallest stiffness in any direction of a quadratic program, relative to the stiffness of the springs in this
 /// direction.

@@ -87,8 +87,8 @@ Vec3 ActuatorLimitedPassivity::force(const StageStep& step) noexcept {
   if (size == 0.0 || !(owed > 0.0)) return f;
   const Vec3 limit = config_.max_force.value_or(Vec3::Constant(std::numeric_limits<double>::infinity()));
   // Returns the force g plus a damping force on the velocity component `part`. The damping a is the smallest that
-  // dissipates the power `owed`, but at most b. Keeps the force within the limits, |g - a part|_j <= F_j for each axis
-  // j.
+  // dissipates the power `owed`, but at most max_damping_. Keeps the force within the limits, |g - a part|_j <= F_j for
+  // each axis j.
   const auto damped = [&](const Vec3& g, const Vec3& part) -> Vec3 {
     double a = std::min(max_damping_, owed / part.squaredNorm());
     for (int j = 0; j < 3; ++j) {
@@ -138,7 +138,8 @@ void StagedRendering::compute(const ToolState& tool, ContactBuffer& contacts, Re
   // translation of the tool, so the moment is zero.
   const SpringState springs{first ? algorithm_->spring_state(tool, contacts).energy : 0.0, Vec3::Zero()};
   requested_energy_.answer(tool, out.rendered, springs);
-  // Call the stage. Before its force is set, the observer gives the energy at the start of the step.
+  // Call the stage. The observer first gets the force zero, so that the energy for the stage includes no work of the
+  // force of this step.
   rendered_energy_.answer(tool, Vec3::Zero(), springs);
   const Vec3 answer =
       limited_to(stage_->force({out.rendered, tool.velocity, rendered_energy_.energy()}), config_.max_force);

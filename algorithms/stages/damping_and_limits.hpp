@@ -23,8 +23,8 @@ SpringDamper bristle_of(const DryFrictionConfig& config, const RenderingConfig& 
 /// On one face, between the two faces of a slot and along the line of a wedge, the result is Coulomb's friction force.
 /// In a corner, the result is at most Coulomb's friction force. Guarantee: passive for any motion, loads and normals,
 /// -<f, p_k - p_k-1> >= K_t/2 (||e_k||^2 - ||e_k-1||^2) if the velocity v passed to `force` is (p_k - p_k-1) / dt.
-/// Known failure: an explicit step is stable only up to a K_t of about the limit of K. Beyond it, a sticking tool
-/// chatters with forces of at most mu N.
+/// Known failure: with an explicit integrator, the bristle is stable only up to a K_t of about the stability limit of
+/// the penalty stiffness K. Beyond this K_t, a sticking tool chatters with forces of at most mu N.
 class DryFriction {
  public:
   DryFriction(const DryFrictionConfig& config, const RenderingConfig& rendering);

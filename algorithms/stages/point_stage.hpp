@@ -17,7 +17,7 @@ class PointStage {
   /// Only this function may allocate. Throws std::invalid_argument if the scene lacks data that the stage
   /// needs.
   virtual void prepare(const Scene& scene) = 0;
-  /// Returns to t = 0 and sets the counter to zero.
+  /// Resets the stage to t = 0 and the number of dropped contacts to zero.
   virtual void reset() noexcept { dropped_ = 0; }
   /// Merges or drops contacts. The contacts are padded on entry and on return; their number never grows.
   virtual void process(ContactBuffer& contacts) noexcept = 0;

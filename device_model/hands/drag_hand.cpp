@@ -27,7 +27,8 @@ static void for_each_near(const GridIndex& grid, const Vec3& centre, double half
 std::size_t SmoothedSurface::nearest_point(const Vec3& at) const {
   std::size_t nearest = 0;
   double min_distance2 = std::numeric_limits<double>::infinity();
-  // Double the box until it contains the ball around `at` whose radius is the distance of the nearest point found.
+  // Double the cube until it contains the ball around `at` whose radius is the distance from `at` to the nearest point
+  // found.
   for (double half = distance_to(shell_.bounds(), at) + grid_.cell_size(); min_distance2 > half * half; half *= 2.0) {
     for_each_near(grid_, at, half, [&](std::size_t i) {
       const double distance2 = (Vec3(grid_.x()[i], grid_.y()[i], grid_.z()[i]) - at).squaredNorm();
@@ -76,7 +77,7 @@ static SurfacePoint between(const SurfacePoint& a, const SurfacePoint& b, double
 
 SurfacePath::SurfacePath(const SmoothedSurface& surface, std::span<const SurfacePoint> points)
     : radius_(surface.radius()), spacing_(spacing(radius_)), entries_{points.front()} {
-  // Divide the path into intervals of equal length, at most the largest spacing.
+  // Divide the path into intervals of equal length, which is at most SurfacePath::spacing().
   double total = 0.0;
   for (std::size_t i = 1; i < points.size(); ++i) total += (points[i].position - points[i - 1].position).norm();
   const auto intervals = static_cast<std::size_t>(std::ceil(total / spacing_));
@@ -93,7 +94,7 @@ SurfacePath::SurfacePath(const SmoothedSurface& surface, std::span<const Surface
     left -= leg - done;
   }
   entries_.resize(intervals + 1, points.back());
-  // Sample the normals to both sides of the path.
+  // Store the surface's normals on the path and at positions on both sides of the path.
   for (std::size_t i = 0; i < entries_.size(); ++i) {
     const auto& [point, normal] = entries_[i];
     const Vec3 leftwards = normal.cross(direction(static_cast<double>(i) * spacing_));

@@ -66,8 +66,8 @@ class SurfacePath {
   /// within the surface.
   Vec3 direction(double s) const noexcept;
   /// Returns the surface's outward normal near the position x [m]. Precondition: s is the arc length of the path
-  /// position nearest to x. Includes the curvature of the surface to the sides of the path; constant beyond two
-  /// smoothing radii.
+  /// position nearest to x. Includes the curvature of the surface to the sides of the path. The normal is constant
+  /// beyond two smoothing radii from the path.
   Vec3 normal_near(const Vec3& x, double s) const noexcept;
 
  private:

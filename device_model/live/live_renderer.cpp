@@ -78,7 +78,8 @@ void LiveRenderer::step(const HapbenchInput& input, HapbenchOutput& output) noex
   const FloatingPointMode mode;
   output = {};
   output.call = calls_++;
-  // Measure the time since the previous call. A clock that stands still does not stop a falling force.
+  // Measure the time since the previous call. If the clock has not advanced, one period counts as elapsed, so that a
+  // falling force still falls.
   const bool time_is_valid = !has_time_ || input.time_ns > last_time_;
   if (has_time_ && time_is_valid) output.dt = static_cast<double>(input.time_ns - last_time_) / 1e9;
   const double elapsed = time_is_valid && has_time_ ? output.dt : loop_.dt();
@@ -87,7 +88,8 @@ void LiveRenderer::step(const HapbenchInput& input, HapbenchOutput& output) noex
   has_time_ = true;
   const bool rearmed = (input.has & HAPBENCH_REARM) != 0 && (last_bits_ & HAPBENCH_REARM) == 0;
   last_bits_ = input.has;
-  // End a fault, begin a fault, or react to a stale call. Then decide whether this call renders.
+  // End a fault, begin a fault, or react to a call that comes later than stale_s after the previous call. Then decide
+  // whether this call renders.
   if (reason_ != HAPBENCH_NO_FAULT && rearmed && problem == HAPBENCH_NO_FAULT) {
     reason_ = HAPBENCH_NO_FAULT;
     release_ = release_gain_ > 0.0 ? Release::rearm : Release::none;
@@ -198,8 +200,8 @@ void LiveRenderer::handle_clutch(const Measurement& now, bool pressed) noexcept 
   is_clutched_ = pressed;
 }
 
-/// Writes the falling force of an earlier call. Returns false and writes nothing if no force is falling and there is no
-/// fault; the call must then render.
+/// While the force of an earlier call falls to 0 or a fault exists, writes the falling force (finally 0) and returns
+/// true. Otherwise writes nothing and returns false; the call must then render.
 bool LiveRenderer::takes_rest(double elapsed, HapbenchOutput& output) noexcept {
   if (release_ == Release::none && reason_ == HAPBENCH_NO_FAULT) return false;
   const double ramp = config_.mount.ramp_s;

@@ -7,8 +7,8 @@
 #include "device_model/live/hapbench_renderer.h"
 #include "sim/loop/live_loop.hpp"
 
-/// The renderer behind hapbench_renderer.h, which documents its behaviour: a LiveLoop between the poses and forces of a
-/// device, with the protection of the hand.
+/// The renderer behind hapbench_renderer.h, which documents its behaviour: a LiveLoop computes forces from the poses of
+/// a device, and limits, ramps and faults of the renderer protect the user's hand.
 namespace hapbench {
 
 /// Rotation of vectors by a quaternion. If the rotation is the identity, it returns vectors unchanged, bit for bit.

@@ -89,7 +89,8 @@ struct SampledLoop {
 };
 
 /// Returns the largest wall stiffness K [N/m] up to which `loop` is stable (first_stability_limit); all other
-/// parameters of `loop` are kept. Returns zero if this K is below 1e-8 m / T^2. Takes about 0.5 ms.
+/// parameters of `loop` are kept. Returns zero if K T^2 / m would be below 1e-8, with the period T and the moving mass
+/// m. Takes about 0.5 ms.
 double linear_stability_limit(SampledLoop loop);
 
 /// Returns a set of typical hands (100 to 1000 N/m, 0.1 to 0.5 kg); the first entry is no hand. The hands have no

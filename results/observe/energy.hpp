@@ -17,7 +17,7 @@ namespace hapbench {
 ///
 ///   kinetic + stored = initial values + input + damping + rotation + created + integration + script + residual
 ///   input = hand + actuator                                        (when the handle is the tool)
-///   device.stored = device.hand + device.actuator + device.dissipated   (when it has mechanics of its own)
+///   device.stored = device.hand + device.actuator + device.dissipated   (when the device has its own mechanics)
 ///
 /// A tool that follows the handle has no virtual mass. Then kinetic, input and residual are zero, the work of a
 /// force is the force of a step times the displacement to the next step, and script is the work of the handle

@@ -50,7 +50,8 @@ class Side {
   double deepest(double angle) const { return deepest({math::cos(angle), math::sin(angle)}); }
 
  private:
-  /// Returns the depth below the block's surface [m], negative outside. Inside the block it is the exact distance.
+  /// Returns the depth below the block's surface [m], negative outside the block. Inside the block, the depth is the
+  /// exact distance to the block's surface.
   double depth(const Vec3& q) const {
     const double out = std::sqrt(q.x() * q.x() + q.y() * q.y()) - radius_, below = -block_.hole_depth - q.z();
     const double hole = out > 0.0 && below > 0.0 ? std::sqrt(out * out + below * below) : std::max(out, below);

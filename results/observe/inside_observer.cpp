@@ -21,23 +21,26 @@ constexpr std::size_t kMaxBlocks = 16384, kSettledSamples = 12;
 /// Largest number of distance evaluations in the search for the deepest step. A distance from a solid in closed form
 /// takes a tenth of the time, so its limit is larger.
 constexpr std::size_t kMaxEvaluations = 8000, kMaxClosedFormEvaluations = 100000;
-/// If the search ends and the largest bound exceeds kUselessBound times the deepest known depth, the error exceeds the
-/// depth itself. The search then continues, up to kMaxExtendedEvaluations, until the largest bound is at most
-/// kUsefulBound times the deepest known depth.
+/// The largest bound is the largest upper bound of the depth in a step that has not been searched. If it still exceeds
+/// kUselessBound times the deepest known depth after the largest number of evaluations, the error exceeds the depth
+/// itself. The search then continues, up to kMaxExtendedEvaluations, until the largest bound is at most kUsefulBound
+/// times the deepest known depth.
 constexpr std::size_t kMaxExtendedEvaluations = 32000;
 constexpr double kUselessBound = 2.0, kUsefulBound = 1.1;
-/// kSharedBound: poses whose tip centres (in half widths) and axes differ by less than this share one bound.
-/// kSamePose: if no point of the tool differs by more than this [half widths], one search is enough for all poses.
+/// kSharedBound: if all tip centres (in half widths) and axes in a range of blocks differ by less than this from the
+/// middle pose of the range, the range gets a fine bound (InsideBound::at), otherwise a coarse bound. A single block
+/// always gets a fine bound. kSamePose: if no point of the tool moves by more than this between the middle pose and any
+/// other pose of a range [half widths], one search is enough for the range.
 constexpr double kSharedBound = 0.1, kSamePose = 0.01;
 
 /// kDeepContact: contact depth [half widths] from which on the tip centre is part of the core. At smaller depths the
-/// tip centre is not part of the core, because the tip centre of a flat tip is in the surface at any depth. kCoreStep:
-/// smallest distance between two checked points on the core, and between two checked positions of the core on its
-/// path [half widths].
+/// tip centre is not part of the core, because the tip centre of a flat tip lies inside the solid even in a shallow
+/// contact. kCoreStep: smallest distance between two checked points on the core, and between two checked positions of
+/// the core on its path [half widths].
 constexpr double kDeepContact = 0.9, kCoreStep = 5e-3;
 /// Contact depth from which on the core is checked, relative to the smallest radius of the tool, such as the radius of
-/// a neck. It is a little smaller than kDeepContact, because the surface points have gaps (of some fifths of this
-/// radius), and the deepest point of the core may lie in a gap.
+/// a neck. It is a little smaller than kDeepContact, because the deepest point of the core may lie in a gap between the
+/// surface points. These gaps are a few fifths of the smallest radius wide.
 constexpr double kCheckDepth = 0.8;
 /// The core ends where the axis is closer than this to the body's surface [half widths], as in a bent body.
 constexpr double kThinnest = 0.05;

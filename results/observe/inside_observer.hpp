@@ -67,12 +67,12 @@ enum class SolidSide { unknown, outside, inside };
 
 /// Detects a tool that passes through a wall, also a wall thinner than the tool. Follows the core: the part of the
 /// tool's axis within the body, from the tip centre to the far end. While no contact is deep, the core of a flat tip
-/// begins 0.9 half widths behind the tip centre, because the tip centre is in the surface at any depth. The core has
-/// passed if it crosses the solid from face to face at one time, with faces of opposed normals, or if a part of it
-/// leaves by a face opposed to the face by which it entered. A check evaluates about 20 distances along the axis. A
-/// step is checked only if three conditions hold: no passage has been found yet; a contact is deeper than check_depth_
-/// or the tool moved by more than check_displacement_; and the core has moved by at least its distance from the
-/// surface. Allocates only in the constructor.
+/// begins 0.9 half widths behind the tip centre, because the tip centre lies inside the solid even in a shallow
+/// contact. The core has passed if it crosses the solid from face to face at one time, with faces of opposed normals,
+/// or if a part of it leaves by a face opposed to the face by which it entered. A check evaluates about 20 distances
+/// along the axis. A step is checked only if three conditions hold: no passage has been found yet; a contact is deeper
+/// than check_depth_ or the tool moved by more than check_displacement_; and the core has moved by at least its
+/// distance from the surface. Allocates only in the constructor.
 class CorePassage {
  public:
   struct Event {

@@ -35,7 +35,7 @@ void TargetMetricsObserver::on_step(const StepRecord& record) noexcept {
     rows_.push_back(row);
     current_ = {.subject = row.subject, .trial = row.trial};
   }
-  // Add the step to the sums of the current target.
+  // If the tip is on the current target, add force and speed of the step to the sums of this target.
   if (task.finished() || !task.logs(record.tool.pose.position)) return;
   ++current_.rows_on_target;
   current_.model_force += record.force.rendered.norm();

@@ -7,8 +7,9 @@
 
 namespace hapbench {
 
-/// Measurements of one target (thesis D.4). Model force and speed are means over the steps in which the tip was
-/// within TargetRules::logged of the target, whether or not the subject pressed.
+/// Measurements of one target (thesis D.4). Model force and speed are means over the steps in which the tip was within
+/// TargetRules::logged (if empty: TargetRules::tolerance) of the target. These steps count whether or not the force was
+/// large enough to count as pressing.
 struct TargetRow {
   std::size_t subject = 0;  ///< number of the subject; the numbers of subject, trial and target start at 0
   std::size_t trial = 0;
@@ -22,8 +23,8 @@ struct TargetRow {
 /// Measures the targets of all trials of a run.
 class TargetMetricsObserver final : public MetricObserver {
  public:
-  /// `positions`: number of target positions of the task; used only for the names of the metrics of an observer without
-  /// a trial.
+  /// `positions`: number of target positions of the task; used only if no trial has begun, to list the names of the
+  /// metrics.
   explicit TargetMetricsObserver(std::size_t positions = 2) : positions_(positions) {}
 
   /// Precondition: the trial's hand has a task.
@@ -59,7 +60,7 @@ struct SubjectMean {
 };
 
 /// Measurements at one target position over all subjects. Each subject contributes the mean over its targets at this
-/// position, as in Table A.1. Force and speed exclude targets that the tip never reached.
+/// position, as in Table A.1 of the thesis. Force and speed exclude targets that the tip never reached.
 struct PositionMetrics {
   std::size_t position = 0;
   SubjectMean success_rate;
@@ -68,7 +69,7 @@ struct PositionMetrics {
   SubjectMean speed;            ///< [m/s]
 };
 
-/// Returns the tables of thesis D.4: one entry for each target position that occurs.
+/// Returns the tables of thesis D.4: one entry for each target position in `rows`.
 std::vector<PositionMetrics> position_metrics(const std::vector<TargetRow>& rows);
 
 }  // namespace hapbench

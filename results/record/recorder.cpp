@@ -22,8 +22,8 @@
 namespace hapbench {
 namespace {
 
-/// Returns columns of trajectory.csv and the function that computes their values in a step: a number, or a vector with
-/// one component for each column.
+/// Pairs columns of trajectory.csv with the function that computes their values in a step. The function returns a
+/// number for a single column, or a vector with one component for each column.
 template <std::size_t n, class Cells>
 constexpr std::pair<std::array<Column, n>, Cells> filled(const Column (&columns)[n], Cells cells) {
   return {std::to_array(columns), cells};
@@ -81,7 +81,7 @@ constexpr auto kCommonColumns = std::tuple{
     filled({{"ratio_max", "1", "largest stiffness ratio u^T S u of a rendered contact; empty without contact"}},
            [](const StepRecord& r) { return if_any(!r.rendered->empty(), r.ratio.max); })};
 
-/// Returns the unit quaternion w, x, y, z of a rotation with w >= 0.
+/// Returns the unit quaternion (w, x, y, z), with w >= 0, of a rotation.
 std::array<double, 4> quaternion(const Mat3& rotation) noexcept {
   const Eigen::Quaterniond q(rotation);
   const double sign = q.w() < 0.0 ? -1.0 : 1.0;

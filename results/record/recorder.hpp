@@ -32,8 +32,8 @@ struct TrajectoryGroup {
   const char* field;   ///< name of the field
   const char* effect;  ///< effect of the field, for the documentation
   std::span<const Column> columns;
-  /// Writes a value for each column to `cells`. `inside` must observe before the recorder; null if the depth inside
-  /// is not observed.
+  /// Writes a value for each column to `cells`. `inside` must observe before the recorder; null if the run does not
+  /// observe how deep the tool is inside the environment.
   void (*fill)(const StepRecord& record, const InsideObserver* inside, std::optional<double>* cells);
   bool wants_roll = false, wants_springs = false;  ///< see the functions of Observer with the same names
 };
@@ -50,8 +50,8 @@ struct RowSource {
   bool wants_ratio = false, wants_roll = false, wants_springs = false, wants_found = false;
 };
 
-/// An observer that writes one table, to a file or into memory. Lines are written to the file during the run
-/// through a buffer of fixed size. A run that is interrupted before `finish` leaves no file.
+/// An observer that writes one table, to a file or into memory. During the run, lines go through a buffer of fixed size
+/// to a temporary file, which `finish` renames. A run that is interrupted before `finish` therefore leaves no table.
 class Recorder final : public Observer {
  public:
   /// Records steps 0, every, 2 every, … Precondition: every > 0. Throws IoError.
@@ -84,8 +84,8 @@ RowSource contact_trace_rows();
 /// Returns the source of stiffness_tensor.csv: one line per recorded step.
 RowSource stiffness_rows();
 
-/// Stiffness shaping as two operations on padded contacts. The caller passes them in, because the folder results/ does
-/// not depend on any force law.
+/// Stiffness shaping as two operations on padded contacts. The caller passes the operations in, because the folder
+/// results/ does not depend on any force law.
 struct ShapingOperations {
   /// Sets all weights to 1; returns the stiffness tensor S.
   Mat3 (*start)(ContactBuffer& contacts) noexcept = nullptr;
@@ -97,22 +97,22 @@ struct ShapingOperations {
 /// shaping updates (thesis 3.4, Fig. 5). The table does not depend on the force law of the run. The table has, for each
 /// recorded step with contact, one line for each number m >= 0 of updates. The first update starts from equal weights
 /// of 1. `iterations`: the numbers m in any order; duplicates are ignored. `capacity`: largest number of contacts in a
-/// step. Cost of a step: O(n) for each update, up to the largest m.
+/// step. Cost of a step: the largest m updates, each proportional to the number of contacts.
 RowSource ratio_rows(std::vector<int> iterations, ShapingOperations shaping, std::size_t capacity);
 
 /// Returns the source of energy.csv: the energy balance, one line per recorded step. Precondition: the recorder
 /// observes after `ledger`.
 RowSource energy_rows(const EnergyLedger& ledger);
-/// Returns the source of ideal_trajectory.csv: one line per step that `observer` compares and at whose tilt the
-/// ideal trajectory exists (thesis Fig. 7). Precondition: the recorder observes after `observer` and records every
-/// step.
+/// Returns the source of ideal_trajectory.csv: one line per step that `observer` compares with the ideal trajectory.
+/// Steps without an ideal trajectory at their tilt have no line (thesis Fig. 7). Precondition: the recorder observes
+/// after `observer` and records every step.
 RowSource ideal_trajectory_rows(const IdealTrajectoryObserver& observer);
 /// Returns the source of force_reference.csv: reference force and error of the rendered force. Precondition: the
 /// recorder observes after `observer`.
 RowSource force_reference_rows(const ForceFidelityObserver& observer);
 
-/// Returns the source of six_dof.csv: force and torque of a 6-DOF device, and the force of the law. `row` is the
-/// comparison of the recorded step. Precondition: the recorder observes after the observer that writes `row`.
+/// Returns the source of six_dof.csv: force and torque of a 6-DOF device, and the force of the law. `row` compares the
+/// two devices in the recorded step. Precondition: the recorder observes after the observer that writes `row`.
 RowSource six_dof_rows(const SixDofRow& row);
 
 /// Writes targets.csv: one line for each target in `rows`, in the same order. `rows` are the results of all subjects

@@ -47,8 +47,8 @@ ordered_json vector_json(const Metric* xyz) {
   return {cell_json(xyz[0].value), cell_json(xyz[1].value), cell_json(xyz[2].value)};
 }
 
-/// Adds each metric to the object of its section, or to "metrics". Dots in a name create nested objects; vectors
-/// become arrays.
+/// Adds each metric to the object of its section. Metrics without a section go to "metrics". Dots in a name create
+/// nested objects; vectors become arrays.
 void add_metrics(ordered_json& json, const MetricList& list) {
   for (std::size_t i = 0; i < list.size(); ++i) {
     // Find the object of the metric's section.

@@ -38,7 +38,8 @@ struct Warning {
   std::string pointer;  ///< JSON pointer of the field concerned; empty: the whole run
   std::string text;     ///< one sentence
 
-  /// Returns the warning as stored in results. Does not depend on the location of the files.
+  /// Returns the warning in the form that results contain: the JSON pointer, if any, and the text. Does not depend on
+  /// the location of the files.
   std::string located_text() const { return pointer.empty() ? text : pointer + ": " + text; }
 
   bool operator==(const Warning&) const = default;
@@ -68,8 +69,8 @@ struct RunEnd {
   Outcome outcome = Outcome::completes;
   std::uint64_t rows = 0;  ///< number of observed steps
   Divergence divergence;   ///< valid if the outcome is `diverges`
-  /// Time at which a run of a batch failed for good [s] (FinalFailure in scenarios/run/outcome.hpp). No metric of such
-  /// a run has a value. Empty if all steps were observed.
+  /// Time at which a run of a batch (RunLength::until_failure) ended early, after a final failure (FinalFailure in
+  /// scenarios/run/outcome.hpp) or a divergence [s]. No metric of such a run has a value. Empty for all other runs.
   std::optional<double> ended_at = {};
 };
 
@@ -87,8 +88,8 @@ struct Result {
   /// as "final_position_m.x"; then the metrics of the sections, such as "energy.created_sum_J" or
   /// "targets.0.success_rate.mean".
   MetricList metrics;
-  /// The sections: passivity, and the sections that the scenario requests. Each section is an object of the members
-  /// that are not metrics, such as the events of the section energy. Null without sections.
+  /// The sections: passivity, and the sections that the scenario requests. Each section is a JSON object that has only
+  /// the members that are not metrics, such as the events of the section energy. Null without sections.
   nlohmann::ordered_json sections;
   std::uint64_t state_hash = 0;                     ///< MetricsObserver::state_hash
   nlohmann::ordered_json tool;                      ///< tool_json of a tool that is not a cylinder; null for a cylinder
@@ -107,16 +108,16 @@ struct Result {
 /// that do not exist (a ratio without contact, the final position without steps) or are not finite are null.
 nlohmann::ordered_json summary_json(const Result& run);
 
-/// Returns the shape of a tool for drawings: half width, reach and outline [m]. The scenario's fields do not
-/// contain it.
+/// Returns the shape of a tool for drawings: half width, reach (distance from the tip centre to the farthest point),
+/// convexity and outline; lengths in metres. The scenario's fields do not contain this shape.
 nlohmann::ordered_json tool_json(const ToolShape& tool);
 
 /// Returns a latency distribution for timing.json, in seconds; percentiles and maximum are null without steps.
 nlohmann::ordered_json step_latency_json(const StepLatency& latency);
 
 /// Returns timing.json. It is separate from summary.json because no two runs take the same time. It contains the
-/// build's instruction set and the CPU, on which the times depend. The mean is null without steps, the latency is
-/// null if steps were not timed.
+/// build's instruction set and the CPU, on which the times depend. The mean time of a step is null without steps. The
+/// latency is null if steps were not timed.
 std::string timing_text(const Result& run);
 
 }  // namespace hapbench

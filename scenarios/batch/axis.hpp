@@ -53,7 +53,7 @@ struct Axis {
   std::string value_at(double coordinate) const;
 };
 
-/// Parses the argument of --vary, or of the option that messages name:
+/// Parses the argument of --vary, or of another option. `option` is the name of the option, for messages. Forms:
 /// - "path=a:b:n": n numbers from a to b in equal steps, including both ends;
 /// - "path=a:b:n:log": n numbers in equal ratios;
 /// - "path=v,w,…": listed numbers, names, JSON objects or lists;

@@ -11,8 +11,9 @@ namespace hapbench {
 using RowCondition = std::function<bool(const std::vector<std::string>& row)>;
 
 /// Parses a condition such as "inside_max_m<3e-4": a column of `columns`, one of < <= > >= = !=, and a number or, with
-/// = and !=, a text. Numbers are compared by value. Texts are equal only if all letters are equal. A row whose cell is
-/// no number, such as an empty cell, meets no condition on numbers. Throws InputError that names the condition.
+/// = and !=, a text. Numbers are compared by value. Two texts are equal only if all characters are equal, including
+/// upper and lower case. A row whose cell is no number, such as an empty cell, meets no condition on numbers. Throws
+/// InputError that names the condition.
 RowCondition parse_row_condition(const std::string& text, const std::vector<std::string>& columns);
 
 /// Parses several conditions. A row meets the returned condition if it meets all of them.

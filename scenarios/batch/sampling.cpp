@@ -179,7 +179,8 @@ Sampling read_points(const std::filesystem::path& file, std::vector<Axis>& axes)
   Sampling sampling{kPointsOfFile, 0, 0, std::vector<std::vector<double>>(axes.size()), file};
   std::vector<std::map<std::string, std::size_t>> value_indices(axes.size());
   RowFaults faults;
-  // Collect the different values of each field. A coordinate is first the index of the value.
+  // Collect the different values of each field. For each point, store the index of its value; the last loop replaces
+  // the index by a coordinate.
   while (const auto cells = lines.next()) {
     if (cells->size() != axes.size() || sampling.count == kMaxRuns) {
       faults.add(lines.line(),

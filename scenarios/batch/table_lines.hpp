@@ -21,7 +21,7 @@ class TableLines {
   const std::string& line() const { return line_; }
   /// Returns the offset of the start of this line in the file [bytes].
   std::uintmax_t begin() const { return begin_; }
-  /// Returns the offset of the end of the last complete line in the file [bytes].
+  /// Returns the offset of the end of the last complete line that next() has read [bytes].
   std::uintmax_t end() const { return end_; }
   /// Returns the number of the case in this row. Throws InputError.
   std::size_t row() const;

@@ -169,7 +169,7 @@ void warn_of_copies(const MeshFindings& found, const Warn& warn) {
 }
 
 /// Warns about closed components that enclose no volume. Their two sides have no triangle in common, because the file
-/// divides them in different ways.
+/// divides the sides into triangles in different ways.
 template <class Warn>
 void warn_of_flat_components(const MeshFindings& found, const Warn& warn) {
   const auto count = std::ranges::count(found.components, true, &MeshComponent::is_flat);

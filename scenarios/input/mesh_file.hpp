@@ -60,9 +60,9 @@ class MeshFile {
   /// point outwards.
   TriangleSoup triangles() const;
 
-  /// Returns the points of the point shell, with normals: the vertices of the mesh. If the sampling has a
-  /// spacing, the mesh is first refined until no edge is longer than the spacing. Then the vertices are
-  /// subsampled: at most one point is kept in each cube with the spacing as side length.
+  /// Returns the points of the point shell, with normals: the vertices of the mesh. If the sampling has a spacing, the
+  /// mesh is first refined until no edge is longer than the spacing, and its vertices are then subsampled: at most one
+  /// point is kept in each cube with the spacing as side length.
   std::vector<SurfacePoint> points() const;
 
  private:

@@ -9,15 +9,16 @@ namespace hapbench {
 
 /// Returns the valid name with the smallest edit distance to `given`, or an empty text if no name is near enough to be
 /// suggested. If `given` is a name that was renamed (renamed_names.hpp), its new name counts as the nearest. The
-/// comparison ignores case. The part of a valid name after an underscore, such as a unit, may be missing in `given`.
+/// comparison ignores case. The part of a valid name after an underscore, such as a unit, may be missing in `given`. A
+/// valid name that contains `given` has a distance of 1 if `given` has at least 3 letters.
 std::string nearest_name(std::string_view given, std::span<const std::string> valid);
 
-/// Returns `; nearest valid name: "x"`, or `; version 0.4.0 renamed it to "x"`, or an empty text if no name is near
-/// enough.
+/// Returns `; nearest valid name: "x"`. If `given` was renamed to a valid name x, returns
+/// `; version 0.4.0 renamed it to "x"`. If no name is near enough, returns an empty text.
 std::string nearest_name_hint(std::string_view given, std::span<const std::string> valid);
 
-/// Throws an InputError about the value of an option if the value is not one of the valid names. `shown_by` is passed
-/// to quoted_list.
+/// Throws an InputError about `option` if its value `name` is not one of the valid names. `shown_by` is passed to
+/// quoted_list.
 void require_valid_option(const std::string& option, const std::string& name, std::span<const std::string> valid,
                           std::string_view shown_by = {});
 

@@ -279,7 +279,7 @@ void refuse_duplicates(const Words& columns, const std::filesystem::path& file, 
   }
 }
 
-/// Returns the names of an alternative that the file does not have.
+/// Returns the column names in `alternative` that are missing in the file.
 std::vector<std::string_view> missing_names(const std::vector<std::string_view>& alternative, const Words& columns) {
   std::vector<std::string_view> missing;
   std::ranges::copy_if(alternative, std::back_inserter(missing),
@@ -287,9 +287,9 @@ std::vector<std::string_view> missing_names(const std::vector<std::string_view>&
   return missing;
 }
 
-/// Returns the index of the alternative whose columns the file has; empty if the file has no complete alternative. Then
-/// appends the missing names to `missing`, unless an optional quantity is missing altogether. Throws InputError if the
-/// file has the columns of two alternatives.
+/// Returns the index of the alternative whose columns the file has. If the file has no complete alternative, returns
+/// empty and appends the missing names to `missing`; appends nothing if the quantity is optional and the file has none
+/// of its columns. Throws InputError if the file has the columns of two alternatives.
 std::optional<std::size_t> chosen_alternative(const TableQuantity& quantity, const CsvReader& csv,
                                               const std::filesystem::path& file, std::vector<std::string>& missing) {
   std::optional<std::size_t> chosen;

@@ -21,12 +21,12 @@ inline constexpr char kSeparators[] = {',', ';', '\t', ' '};
 /// quotes does not separate.
 void split_cells(std::string_view row, char separator, Words& cells);
 
-/// Returns the most likely separator of a header: the first of ';', tab and ',' that occurs in the header. Without
-/// these, returns white space, or ',' for a single word.
+/// Returns the most likely separator of a header: the first of ';', tab and ',' that occurs in the header. If none of
+/// them occurs, returns ' ' (white space) for several words, and ',' for a single word.
 char separator_in(std::string_view header);
 
-/// Returns true if a line is a comment, which begins with '#' or '%', or names the separator for a spreadsheet
-/// ("sep=;").
+/// Returns true if a line begins with '#' or '%', or if it names the separator for a spreadsheet ("sep=;"). Leading
+/// white space is ignored.
 bool is_comment(std::string_view line);
 
 /// Returns the likely cause of a row with a wrong number of cells, beginning with "; ". Empty if the cause is not

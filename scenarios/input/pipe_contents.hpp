@@ -23,7 +23,7 @@ class PipeContents {
   std::map<std::string, std::string> contents_;  ///< contents by device, inode and time of the last write
 };
 
-/// Returns the contents of the pipes of this process.
+/// Returns the instance for this process.
 PipeContents& pipe_contents();
 
 /// Returns true for a file under /dev or /proc, such as /dev/stdin or <(command). Relative paths in such a file have no

@@ -21,8 +21,8 @@ std::string shell_extension(const std::filesystem::path& file);
 std::vector<SurfacePoint> parse_point_shell(std::string_view text, const std::filesystem::path& file,
                                             std::vector<std::string>* notes = nullptr);
 
-/// Returns the contents of a file with these points. The extension of `file` selects the format. CSV has the
-/// shortest numbers that read back exactly. PLY has single precision, for viewers. Throws InputError for every
+/// Returns the contents of a file with these points. The extension of `file` selects the format, .csv or .ply. CSV has
+/// the shortest numbers that read back exactly. PLY has single precision, for viewers. Throws InputError for every
 /// other extension.
 std::string format_point_shell(const std::vector<SurfacePoint>& points, const std::filesystem::path& file);
 

@@ -79,7 +79,7 @@ std::uint32_t vertex_of(std::string_view word, std::size_t vertices, const MeshL
   return static_cast<std::uint32_t>(*index > 0 ? *index - 1 : count + *index);
 }
 
-/// Reads a face. Throws InputError for a last corner that is cut, as in "f 1/1 2/2 3/".
+/// Reads a face. Throws InputError if the end of the file cuts off the last corner, as in "f 1/1 2/2 3/".
 void read_face(const MeshLines& lines, MeshFaces& faces) {
   const Words& words = lines.words();
   if (words.size() < 4) lines.fail(fmt::format("got a face with {} corners; allowed: at least 3", words.size() - 1));

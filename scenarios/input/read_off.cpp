@@ -43,7 +43,8 @@ struct Counts {
   bool has_edges;  ///< false: the number of edges may follow in a separate line
 };
 
-/// Reads the counts, which follow the keyword in the same line or in the next lines. The keyword has `length` letters.
+/// Reads the counts, which follow the keyword in the same line or in the next lines. `length`: number of letters of the
+/// keyword; 0 if the file has no keyword.
 Counts read_counts(std::size_t length, MeshLines& lines) {
   std::size_t word = length > 0 ? 1 : 0;  // index of the next token in the line
   const auto next_count = [&](const char* what) {

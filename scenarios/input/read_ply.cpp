@@ -54,7 +54,7 @@ const PlyType* ply_type(std::string_view name) {
 constexpr std::array<std::string_view, 6> kVertexProperties = {"x", "y", "z", "nx", "ny", "nz"};
 constexpr std::size_t kCorners = 6;  ///< role of a list with the vertex indices of a face
 constexpr std::size_t kIgnored = 7;  ///< role of every other property
-/// Values of kVertexProperties.
+/// Values of the properties in kVertexProperties.
 using Values = std::array<double, kVertexProperties.size()>;
 
 /// A property of an element: a number or a list of numbers.
@@ -72,7 +72,7 @@ struct Element {
   std::vector<Property> properties = {};
 
   bool is_vertex() const { return name == "vertex"; }
-  /// Returns the number of properties with a role.
+  /// Returns the number of properties whose role is `role`.
   auto count(std::size_t role) const { return std::ranges::count(properties, role, &Property::role); }
 };
 
@@ -153,7 +153,7 @@ class PlyHeader {
   }
 
   /// Parses "property TYPE NAME" (a number) or "property list COUNT TYPE NAME" (a list of numbers). The property
-  /// belongs to the last element, which determines its role.
+  /// belongs to the element that was declared last. This element and NAME determine the property's role.
   Property property(const Words& words) const {
     const bool is_list = words.size() == 5 && words[1] == "list";
     const PlyType* count = is_list ? ply_type(words[2]) : nullptr;
@@ -171,7 +171,7 @@ class PlyHeader {
     return {count, type, has_corners ? kCorners : kIgnored};
   }
 
-  /// Throws InputError unless there are vertices, and each needed vertex property is declared exactly once.
+  /// Throws InputError if there are no vertices, or if a needed vertex property is not declared exactly once.
   void check_vertices() const {
     for (const Element& element : elements_) {
       if (!element.is_vertex()) continue;
@@ -195,8 +195,8 @@ class PlyHeader {
   bool has_more_elements_ = false;
 };
 
-/// Reads the values after the header in order. In a text, each entry has a line and each value is a token. In a
-/// binary file, values follow each other.
+/// Reads the values after the header in order. In a text file, each entry is a line and each value is a token. In a
+/// binary file, values follow each other without separators.
 class PlyValues {
  public:
   PlyValues(const LineReader& lines, const PlyHeader& header, const fs::path& file)
@@ -243,7 +243,7 @@ class PlyValues {
     skip(1, type);
     return text_.number(word_ - 1);
   }
-  /// Reads a count or an index. `what` names the counted items in an error message.
+  /// Reads a count or an index. `what` says in an error message what the number counts or means, such as "entries".
   std::int64_t whole(const PlyType& type, const char* what) {
     return is_text_ ? static_cast<std::int64_t>(text_.count(word_++, what)) : static_cast<std::int64_t>(take(type));
   }

@@ -132,8 +132,8 @@ MeshFaces read_stl_binary(ByteReader reader, std::size_t triangles, const fs::pa
   return faces;
 }
 
-/// Returns true if the file begins as a text does: with "solid", after comments and blank lines, and without zero
-/// bytes. The header of a binary file may begin with "solid", too, but zero bytes follow it.
+/// Returns true if the file begins as a text file does: its first token, without comments, is "solid", and its first
+/// 1024 bytes have no zero byte. The header of a binary file may begin with "solid", too, but zero bytes follow it.
 bool is_text(std::string_view text) {
   constexpr std::size_t kStart = 1024;
   const std::string_view start = text.substr(0, kStart);

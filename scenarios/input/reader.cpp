@@ -20,7 +20,7 @@ std::string text_of_file_hint(const Json& given) {
   return fmt::format("; on a command line \"$(cat {})\" is what is in the file", given.get_ref<const std::string&>());
 }
 
-/// Visitor that reads a JSON value into the C++ object that a description binds. Implements read_value.
+/// Visitor that reads a JSON value into the C++ object that a Fields::Body describes. Implements read_value.
 class Reader final : public Fields {
  public:
   Reader(const Json& json, std::string at) : json_(json), at_(std::move(at)) {}
@@ -40,13 +40,13 @@ class Reader final : public Fields {
 
   void integer(std::int64_t& value, IntegerRange range) override {
     if (!json_.is_number()) refuse();
-    // Convert to double, which treats unsigned integers and 1e3 alike. It is exact for all integers in the allowed
+    // Convert to double, so that 1000 and 1e3 are read alike. The conversion is exact for all integers in the allowed
     // ranges.
     const double given = json_.get<double>();
     const auto min = static_cast<double>(range.min), max = static_cast<double>(range.max);
     if (!(given >= min && given <= max) || given != std::floor(given)) refuse();
     const auto whole = static_cast<std::int64_t>(given);
-    // Reject integers that a double cannot represent, such as 2^53 + 1, which was rounded to 2^53.
+    // Reject integers that a double cannot represent, such as 2^53 + 1, which the conversion rounds to 2^53.
     if (json_.is_number_integer() && json_ != Json(whole)) refuse();
     value = whole;
   }
@@ -120,7 +120,7 @@ class Reader final : public Fields {
       fail(fmt::format("missing field \"{}\"; allowed: {}: one of {}", kTypeField, what, quoted_list(types)));
     std::size_t index = 0;
     if (type != json_.end()) read_value(*type, member(at_, kTypeField), [&](Fields& f) { f.name(index, types, what); });
-    // Read the fields of that type.
+    // Read the fields of the type with this index.
     read_fields([&](Fields& f) { fields(f, index); }, {kTypeField}, what);
   }
 

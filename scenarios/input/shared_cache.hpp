@@ -47,7 +47,7 @@ class SharedCache {
     std::mutex mutex;
     Made made;
   };
-  /// Largest number of values, unless two values for each hardware thread are more.
+  /// Largest number of values. If two values for each hardware thread are more, that number is the largest number.
   static constexpr std::size_t kMaxEntries = 128;
   static constexpr std::size_t kMaxBytes = std::size_t{512} << 20;  ///< largest size of all values together [bytes]
 

@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The verdict on a claim under an assumption set beside the recorded verdict.
+/// The verdict on a claim under an assumption set, and the recorded verdict.
 struct MovedClaim {
   std::string id, verdict, number, recorded, recorded_number, why;
 
@@ -68,7 +68,8 @@ std::map<std::string, Json> ledger_on_record(const fs::path& reference) {
   return claims;
 }
 
-/// Returns true if an assumption whose value in the set differs from its recorded value can change the claim.
+/// Returns true if an assumption whose value in the set differs from its recorded value can change the verdict on the
+/// claim.
 bool reaches(const CalibratedSet& calibrated, const Assumptions& assumptions, const Claim& claim,
              const Json& recorded) {
   const auto scenarios = recorded.at("scenarios").get<std::vector<std::string>>();
@@ -174,7 +175,7 @@ void record_sensitivity(const std::vector<Claim>& claims, const std::vector<Clai
     reach.push_back(assumptions.reach(scenarios[c], judged[c].rule));
     record.begin(judged[c].id, reach[c], on_record[c], case_count(assumptions, judged[c], scenarios[c]));
   }
-  // Judge the missing cases, and write the record after each case.
+  // Judge the cases that the record lacks, and write the record after each case.
   const std::vector<SensitivityCase> cases = missing_cases(record, assumptions, judged, scenarios);
   std::mutex writing;
   for_each_job(cases.size(), job_options(options, "sensitivity", context), [&](std::size_t i) {

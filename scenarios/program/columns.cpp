@@ -22,7 +22,8 @@ std::string printed_cell(const Cell& cell, const Shown& shown, const std::option
 
 constexpr int kMaxVariedDigits = 6;
 
-/// Returns a value of a varied field, rounded to `digits` unless it is printed exactly.
+/// Returns a value of a varied field as text: exactly if the value is a whole number or has at most kMaxVariedDigits
+/// significant digits, otherwise rounded to `digits` significant digits.
 std::string varied_text(double value, int digits) {
   const bool exact = value == std::trunc(value) || value == rounded_to_digits(value, kMaxVariedDigits);
   return rounded_text(value, exact ? kAllDigits : digits);

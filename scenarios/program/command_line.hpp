@@ -24,9 +24,8 @@ class CommandLine {
   explicit CommandLine(ProgramContext& context);
 
   /// Adds a command. Returns the command, for adding its options, and the option values, which live as long as
-  /// the command line. `action` is called with these values if the user selects the command; its member
-  /// `output` receives --quiet and --json. `when_stopped` is the note on the results that the program prints
-  /// after Ctrl-C.
+  /// the command line. `action` is called with these values if the user selects the command. Options::output
+  /// receives --quiet and --json. `when_stopped` is the note on the results that the program prints after Ctrl-C.
   template <class Options>
   std::pair<Command, Options&> command(const std::string& name, const std::string& summary,
                                        int (*action)(const Options&, ProgramContext&),
@@ -42,8 +41,8 @@ class CommandLine {
     };
     return {add(name, summary, options->output, run, when_stopped), *options};
   }
-  /// Runs a command line. Replaces a study by its arguments, loads the modules that --module and
-  /// HAPBENCH_MODULE_PATH name, and runs the command. Returns the exit status of the command, but
+  /// Runs a command line. Replaces the name of a study by the scenarios and options of the study, loads the modules
+  /// that --module and HAPBENCH_MODULE_PATH name, and runs the command. Returns the exit status of the command, but
   /// kUnexpectedOutcome if the command succeeded while a loaded module failed. Throws InputError for wrong
   /// usage and for modules that cannot be loaded, and every exception of the command.
   int run(const ProgramArguments& arguments);
@@ -53,9 +52,9 @@ class CommandLine {
   Command add(const std::string& name, const std::string& summary, OutputOptions& output, std::function<int()> action,
               const std::string& when_stopped);
   void add_module_option(CLI::App& app);
-  /// Returns the indices of the positional arguments in `arguments`, which begins with the command's name. They are
-  /// neither options nor values of options. An argument that follows an unknown option may be its value and is
-  /// left out. Returns no indices without a command.
+  /// Returns the indices of the positional arguments in `arguments`, which begins with the command's name. Positional
+  /// arguments are neither options nor values of options. An argument that follows an unknown option may be its value
+  /// and is left out. Returns no indices if `arguments` begins with no command's name.
   std::vector<std::size_t> argument_indices(const ProgramArguments& arguments) const;
   int parse_and_run(ProgramArguments arguments);
 

@@ -50,7 +50,7 @@ constexpr int kLastDigit = -12;     ///< last decimal place of a number without 
 
 std::string bound_text(double value, double tolerance) {
   const double bound = std::abs(value) + tolerance, unit = math::pow(10.0, leading_digit(bound));
-  // The factor keeps the rounding error of a bound such as 0.3 from giving 0.4.
+  // Without the factor 1 - 1e-12, the rounding error of a bound such as 0.3 could give 0.4.
   const double rounded_up = std::ceil(bound / unit * (1.0 - 1e-12)) * unit;
   return (value < 0.0 ? "0 +- " : "<= ") + significant(rounded_up, 1);
 }

@@ -10,9 +10,9 @@ namespace hapbench {
 /// Returns a number with `digits` significant digits; "-" for NaN and infinities.
 std::string significant(double value, int digits = 4);
 inline constexpr int kAllDigits = 17;
-/// Returns a number rounded to `digits` significant digits, in the shorter of the notations "43373200" and "4.34e+17",
-/// but from 1e-4 to 1 without an exponent; "-" for NaN and infinities. With kAllDigits the text reads back as the same
-/// double.
+/// Returns a number rounded to `digits` significant digits, in the shorter of the notations "43373200" and "4.34e+17".
+/// A magnitude from 1e-4 to 1 is always written without an exponent. Returns "-" for NaN and infinities. With
+/// kAllDigits the text reads back as the same double.
 std::string rounded_text(double value, int digits);
 /// Returns the number of significant digits of `value` from its leading digit down to the decimal place of the
 /// tolerance's leading digit, from 1 to `max_digits`. Returns `max_digits` without a tolerance above 0, and for a value
@@ -20,7 +20,7 @@ std::string rounded_text(double value, int digits);
 int deserved_digits(double value, const std::optional<double>& tolerance, int max_digits);
 /// Returns the bound of a number whose error is not smaller than the number (is_only_bounded()): the sum of magnitude
 /// and tolerance, rounded up to one significant digit. The text is "<= 0.4", or "0 +- 0.4" for a negative number. The
-/// page of `report` writes the same text (known_number of hapbench_report).
+/// HTML page of the command `report` has the same text (known_number of hapbench_report).
 std::string bound_text(double value, double tolerance);
 /// Returns a number rounded to the decimal place of the leading digit of its tolerance, without an exponent for
 /// values of at least 1e-4. Returns `digits` significant digits if the tolerance is unknown or not above 0, and

@@ -15,7 +15,8 @@ namespace {
 /// Smallest width [characters] in which a name and its meaning fit beside each other.
 constexpr std::size_t kMinWidth = 40;
 
-/// Returns COLUMNS, or the width of the terminal; npos if standard output is not a terminal.
+/// Returns the environment variable COLUMNS. If it is not set, returns the width of the terminal, or npos if standard
+/// output is not a terminal.
 std::size_t output_width() {
   const char* columns = std::getenv("COLUMNS");
   if (const long given = columns == nullptr ? 0 : std::atol(columns); given > 0)

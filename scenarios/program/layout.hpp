@@ -12,8 +12,9 @@ class Layout {
   /// `width` is the length of a line [characters]; npos: unlimited. `in_full` adds the table columns that only
   /// --wide shows.
   explicit Layout(std::size_t width = std::string::npos, bool in_full = false) : width_(width), in_full_(in_full) {}
-  /// Returns the layout of standard output. Its width is the environment variable COLUMNS, or the width of the
-  /// terminal without this variable. The width is unlimited in a pipe or file and with `in_full`.
+  /// Returns the layout of standard output. With `in_full` its width is unlimited. Otherwise its width is the
+  /// environment variable COLUMNS. If this variable is not set, the width is the width of the terminal, and unlimited
+  /// if standard output is a pipe or a file.
   static Layout of_output(bool in_full);
 
   std::size_t width() const { return width_; }

@@ -72,8 +72,8 @@ std::pair<int, std::string> run_subprocess(const std::string& line) {
   return {WIFEXITED(ended) ? WEXITSTATUS(ended) : kStopped + WTERMSIG(ended), text};
 }
 
-/// Runs the shell command in a child process and stores its text and messages in `host`. Returns its exit
-/// status. Throws InputError for faults that it reports with the status of bad input.
+/// Runs the shell command in a child process and stores the text and messages of the child in `host`. Returns the exit
+/// status of the child. If this status is kBadInput, throws the errors that the child printed as InputError.
 int run_captured(CapturedOutput& host, const std::string& line) {
   const auto [status, text] = run_subprocess(line + " 2>&1");
   constexpr std::string_view kError = "hapbench: error: ", kWarning = "hapbench: warning: ";
@@ -95,10 +95,10 @@ int run_captured(CapturedOutput& host, const std::string& line) {
 }
 
 /// Internal argument of "hapbench import device". The Python package starts one process with this argument and requests
-/// thousands of simulations of a device log from it. Both pipes carry doubles. The input is, in this order: the number
-/// of rows, the times of the rows, the forces of the rows, and the requests. A request is a number of rows (0 ends the
-/// requests) and the fields of a LoggedHandle. The answer to a request on standard output is the positions at these
-/// rows.
+/// thousands of simulations of a device log from it. Standard input and standard output carry binary doubles. The input
+/// is, in this order: the number of rows, the times of the rows, the forces of the rows, and the requests. A request is
+/// a number of rows (0 ends the requests) and the fields of a LoggedHandle. The answer to a request is the positions at
+/// the first rows, as many as the request gives.
 constexpr const char* kSimulateLog = "--simulate-log";
 
 int simulate_log_for_pipe() {

@@ -36,8 +36,8 @@ class Report {
   const std::filesystem::path& folder() const { return folder_; }
   /// Appends printed text. It is not printed with --table.
   void add_text(std::string_view text) { text_ += text; }
-  /// Appends a table to the printed text and to the tables of --table. `max_width`: largest width in the text
-  /// [characters], if the output is wider.
+  /// Appends a table to the printed text and to the tables of --table. In the text, the table is at most as wide as the
+  /// output and at most `max_width` characters wide.
   void show(Table table, std::size_t max_width = std::string::npos) {
     text_ += table.text(std::min(max_width, context_.layout().width()));
     tables_.push_back(std::move(table));

@@ -44,8 +44,8 @@ struct ReproduceOptions : CommonOptions {
   fs::path runs() const { return folder() / "thesis"; }
 };
 
-/// Returns the claims with these ids, which may be in upper or lower case. Returns all claims without ids. Throws
-/// InputError for an unknown id.
+/// Returns the claims with these ids, which may be in upper or lower case. If `ids` is empty, returns all claims.
+/// Throws InputError for an unknown id.
 std::vector<Claim> chosen_claims(const std::vector<std::string>& ids) {
   std::vector<Claim> claims = all_claims();
   if (ids.empty()) return claims;
@@ -93,8 +93,9 @@ std::optional<FolderLock> locked_ledger(const fs::path& ledger, ProgramContext& 
   return locked_results(context, folder, ledger.filename().string(), "reproduce", "--ledger");
 }
 
-/// Runs the scenario and writes its results to a subdirectory of `directory`. Does nothing if the scenario was
-/// run before. Keeps current results unless `rerun`.
+/// Runs the scenario and writes its results to a subdirectory of `directory`. Does nothing if this command has already
+/// called provide() for the scenario. If `rerun` is false and the subdirectory has current results (is_current()),
+/// keeps these results and does not run the scenario.
 void provide(ThesisRun& run, const fs::path& directory, bool rerun) {
   if (run.seconds) return;
   run.seconds = seconds_of(1, [&] {
@@ -115,8 +116,8 @@ std::vector<JudgedClaim> judge(const std::vector<Claim>& claims, const Published
   ProgressBar bar(options.output.quiet ? "" : "claims", claims.size(), context.progress);
   for (const Claim& claim : claims) {
     bar.show(judged.size());
-    std::set<std::string> used;  // scenarios
-    double providing = 0.0;      // [s]
+    std::set<std::string> used;  // scenarios that the claim uses
+    double providing = 0.0;      // time of the calls of provide() [s]
     const auto run_of = [&](const std::string& scenario) {
       return std::ranges::find(runs, scenario, &ThesisRun::name);
     };

@@ -28,7 +28,8 @@ std::string Result::*distinct_name(std::span<const Result> reports) {
   return reports.front().name == reports.back().name ? &Result::algorithm : &Result::name;
 }
 
-/// Returns the outcome of a run, with the time if the run ended before its last row.
+/// Returns the outcome of a run. Adds the time at which the run ended, if it ended early, or the time of the last
+/// contact, if the tool lost contact or went through the surface.
 std::string ending_text(const Result& report) {
   const std::string name(outcome_name(report.end.outcome));
   const auto last = number_of(report.metrics, "last_contact_s");

@@ -67,8 +67,8 @@ std::string step_time_text(std::span<const Result> reports, const Layout& layout
 void report_fidelity(std::span<const Result> reports, const Layout& layout, Report& report);
 
 /// Returns the warnings about the runs of one scenario, without the warnings that were printed before the runs. Equal
-/// texts of several algorithms are merged into one line with the names of the algorithms. If the runs of one algorithm
-/// differ in their numbers, its line quotes the first run and counts the others.
+/// texts of several algorithms are merged into one line with the names of the algorithms. If the warnings about several
+/// runs of one algorithm differ only in their numbers, one line quotes the first warning and counts the others.
 std::vector<std::string> run_warnings(std::span<const Result> reports);
 
 /// Returns a diagnosis rule whose threshold is exceeded, with its value, its threshold and their unit: "buzz (0.289 >

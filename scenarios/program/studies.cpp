@@ -155,8 +155,8 @@ std::optional<StudyArguments> StudyArguments::in(const ProgramArguments& argumen
     const auto is_given = [&](const std::string& argument) {
       return argument == option || argument.starts_with(option + "=");
     };
-    // An option of the command line replaces the study's option. Options with an object may be repeated and are
-    // combined.
+    // An option of the command line replaces the same option of the study. If the study's value is an object, the
+    // option may be repeated, and both options are used.
     if (!value.is_object() && std::ranges::any_of(arguments, is_given)) continue;
     found.lines[option] = line_of(text, key);
     std::ranges::move(option_arguments(option, value), std::back_inserter(found.arguments));

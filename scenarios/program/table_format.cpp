@@ -82,7 +82,8 @@ std::string replaced(std::string_view text, const std::array<std::pair<std::stri
   return result;
 }
 
-/// Returns the text in one line. Other control characters, which LaTeX refuses, become "?".
+/// Returns the text in one line. Line ends and tabs become spaces. Other control characters, which LaTeX refuses,
+/// become "?".
 std::string in_one_line(std::string_view text) {
   std::string line(text);
   std::ranges::replace_if(

@@ -63,7 +63,7 @@ std::string problem_of(const std::string& argument, const CLI::App& program, con
 }
 
 /// Returns the text of an error of CLI11. For a value that is not a number, CLI11 writes "Could not convert: OPTION =
-/// VALUE" and does not name what is allowed.
+/// VALUE"; this function replaces that text by a text that says what is allowed.
 std::string text_of(const CLI::ParseError& error) {
   constexpr std::string_view kHead = "Could not convert: ", kEquals = " = ";
   const std::string text = error.what();

@@ -105,8 +105,8 @@ Columns<Setting> timing_columns() {
        &Setting::is_knee}};
 }
 
-/// Returns a sentence with the cheapest setting of a problem below `max_error` [m], or the reason why no setting is
-/// named.
+/// Returns a sentence with the cheapest setting of a problem whose position error is below `max_error` [m], or the
+/// reason why no setting is named.
 std::string answer_text(const WorkPrecisionProblem& problem, double max_error) {
   if (!problem.is_predictable) {
     return fmt::format(

@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kMaxRamp = 60.0;  ///< largest ramp_s that a mount may have [s]
 
-/// A field of a device that stands for software in a real system, and the mode of the renderer that uses the field.
+/// A field of a device that models software of a real system, and the mode in which the renderer uses this field.
 struct UsedField {
   const char* name;
   std::uint32_t mode;

@@ -25,7 +25,8 @@ class Approach {
   /// earlier step.
   void add(const StepRecord& record, bool before_contact) noexcept;
 
-  /// Returns the longest displacement of the tip in a step [m]; see OutcomeObserver::longest_step().
+  /// Returns the longest displacement of the tip in a step near the surface [m], as defined at
+  /// OutcomeObserver::longest_step().
   double longest_step() const { return longest_step_; }
   /// Distance of the tip centre from the environment's bounding box in the last step [m]; 0 inside the box.
   double distance() const { return distance_; }
@@ -35,8 +36,8 @@ class Approach {
     /// distance: distance of the tool from the nearest surface point [m]. time: time of the step with this distance
     /// [s].
     double distance, time;
-    /// Time to reach the surface at the speed of the last steps [s]. Empty unless the tool was closest in the
-    /// last step.
+    /// Time to reach the surface at the speed of the last steps [s]. Empty if the tool was closest before the last
+    /// step, or if it did not approach the surface in the last steps.
     std::optional<double> time_to_contact = {};
   };
   /// Returns the smallest distance of the tool from the surface points before the first contact, within 1 %.

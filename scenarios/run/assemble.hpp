@@ -26,9 +26,9 @@ SimulationParts assemble_rendering(const Scenario& scenario, const NamedFiles& f
 /// reads the scenario's files itself, and so needs no CheckedScenario.
 SimulationParts assemble(const Scenario& scenario);
 
-/// Returns the surface of the environment: the triangles from whose vertices the point shell is made, or the
-/// triangles of the mesh file. For an environment without triangles, returns only the points, as vertices. Throws
-/// InputError if the file cannot be used.
+/// Returns the surface of the environment. For a mesh, returns the triangles of the mesh file. For a block, returns the
+/// triangles whose vertices are the points of the point shell. For every other environment, returns only the points of
+/// the point shell, as vertices. Throws InputError if the file cannot be used.
 TriangleSoup environment_surface(const Scenario& scenario, const NamedFiles& files);
 
 }  // namespace hapbench

@@ -15,7 +15,8 @@
 namespace hapbench {
 namespace {
 
-/// Throws InputError if the scenario records a force reference but the stroke file has no measured force.
+/// Throws InputError if the scenario records a reference force but has none: it has no field reference_force, and the
+/// stroke file has no measured force.
 void check_force_reference(const LoadedScenario& loaded, NamedFile& file) {
   const Scenario& scenario = loaded.scenario;
   if (!scenario.record.force_reference || scenario.reference_force || file.stroke()->force) return;

@@ -130,8 +130,8 @@ double median_interval(const ContactTrace& trace) {
   return *middle;
 }
 
-/// Returns the unit of the trace's clock with which at least five times as many queries are covered, and at least a
-/// tenth of all queries. Returns null if there is no such unit.
+/// Returns the unit of the trace's clock with which at least five times as many queries are covered as with the second
+/// (`coverage`), and at least a tenth of all queries. Returns null if there is no such unit.
 const ClockUnit* unit_of_trace(const ContactTrace& trace, const RunTimes& run, std::int64_t every,
                                const TraceCoverage& coverage) {
   for (const ClockUnit& unit : kClockUnits) {
@@ -205,7 +205,7 @@ std::optional<Warning> stroke_clock_warning(const Stroke& stroke, const TimeFiel
   const std::string both =
       facts(fmt::format("stroke has {} samples", samples.size()), start, stop, samples.size(), run);
   // Warn if another unit of time fits better, or if the sample interval is unlikely.
-  constexpr double kMissing = 0.05;  // fraction of the run without samples from which a warning is returned
+  constexpr double kMissing = 0.05;  // if a larger fraction of the run has no samples, a warning is returned
   const double interval = interval_of(samples);
   const bool is_unlikely = is_unlikely_interval(interval, run);
   const bool is_short = stop + 2.0 * interval < (1.0 - kMissing) * run.end;

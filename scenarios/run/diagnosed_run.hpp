@@ -78,27 +78,27 @@ Number fault(const DiagnosedRun& run);
 /// Returns 1 if the run left its bounds although all numbers were finite, and the scene does not expect this; otherwise
 /// an empty value.
 Number diverged(const DiagnosedRun& run);
-/// Returns the mean angle between the rendered force and the force that was measured with the stroke; empty if fewer
-/// than 10 steps have both forces, or if the scenario defines another reference force.
+/// Returns the mean angle [rad] between the rendered force and the force that was measured with the stroke; empty if
+/// fewer than 10 steps have both forces, or if the scenario defines another reference force.
 Number measured_force_angle(const DiagnosedRun& run);
 Number longest_step(const DiagnosedRun& run);
 bool step_exceeds_half_width(const DiagnosedRun& run);
 Number buzz(const DiagnosedRun& run);
 Number pop(const DiagnosedRun& run);
-/// Returns the rms of the tool's velocity above 30 Hz over all steps [m/s], for a free tool without settled contact or
-/// without a pressing hand. Empty if the mean force in settled contact is a reference for vibration (buzz()), and for
-/// springs.
+/// Returns the rms of the tool's velocity above 30 Hz over all steps [m/s]. This number replaces buzz() for a tool that
+/// moves freely and has no settled contact or no pressing hand. Empty if there is a mean force in settled contact to
+/// which buzz() can refer, if a script moves the tool, and for springs.
 Number shake(const DiagnosedRun& run);
 Number chatter(const DiagnosedRun& run);
 /// Returns K divided by the largest stable K of the linear loop in contact, rounded to six digits. Empty unless the run
 /// diverged, lost contact or vibrates. Also empty without a linear loop, and if the loop is unstable at any K
 /// (unstable_loop()).
 Number stability_limit_ratio(const DiagnosedRun& run);
-/// Returns 1 if hand and device are unstable without contact by the eigenvalues of their loop, under the conditions of
-/// stability_limit_ratio(); otherwise an empty value.
+/// Returns 1 if the run diverged, lost contact or vibrates, the tool moves freely, and the loop of hand and device is
+/// unstable even without contact, by its eigenvalues; otherwise an empty value.
 Number unstable_alone(const DiagnosedRun& run);
-/// Returns 1 if the linear loop with a contact is unstable even with a stiffness of almost zero, under the conditions
-/// of stability_limit_ratio(); otherwise an empty value.
+/// Returns 1 if the run diverged, lost contact or vibrates, the linear loop with a contact is unstable even with a
+/// stiffness of almost zero, and unstable_alone() is empty; otherwise an empty value.
 Number unstable_loop(const DiagnosedRun& run);
 /// Returns the point spacing divided by the spacing at which four points would be in contact. The number of contacts is
 /// proportional to 1 / spacing^2. Empty if the path of the tip in contact is shorter than ten spacings, and for
@@ -118,8 +118,8 @@ Number drift(const DiagnosedRun& run);
 Number depth_in_half_widths(const DiagnosedRun& run);
 Number softness(const DiagnosedRun& run);
 Number saturation(const DiagnosedRun& run);
-/// Returns the number of landings per second that no script causes. Does not count the first landing, nor one landing
-/// for each time at which the hand's script may have lifted the tool.
+/// Returns the number of landings per second [1/s]. Does not count the first landing, nor the landings that the hand's
+/// script may have caused: one landing for each time at which the script may have lifted the tool.
 Number bounces(const DiagnosedRun& run);
 
 /// Returns the frequency of the vibration as text: half the number of sign changes of the strongest component of the

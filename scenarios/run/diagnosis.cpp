@@ -153,8 +153,8 @@ std::vector<Diagnosed> diagnosed(const DiagnosedRun& run, bool Rule::*mark, bool
   std::vector<Diagnosed> found;
   for (const Rule& rule : kRules) {
     if (mark != nullptr && !(rule.*mark)) continue;
-    // If the run ended by a fault of a law or a module, report only the fault: the other numbers do not show their
-    // causes.
+    // If the run ended by a fault of a law or a module, report only the fault. The other rules would name causes that
+    // did not end the run.
     if (beyond_threshold && rule.value != fault && fault(run)) continue;
     const Number value = rule.value(run);
     if (!value || (beyond_threshold && !(*value > rule.threshold))) continue;

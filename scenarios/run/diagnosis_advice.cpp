@@ -71,7 +71,7 @@ std::vector<std::string> against_measured_causes(const DiagnosedRun& run) {
 }
 
 /// Returns the advice against a rough force: remedies for the measured causes or, if no cause was measured, a smaller K
-/// for a tool that is free to move. `laws`: end of the sentence "… shows which algorithm has".
+/// for a tool that is free to move. `laws`: the words after "… shows which algorithm has" in the last sentence.
 std::string against_roughness(const DiagnosedRun& run, const char* laws) {
   std::vector<std::string> remedies = against_measured_causes(run);
   const std::string comparison =

@@ -10,7 +10,7 @@
 namespace hapbench {
 namespace {
 
-constexpr double kAtLimit = 0.999;  ///< fraction of a limit from which a force counts as being at the limit
+constexpr double kAtLimit = 0.999;  ///< a force of at least this fraction of a limit counts as at the limit
 
 /// Returns the largest force that the device and the rendering allow [N]; empty without limits.
 std::optional<double> force_limit(const Scenario& scenario) {

@@ -15,9 +15,9 @@
 namespace hapbench {
 namespace {
 
-// Position step of the central differences [m]: at most a ten-thousandth of the size of tools and depths.
+// Position step of the central differences [m]: at most a ten-thousandth of the tool's size and of the depth.
 constexpr double kPositionStep = 1e-8;
-constexpr double kVelocityStep = 1e-4;   // velocity step of the differences [m/s]; any value, as dampers are linear
+constexpr double kVelocityStep = 1e-4;   // velocity step of the differences [m/s]; any step is right for linear dampers
 constexpr double kRelativeError = 1e-7;  // relative error of the differences; smaller entries count as zero
 
 /// Returns the scenario without the parts that the linear theory leaves out.
@@ -74,7 +74,7 @@ class RestingTool {
     constexpr double kLargestStep = 0.1;  // largest step, in half widths of the tool
     // Step length below which the search ends [m]: about kRelativeError times the length of the first steps.
     constexpr double kConverged = 1e-10;
-    // A simulated subject adapts its force, so the pose of the run counts as the equilibrium.
+    // A simulated subject adapts its force during the run, so the pose `near` counts as the equilibrium.
     if (parts_.hand->task() != nullptr) return true;
     for (int i = 0; i < kIterations; ++i) {
       const Vec3 before = position_;
@@ -176,9 +176,9 @@ class RestingTool {
     input_ = measured_.input;
   }
 
-  /// Returns the step that a linear force with this slope [N/m] moves to equilibrium. A tool moves only in directions
-  /// in which forces act: a law without a force along the surface does not move the tool along the surface, even if its
-  /// normal force depends on the position along the surface.
+  /// Returns the displacement of the tool [m] to its equilibrium, if the total force changes linearly with this slope
+  /// [N/m]. The tool moves only in directions in which forces act: a law without a force along the surface does not
+  /// move the tool along the surface, even if its normal force depends on the position along the surface.
   Vec3 newton_step(const Mat3& slope) const {
     constexpr double kSingular = 1e-6;  // smaller singular values, in units of the largest, count as zero
     const Eigen::JacobiSVD<Eigen::Matrix3d> svd(slope, Eigen::ComputeFullU | Eigen::ComputeFullV);
@@ -234,8 +234,8 @@ std::optional<ContactAtRest> contact_at_rest(const Scenario& scenario, const Nam
   RestingTool tool(linear, files, shell, near);
   if (!tool.touches()) return std::nullopt;
   const bool is_equilibrium = tool.find_equilibrium();
-  // Without an equilibrium, linearise at the pose of the run. The search ended where the force jumps, and derivatives
-  // across a jump have no meaning.
+  // Without an equilibrium, linearise at the pose `near`. The last pose of the search may lie where the force jumps,
+  // and derivatives across a jump have no meaning.
   LinearContact contact = is_equilibrium ? tool.linearised() : RestingTool(linear, files, shell, near).linearised();
   if (!contact.rendered.stiffness.allFinite() || !contact.rendered.damping.allFinite()) return std::nullopt;
   // A hand that is attached to the handle also moves between the samples. It is therefore part of the device and not of
@@ -296,7 +296,7 @@ std::optional<double> limit_along(const LimitWalk& walk, const std::function<std
 
 std::optional<double> linear_stiffness_limit(const CheckedScenario& scenario,
                                              const std::shared_ptr<const PointShell>& shell, const ContactState& near) {
-  // kStep: factor between two values of K; kMax, kMin: range of K, in units of the scenario's K.
+  // kStep: factor between successive values of K; kMax, kMin: range of K, in units of the scenario's K.
   constexpr double kStep = 1.1, kMax = 2.0, kMin = 1e-9;
   constexpr double kResolution = 1e-10;
   const double K = scenario.scenario().rendering.stiffness;

@@ -9,12 +9,13 @@
 #include "sim/geometry/point_shell.hpp"
 #include "sim/loop/simulation.hpp"
 
-/// Linearisation of a scenario's tool that rests in contact.
+/// Linearises the forces on a scenario's tool that rests in contact.
 namespace hapbench {
 
-/// A state of a run in contact, from which linear_contact() searches the equilibrium.
+/// State of a run while the tool is in contact. From this state, linear_contact() searches for the equilibrium.
 struct ContactState {
-  ToolPose pose;      ///< pose of the tool; if the handle moves the tool, with the true position of the handle
+  ToolPose pose;      ///< pose of the tool; if the handle moves the tool, its position is that of the handle (not
+                      ///< the position that the encoder measures)
   double time = 0.0;  ///< [s]
 };
 
@@ -25,16 +26,16 @@ inline ContactState contact_state(const StepRecord& record) noexcept {
   return state;
 }
 
-/// Linearisation of a contact at the equilibrium, or at the pose of the run if no equilibrium was found.
+/// Linearisation of a contact at the equilibrium, or at the given ContactState if no equilibrium was found.
 struct ContactAtRest {
   LinearContact contact;
   bool is_equilibrium = false;  ///< false if the search did not converge: a surface too soft, or a force that jumps
 };
 
-/// Returns derivatives of the rendered force and of the hand's force at the equilibrium of the tool near `near`,
-/// without dry friction, encoder, noise, and force stages. The derivatives of the rendered force are central
-/// differences with respect to position and velocity of the tool, relative errors 1e-7. The set of contacts is held
-/// constant: where a point begins to touch, the difference is one-sided.
+/// Returns derivatives of the rendered force and of the hand's force at the equilibrium of the tool near `near`. Dry
+/// friction, encoder, sensor noise, force stages and passivity controller are left out. The derivatives of the rendered
+/// force with respect to position and velocity of the tool are central differences with relative errors of 1e-7. The
+/// set of contacts is held constant: where a point begins to touch, the difference is one-sided.
 ///
 /// The equilibrium is found by Newton's method, with the targets of the hand as at the time of `near`. Without an
 /// equilibrium, the derivatives belong to the pose of `near`; a law whose force jumps when a point begins to touch need
@@ -59,7 +60,8 @@ class ContactLoops {
   ContactLoops(const ContactState& near, bool is_stiffness, bool at_any_pose)
       : near_(near), is_stiffness_(is_stiffness), at_any_pose_(at_any_pose) {}
 
-  /// Returns true if the loop of the scenario is stable; empty without a contact or a linear loop.
+  /// Returns true if the loop of the scenario is stable. Returns nothing if there is no contact to linearise, or if
+  /// contact_loop() is empty.
   std::optional<bool> is_stable(const Scenario& scenario, const NamedFiles& files,
                                 const std::shared_ptr<const PointShell>& shell);
 
@@ -71,10 +73,12 @@ class ContactLoops {
   RenderingConfig known_rendering_;
 };
 
-/// Sequence of values of a field in the search for its linear limit.
+/// Sequence of values of a scenario field, for the search for the field's linear limit: the value at which the
+/// linearised loop becomes unstable.
 struct LimitWalk {
   double start = 0.0;
-  /// Returns the next value above (`up`) or below a value; the value itself at the end of the range.
+  /// Returns the next value above `value` if `up` is true, otherwise the next value below. At the end of the range,
+  /// returns `value` itself.
   std::function<double(double value, bool up)> next = {};
   /// Returns true if the interval is small enough to end the bisection.
   std::function<bool(double stable, double unstable)> is_resolved = {};
@@ -89,8 +93,8 @@ std::optional<double> limit_along(const LimitWalk& walk, const std::function<std
 /// Returns the largest stiffness K [N/m] at which the loop of hand, device and contact is stable, searched from the
 /// scenario's K in steps of 10 %, up to twice this K and down to a billionth of it. Infinite if the loop is stable up
 /// to twice K; 0 if no K is stable. At each K, the contact is linearised at the equilibrium of the tool near `near`. If
-/// a K has no equilibrium, the loop uses the last contact that was found, converted to this K by scaled(). Empty
-/// without has_linear_loop(), and if the tool touches nothing at `near`.
+/// a K has no equilibrium, the loop uses the last contact that was found, converted to this K by scaled(). Empty if
+/// has_linear_loop() is false or the tool touches nothing at `near`.
 std::optional<double> linear_stiffness_limit(const CheckedScenario& scenario,
                                              const std::shared_ptr<const PointShell>& shell, const ContactState& near);
 

@@ -47,8 +47,8 @@ void allow_all_modules();
 
 /// Function called before a new law is loaded. Its result is kept alive until loading has finished. If several
 /// threads may load laws, the function must throw InputError while another thread reads the table of
-/// algorithms, and its result must keep other threads from reading the table. Empty: only one thread loads
-/// laws.
+/// algorithms, and its result must keep other threads from reading the table. May be empty if only one thread
+/// loads laws.
 using LoadingGuard = std::function<std::shared_ptr<void>()>;
 
 /// Loads a module that the user named. Registers a law as an algorithm until the program ends. Allows scenarios to name
@@ -63,8 +63,8 @@ void load_modules_in(const std::string& what, const std::string& folders, const 
 /// Returns the modules that load_module() has loaded in this process, in the order of loading.
 const std::vector<LoadedModule>& loaded_modules();
 
-/// Throws InputError, with the option that gives permission, unless the user has named this library or has allowed all
-/// libraries.
+/// If the user has neither named this library nor allowed all libraries, throws InputError with a message that names
+/// the option that gives permission.
 void require_module_permission(const std::filesystem::path& file);
 
 /// Checks that a library may be loaded and is an ELF file, without loading it. Throws InputError.

@@ -7,8 +7,8 @@
 namespace hapbench {
 
 /// Creates directories for results. The destructor removes the created directories that are still empty, so
-/// that failed work leaves no empty directories. The directory of another process stays if that process has locked
-/// it (folder_lock.hpp), because it then holds a file.
+/// that failed work leaves no empty directories. A directory that another process has locked (folder_lock.hpp) is not
+/// empty and stays, because it contains the file of the lock.
 class NewDirectories {
  public:
   NewDirectories() = default;

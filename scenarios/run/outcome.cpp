@@ -303,8 +303,8 @@ class OutcomeObserverImpl final : public OutcomeObserver {
   }
 
   /// Returns true if a dragged tool advanced by less than its width, although it should have advanced by more than two
-  /// widths. The metrics of this run look good but do not describe a drag. (If the tool follows the hand, the spring
-  /// between them stretches by less than the tool's width.)
+  /// widths. The metrics of such a run look good but do not describe a drag. If the tool follows the hand, it advances
+  /// by more than its width, because the spring between hand and tool stretches by less than the tool's width.
   bool not_dragged() {
     const double width = 2.0 * tool_->half_width();
     return progress_ && progress_->progress() < width &&

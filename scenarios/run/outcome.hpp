@@ -20,7 +20,7 @@ struct OutcomeFacts {
   bool began_inside = false;   ///< the tip centre was inside the environment's solid in the first step
   std::string scale_question;  ///< question about a size that is probably wrong (scale_question()); usually empty
   /// Dry friction of an impedance device that holds the handle at the end of the trial against a smaller force of the
-  /// hand [N per axis]. Empty if friction does not hold the handle, or if the tool touched the surface before.
+  /// hand [N per axis]. Empty if friction does not hold the handle, or if the tool touched the surface in the trial.
   std::optional<double> holding_friction;
 };
 
@@ -37,7 +37,7 @@ enum class RunLength {
 /// A failure that no later step can undo.
 /// - went_through: the tip centre is deeper than the tool's half width, or the core of the tool has passed through the
 ///   surface (Passage::deep and left, CorePassage::event). The outcome of the full run is then went_through, or
-///   diverges if a value leaves its bound later.
+///   diverges if a later step exceeds a bound of the scenario.
 /// - lost_contact, or no_contact if the tool never touched: a freely moving tool is further from the environment's
 ///   bounding box than the sum of the box's diagonal and the tool's extent, does not move towards the box, has no
 ///   rendered force, and the hand (none, or of type force or push with a constant force, on an ideal device) does not

@@ -44,8 +44,8 @@ void hide_status() {
   if (is_terminal()) std::fprintf(stderr, "\r\033[K");
 }
 
-/// Prints the elapsed seconds until a stop is requested: every second on a terminal, else after 2 s, 4 s, 8 s
-/// and so on.
+/// Prints what() and the elapsed seconds repeatedly until a stop is requested. The first line appears after 2 s. On a
+/// terminal, the line is updated every second; otherwise a new line is printed after 4 s, 8 s and so on.
 void show_seconds(const std::function<std::string()>& what, const std::stop_token& ends) {
   std::mutex mutex;
   std::condition_variable_any ended;

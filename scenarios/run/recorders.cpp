@@ -17,7 +17,7 @@
 namespace hapbench {
 namespace {
 
-/// Returns the source of ratios.csv: the ratio after each requested number of shaping iterations.
+/// Returns the source of ratios.csv: the stiffness ratios after each requested number of shaping iterations.
 RowSource ratios(const RecordedTrial& t) {
   const auto& iterations = t.fields.ratio_iterations;
   constexpr auto start = [](ContactBuffer& contacts) noexcept { return shape_weights(contacts, 0); };
@@ -34,7 +34,7 @@ struct RecorderEntry {
 };
 
 // The observers that find() looks up exist, because the same record fields create them. checked() has rejected
-// a force reference that is not measured.
+// record.force_reference for a scenario that has neither a reference force nor a measured force.
 const RecorderEntry kRecorders[] = {
     {kTrajectoryTable, &RecordFields::trajectory,
      [](const RecordedTrial& t) { return trajectory_rows(t.fields, t.inside); }},

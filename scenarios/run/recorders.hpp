@@ -39,12 +39,12 @@ Recorders make_recorders(const RecordedTrial& trial, const RecordTarget& target)
 /// Returns descriptions of the tables that a run with these record fields writes.
 std::vector<ResultTable> tables_with(const RecordFields& fields);
 
-/// Returns descriptions of the tables of all recorders.
+/// Returns descriptions of all tables that a run can record.
 std::vector<ResultTable> record_tables();
 
-/// Returns an estimate of the bytes that a run of the scenario writes, all trials together. Assumes that every
-/// step is done, 12 bytes for each number and 30 contacts a step. If the number of contacts is right, the
-/// estimate is within a factor of two. O(1).
+/// Returns an estimate of the bytes that a run of the scenario writes, all trials together. Assumes that the run
+/// makes all its steps, 12 bytes for each number and 30 contacts in each step. If the number of contacts is right,
+/// the estimate is within a factor of two. O(1).
 double expected_output_bytes(const Scenario& scenario);
 
 }  // namespace hapbench

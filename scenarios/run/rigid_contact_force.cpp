@@ -19,15 +19,15 @@ namespace {
 
 using HandSpring = ReferenceForce::HandSpring;
 
-/// Returns the hand's spring if this spring leads a free tool. Empty without a hand spring, or if the position is
-/// prescribed.
+/// Returns the hand's spring if this spring pulls a tool whose position is free. Empty without a hand spring, or if
+/// the position is prescribed.
 std::optional<HandSpring> leading_hand(const Scenario& scenario) {
   const ImpedanceHandFields* spring = spring_of(scenario.hand);
   if (!position_is_free(scenario.motion) || spring == nullptr) return std::nullopt;
   return HandSpring{spring->target, spring->stiffness};
 }
 
-/// Follows the prescribed path, or the target of `hand` if it leads the tool, and returns the force in every step.
+/// Follows the target of `hand`, or the prescribed path if `hand` is empty, and returns the force in every step.
 ReferenceForce computed(const Scenario& scenario, const NamedFiles& files, const std::optional<HandSpring>& hand) {
   const auto& tool = std::get<CylinderFields>(scenario.tool);
   RigidContact contact(files.at(kEnvironmentFile).mesh().triangles(), {tool.diameter / 2.0, tool.length});

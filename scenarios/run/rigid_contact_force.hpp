@@ -14,7 +14,7 @@ namespace hapbench {
 /// of the hand's spring and k is the stiffness of this spring. The force of a free tool is static (without inertia and
 /// damping) and does not depend on the law's stiffness. The result is cached for other runs with the same path, mesh,
 /// tool and k. Cost: about 20 us a step. Throws InputError if the path begins in contact with the mesh or inside it, or
-/// if the tool's flat far end touches.
+/// if the tool's flat end opposite to the tip touches the mesh.
 std::shared_ptr<const ReferenceForce> rigid_contact_force(const Scenario& scenario, const NamedFiles& files);
 
 }  // namespace hapbench

@@ -37,8 +37,8 @@ MetricsConfig metrics_config(const Scenario& scenario, const SimulationParts& pa
                           .steps = static_cast<std::uint64_t>(scenario.time.steps / scenario.time.stride),
                           .reduction_capacity = if_any(rendering.reduction.has_value(), parts.source->capacity()),
                           .stride = static_cast<std::uint64_t>(scenario.time.stride)};
-  // If the position is prescribed or a handle moves the tool, no integrator applies the friction, and there is
-  // no limit.
+  // If the position is prescribed or a handle moves the tool, no integrator applies the friction force, and
+  // explicit_friction_limit() does not apply.
   if (parts.motion->position_is_free() && !handle_moves_tool(scenario.device))
     config.friction_limit = explicit_friction_limit(*scenario.integrator.type, rendering.mass, scenario.time.step,
                                                     rendering.mu_s, rendering.mu_f);
@@ -174,8 +174,8 @@ class Run {
   const Recorders& recorders() const { return recorders_; }
 
  private:
-  /// Makes all steps. At a final failure, removes the observers. Then ends after a loss of contact, but continues after
-  /// a passage through the surface, because the run may still diverge.
+  /// Makes all steps. At a final failure, removes the observers. If the failure is a loss of contact, the trial ends.
+  /// If it is a passage through the surface, the trial continues without observers, because it may still diverge.
   SimulationResult step_to_end(Simulation& simulation, const OutcomeObserver& outcome, ProgressBar& bar) {
     // Measure allocations, preemptions and time of the step loop.
     const AllocationCount allocations;

@@ -31,10 +31,10 @@ namespace hapbench {
 ///   ns a step.
 /// - `shell`: make_shell() of the scenario, if it already exists. Several runs may share it, also at the same
 ///   time.
-/// - `length`: with RunLength::until_failure, a run that fails for good, or diverges unexpectedly, ends at that moment:
-///   it has RunEnd::ended_at, no metric has a value, and observers and recorded tables get no further step. The outcome
-///   is the outcome of the full run. Therefore, if the tool went through the surface, the remaining steps are simulated
-///   without observers, because the run may still diverge.
+/// - `length`: with RunLength::until_failure, the observation of a run ends when the run fails for good or diverges
+///   unexpectedly. The run then has RunEnd::ended_at, no metric has a value, and observers and recorded tables get no
+///   further step. The outcome is the outcome of the full run. Therefore, if the tool went through the surface, the
+///   remaining steps are simulated without observers, because the run may still diverge.
 /// Throws InputError before anything is written if the point shell or tool cannot be built from the files.
 /// Throws IoError if writing fails, and Stopped if a signal ends the run. No partial results remain after an
 /// error.

@@ -92,8 +92,8 @@ std::vector<Warning> stroke_warnings(const Stroke& stroke, const ToolShape& tool
   return warnings;
 }
 
-/// Returns a warning if the front point of the tool's core (core_offset) lies behind the nearest surface point, on
-/// the side opposite to the normal of this point.
+/// Returns a warning if the front point of the tool's core (struct Passage) lies behind the surface point nearest to
+/// it, on the side opposite to the normal of this surface point.
 std::optional<Warning> wrong_side_warning(const PointShell& shell, const ToolShape& tool, const ToolPose& pose) {
   const Vec3 core = pose.position - core_offset(tool) * pose.axis;
   // Find the nearest point of the surface.
@@ -105,7 +105,8 @@ std::optional<Warning> wrong_side_warning(const PointShell& shell, const ToolSha
     nearest = i;
     distance = to_point;
   }
-  // Cosine of 45 degrees. Within this angle, the core lies behind the point and not beside an edge of the surface.
+  // Cosine of 45 degrees. If the direction from the surface point to the core deviates less than this from the reversed
+  // normal, the core lies behind the point and not beside an edge of the surface.
   constexpr double kBehind = 0.7;
   const SurfacePoint point = shell.point(nearest);
   const double behind = point.normal.dot(point.position - core);

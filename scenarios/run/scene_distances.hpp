@@ -22,7 +22,7 @@ struct Gap {
 /// O(points).
 Gap gap_between(const ToolShape& tool, const ToolPose& pose, const PointShell& shell);
 
-/// Spacing of the shell's points, and the scenario field that sets it.
+/// Spacing of the environment's points, and the scenario field that sets the spacing.
 struct PointDistance {
   const char* path;  ///< path of the field, as in --set
   double metres;
@@ -30,7 +30,7 @@ struct PointDistance {
                          ///< vertices of the mesh
 };
 
-/// Returns the point spacing of the environment; empty if no field sets it.
+/// Returns the point spacing of the environment; empty if the environment has no field that sets a spacing.
 std::optional<PointDistance> point_distance(const LoadedScenario& loaded);
 
 /// Returns the length of a box's diagonal [m].

@@ -202,8 +202,8 @@ static std::vector<Eigen::MatrixXd> loop_with(const Scenario& scenario, const Li
                     device_loop(scenario, 1.0).loop);
 }
 
-/// Returns the matrices of the loop while dry friction holds the tool. The friction bristle acts in the plane
-/// perpendicular to the stiffest direction, which is along the surface.
+/// Returns the matrices of the loop while dry friction holds the tool. The friction bristle acts along the surface, in
+/// the plane perpendicular to the contact's stiffest direction.
 static std::vector<Eigen::MatrixXd> loop_held_by_friction(const Scenario& scenario, const LinearContact& contact) {
   const Scenario stuck = stuck_scene(scenario);
   const Mat3& K = contact.rendered.stiffness;

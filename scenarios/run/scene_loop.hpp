@@ -54,13 +54,13 @@ inline const char* delay_path(const Scenario& scenario) {
 /// spring of stiffness lambda K and damping lambda B, without a device. The hand's force is constant during a step.
 Eigen::Matrix2d step_matrix_with_hand(const Scenario& scenario, double lambda);
 
-/// Returns true if the linear theory covers the scenario's device: its delay is short enough for eigenvalues, and
-/// unmodelled_fields() is empty. True without a device.
+/// Returns true if the linear theory covers the scenario's device: its delay is short enough to compute the loop's
+/// eigenvalues, and unmodelled_fields() is empty. True without a device.
 bool has_linear_loop(const Scenario& scenario);
 
 /// Returns the matrices of the scenario's loop of hand, device and contact in three dimensions (contact_loop() in
-/// linear_loops.hpp), and, with dry friction, also the matrices of the loop in which friction holds the tool. Empty
-/// without has_linear_loop(), or if the loop is too large to solve.
+/// linear_loops.hpp). With dry friction, also returns the matrices of the loop in which friction holds the tool. Empty
+/// if has_linear_loop() is false or the loop is too large to solve.
 std::vector<Eigen::MatrixXd> contact_loop(const Scenario& scenario, const LinearContact& contact);
 
 /// The matrices of one variant of a loop in contact.
@@ -79,14 +79,14 @@ std::vector<NamedLoop> contact_loops(const Scenario& scenario, const LinearConta
 /// damping lambda B along one axis.
 std::vector<NamedLoop> wall_loops(const Scenario& scenario, double lambda, bool over_hands);
 
-/// Returns the name of the part of the loop that is unstable without contact, by the eigenvalues: "the device's servo"
-/// if the device is unstable also without a hand, otherwise "hand and device". Empty if the loop is stable, or without
-/// has_linear_loop().
+/// Returns the name of the part of the loop that is unstable without contact: "the device's servo" if the device is
+/// unstable also without a hand, otherwise "hand and device". The eigenvalues of the state matrices decide. Empty if
+/// the loop without contact is stable, or if has_linear_loop() is false.
 std::string unstable_without_wall(const Scenario& scenario);
 
 /// Returns the state matrix of one step of the tool in contact with a wall of stiffness lambda K and damping
 /// lambda B. With an ideal device, this is step_matrix_with_hand(); with another device, the matrix of
-/// device_loop(). Empty without has_linear_loop().
+/// device_loop(). Empty if has_linear_loop() is false.
 Eigen::MatrixXd contact_step_matrix(const Scenario& scenario, double lambda);
 
 }  // namespace hapbench

@@ -17,9 +17,9 @@ namespace hapbench {
 /// has a wrong unit.
 inline constexpr double kShortestObject = 0.001, kLongestObject = 1.0;
 
-/// Returns the path length along which the hand would drag the tool in `duration` [s] if the surface did not
-/// end [m]. Along a direction, it is speed times duration; along given points, at most the distance to the last
-/// point.
+/// Returns the path length [m] along which the hand would drag the tool in `duration` [s] if the surface did not
+/// end. Along a direction, this length is speed times duration. Along given points, it is at most the path length
+/// to the last point.
 inline double intended_drag_length(const DragHandFields& hand, double duration) {
   return std::min(hand.drag.speed * duration, drag_length(hand, duration));
 }
@@ -37,13 +37,13 @@ const char* size_question(const Environment& environment);
 /// proportion; otherwise an empty text.
 std::string scale_question(const Scenario& scenario, const ToolShape& tool, const Box& environment);
 
-/// Returns a text that describes an unusual position or orientation of a tool in the tool frame, such as "lies across
-/// its axis". Empty if nothing is unusual. `tool`: bounding box of the tool in the tool frame, in which the tip centre
-/// is the origin and the tip points along -z.
+/// Returns a text that describes an unusual position or orientation of a tool in the tool frame, such as "is longer
+/// across its axis than along it". Empty if nothing is unusual. `tool`: bounding box of the tool in the tool frame, in
+/// which the tip centre is the origin and the tip points along -z.
 std::string frame_problem(const Box& tool);
 
-/// Returns warnings about a tool. The proxy algorithm keeps points out of convex tools only, and a mesh may
-/// have a wrong position or orientation in its frame.
+/// Returns a warning if the proxy algorithm renders a tool that is not convex, because it keeps points out of convex
+/// tools only. Also returns a warning if a mesh tool has a frame_problem().
 std::vector<Warning> tool_warnings(const RenderingConfig& rendering, const ToolShape& tool);
 
 }  // namespace hapbench

@@ -15,9 +15,9 @@ double script_period(const Scenario& scenario);
 /// Returns how often the script of the hand or its target may lift the tool off a surface: once for each period or
 /// waypoint. Empty if the number is unknown, because a tremor or a subject leads the tool.
 std::optional<double> scripted_lifts(const Scenario& scenario);
-/// Returns true if a script or the hand's tremor moves the tool, which therefore may never come to rest. Then
-/// only velocity above 30 Hz that exceeds 1 mm/s counts as motion. After the end of the script, any velocity
-/// above 1 mm/s counts.
+/// Returns true if a script or the hand's tremor moves the tool. Such a tool may never come to rest. MotionClassifier
+/// therefore judges only the part of its velocity at frequencies above 30 Hz; after the end of the script, also the
+/// whole velocity.
 bool has_scripted_motion(const Scenario& scenario);
 
 }  // namespace hapbench

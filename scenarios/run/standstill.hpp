@@ -21,8 +21,8 @@ class Standstill {
 
   void add(const StepRecord& record) noexcept;
 
-  /// Returns the interval of the standstill. Empty if the tool moved at the end of the run, or if its target did not
-  /// move.
+  /// Returns the standstill at the end of the run. Empty if the tool moved at the end of the run, or if its target did
+  /// not move far enough.
   std::optional<Stuck> stuck() const;
 
  private:

@@ -18,8 +18,8 @@ std::atomic<Clock::time_point> received_at;
 static_assert(std::atomic<int>::is_always_lock_free && std::atomic<Clock::time_point>::is_always_lock_free,
               "a signal handler may not lock");
 
-/// Time after which an unhandled signal terminates the process: a module may never return, or a read from a
-/// pipe may block.
+/// Time after which a signal terminates the process if the work does not end, because a module never returns or a read
+/// from a pipe blocks.
 constexpr unsigned kStopTimeout = 2;  // [s]
 
 /// Signals within this time count as a single signal: timeout(1) sends each signal twice, to its child and to

@@ -8,9 +8,9 @@
 /// an exception, so that destructors remove unfinished results.
 ///
 /// The received signal is a single flag of the process and is not passed as an argument. A signal is sent to a
-/// process and stops all of its work, including the work of other Python threads, where the first error ends
-/// all running calls. An argument would have to be passed by every caller of every loop, from the command
-/// through searches, jobs and claims to the step loop, and a loop whose caller forgot it could not be stopped.
+/// process and stops all of its work, including the calls of all Python threads. An argument would have to be passed
+/// by every caller of every loop, from the command through searches, jobs and claims to the step loop. A loop whose
+/// caller forgot the argument could not be stopped.
 namespace hapbench {
 
 /// While an instance exists, the first SIGINT or SIGTERM is only recorded, so that work can end cleanly. A
@@ -54,7 +54,7 @@ SimulationResult run_to_end(Simulation& simulation, Advance advance) {
   do {
     throw_if_stopped();
   } while (advance());
-  throw_if_stopped();  // because the work is to stop, a force law may have ended the run with an invalid force
+  throw_if_stopped();  // after a stop request, a Python law returns an invalid force, which ends the run
   return simulation.result();
 }
 /// Runs a simulation to its end with Simulation::advance(). Throws Stopped if a signal has been received.

@@ -134,7 +134,7 @@ static void describe(Fields& f, RecordFields& record) {
   f.boolean("force_reference", record.force_reference,
             "with reference_force, or a stroke with a measured force: write the reference force and the force error to "
             "force_reference.csv");
-  // Omitted if it is off, so that scenarios without six_dof are written as before.
+  // The field is written only if it is true, so that it appears only in scenarios that use it.
   f.field("six_dof", "with six_dof: write the forces and torques of both devices to six_dof.csv; default: false",
           record.six_dof ? Presence::no_default : Presence::omitted,
           [&record](Fields& value) { value.boolean(record.six_dof); });

@@ -22,7 +22,7 @@ struct LoadedScenario {
   std::filesystem::path file;
   NamedFiles files;               ///< files that the scenario names
   std::vector<Warning> warnings;  ///< warnings about values in the file that have no effect, or are likely mistakes
-  /// As in ScenarioText, with the overrides applied to the first layer; empty if the file extends nothing.
+  /// Layers of ScenarioText, with the overrides applied to the first layer; empty if the file extends nothing.
   std::vector<ScenarioLayer> layers;
 };
 

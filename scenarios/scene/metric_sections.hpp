@@ -18,7 +18,7 @@ namespace hapbench {
 /// the summary. `has_reference_force` is true if the scenario has a reference force or its recorded stroke has a
 /// measured force.
 MetricList metrics_without_values(const Scenario& scenario, bool has_reference_force);
-/// Returns the metrics of all sections without values. `target_positions` is the number of target positions of a
+/// Returns the metrics of all sections, without values. `target_positions` is the number of target positions of a
 /// tracking task.
 MetricList metrics_without_values(std::size_t target_positions);
 /// Returns the metrics that `expect` can bound. The list is computed once. It has metrics for two target

@@ -57,7 +57,7 @@ void describe_shape(Fields& f, Profile::Waypoints& waypoints, NumberRange range)
 void profile(Fields& f, std::string_view name, Profile& profile, const char* unit, const char* doc, Presence presence) {
   const NumberRange range = {-kMaxMagnitude, kMaxMagnitude, unit};
   const auto describe_profile = [&](Fields& value) {
-    // Split the profile into a constant or a shape.
+    // Store the profile as a number if it is constant, otherwise as a time-varying shape.
     double constant = profile.is_constant() ? profile(0.0) : 0.0;
     TimeVaryingShape moving;
     const auto take = [&moving](const auto& shape) {

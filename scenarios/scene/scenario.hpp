@@ -178,8 +178,8 @@ struct DragHandFields {
 /// that it travels in `duration` [s].
 double drag_length(const DragHandFields& hand, double duration);
 
-/// A simulated subject in a target-tracking experiment. Every subject does `trials` trials, and each trial starts from
-/// the initial state.
+/// The simulated subjects of a target-tracking experiment. Every subject does `trials` trials, and each trial starts
+/// from the initial state.
 struct TrackingHandFields {
   static constexpr std::size_t kMaxTargetPositions = 100;  ///< maximum number of target positions
   TargetRules task;
@@ -243,7 +243,8 @@ using ReferenceForceFields = std::variant<GivenForceFields, RigidContactFields>;
 /// Value of SixDofFields::law for the proxy with the rotational stiffness that renders the force of a 6-DOF device.
 inline constexpr const char* kMatchedProxy = "matched_proxy";
 
-/// Comparison with a 6-DOF device (SixDofObserver): hand, coupling and three points on the tool's axis.
+/// Comparison with a 6-DOF device (SixDofObserver): hand, coupling and three points on the tool's axis. The force point
+/// is the point at which the device measures and applies its force.
 struct SixDofFields {
   std::string law;                 ///< name of an algorithm, or kMatchedProxy; empty: the scenario's algorithm
   double hand = 500.0;             ///< K_h, stiffness of the hand [N/m]

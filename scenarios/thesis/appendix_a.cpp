@@ -107,8 +107,8 @@ bool is_smooth(const MeasuredCase& m, const PublishedNumbers& p) {
 }
 
 Finding judge_springs_unlimited(const Measured& measured, const PublishedNumbers& p) {
-  // all_smooth: by definition of the depth and number of pairs, true if all algorithms are smooth.
-  // smooth_with: by definition of the depth and algorithm, the numbers of pairs with a smooth motion.
+  // all_smooth: true if the motion is smooth with all algorithms, for each depth definition and number of pairs.
+  // smooth_with: the numbers of pairs with a smooth motion, for each depth definition and algorithm.
   std::map<std::pair<bool, double>, bool> all_smooth;
   std::map<std::pair<bool, std::string>, std::string> smooth_with;
   for (const MeasuredCase& m : measured) {
@@ -208,7 +208,7 @@ double largest_damping_alone(const Evidence& e) {
   return largest_bounded(e, "rendering.damping_N_s_per_m", {1.0, 1e5, true}, {"rendering.stiffness_N_per_m=0"});
 }
 
-/// Returns the damping [N s/m] of a stiffness [N/m] by the scene's damping ratio.
+/// Returns the damping [N s/m] that the scene's damping ratio gives for a stiffness [N/m].
 double damping_at(const Evidence& e, double stiffness) {
   const RenderingConfig rendering = e.load(kSpring).scenario.rendering;
   return 2.0 * rendering.damping_ratio * std::sqrt(stiffness * rendering.mass);

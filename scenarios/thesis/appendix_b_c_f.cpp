@@ -84,8 +84,9 @@ Finding judge_groove(const Measured& measured, const PublishedNumbers& p) {
                   with)};
 }
 
-// ---- B3: the merged depth before and after adding two points, in units of the depth of each point. There are 2 n + 1
-// points with opposite gradients, n = kPoints; the two added points reverse the merged direction.
+// ---- B3: the merged depth before and after adding two points, in units of the depth of each point. With n = kPoints,
+// n + 1 points have the gradient -x, and n points (after adding, n + 2 points) have the gradient +x. The two added
+// points reverse the merged direction.
 
 constexpr std::size_t kPoints = 10;
 constexpr double kExact = 1e-9;

@@ -72,7 +72,8 @@ double raw_ratio(const Assumptions& assumptions, const std::vector<std::string>&
 bool calibrate(const Assumptions& assumptions, std::vector<std::string>& values, std::size_t index) {
   constexpr int kRuns = 8;
   const Assumption& assumption = assumptions.all()[index];
-  // The number of raw points grows with the value of the input. Bound the estimated slope of its logarithm.
+  // The number of raw points grows with the value of the input. These are bounds of the estimated slope of
+  // log(number of raw points) over log(value).
   constexpr double kSmallestSlope = 0.3, kLargestSlope = 5.0;
   const double low = math::log(assumption.range->first), high = math::log(assumption.range->second);
   double at = math::log(finite_number(assumption.value).value()), slope = 1.0;

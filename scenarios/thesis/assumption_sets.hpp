@@ -20,9 +20,10 @@ struct AssumptionSet {
   std::set<std::size_t> given = {};  ///< assumptions whose value is given, so that it is not calibrated
 };
 
-/// Reads assumption sets from a CSV file, with one row for each set and one column for each assumption that differs.
-/// Other assumptions have their recorded values, or calibrated values (calibrated()). Throws InputError for a column
-/// that is not an assumption, a number outside of the assumption's range, or a text that is not one of its options.
+/// Reads assumption sets from a CSV file, with one row for each set and one column for each assumption whose value the
+/// file gives. Other assumptions have their recorded values, or calibrated values (calibrated()). Throws InputError for
+/// a column that is not an assumption, a number outside of the assumption's range, or a text that is not one of its
+/// options.
 std::vector<AssumptionSet> read_assumption_sets(const std::filesystem::path& file, const Assumptions& assumptions);
 
 /// Returns the assumptions whose values differ from the recorded values, as "servo.delay = 2, local.average = false".

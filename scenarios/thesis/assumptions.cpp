@@ -102,7 +102,7 @@ std::vector<std::string> Assumption::other_values(bool middle_too) const {
     std::ranges::copy_if(options, std::back_inserter(values), [this](const auto& option) { return option != value; });
     return values;
   }
-  // Compare the values on the scale of the range.
+  // Compare the values on the scale of the range: logarithmic or linear.
   const auto [low, high] = *range;
   const auto scaled = [this](double number) { return logarithmic ? math::log(number) : number; };
   const double recorded = finite_number(value).value(),

@@ -47,7 +47,7 @@ struct Assumption {
 
   /// Returns the plausible values other than the recorded value, as texts for --set: the other options, or the ends of
   /// the range and, with `middle`, the middle of the range. Omits a middle that differs from the recorded value by at
-  /// most a tenth of the range's width.
+  /// most a tenth of the range's width (difference and width of the logarithms if `logarithmic` is true).
   std::vector<std::string> other_values(bool middle = true) const;
 
   /// Returns true if the assumption can change a claim: it sets a field of one of `scenarios`, or it has no fields and

@@ -25,7 +25,7 @@ class DenseShaping {
  public:
   explicit DenseShaping(std::size_t capacity) : matrix_(capacity * capacity), ratio_(capacity) {}
 
-  /// Computes the weights of the contacts by a number of iterations, starting from 1.
+  /// Computes the weights of the contacts by `iterations` iterations, starting from weights of 1.
   void shape(ContactBuffer& contacts, int iterations) {
     const std::size_t n = contacts.size();
     for (std::size_t i = 0; i < n; ++i) {

@@ -71,8 +71,8 @@ Finding judge_flat_reduction(const Measured& counts, const PublishedNumbers& pub
 }
 
 /// Returns whether the mean, and whether the spread, of counts is near the published value of recording `one`. The
-/// thesis publishes two recordings of a task without errors. A value is near recording `one` if its difference from
-/// this recording is at most the difference between the two recordings.
+/// thesis publishes two recordings of a task and no errors of their values. A value is near recording `one` if its
+/// difference from this recording is at most the difference between the two recordings.
 std::pair<bool, bool> nearness(const MeasuredCase& c, const std::string& counts, const PublishedNumber& one,
                                const PublishedNumber& other) {
   const auto is_near = [](double value, double published, double elsewhere) {

@@ -31,7 +31,7 @@ namespace {
 // ---- L1: displacement of the tool into the flat as a function of the measured force.
 // deviation: rms difference, without the force limit, between the displacement and the ideal line of Fig. 6,
 //   (measured force - weight) / K, divided by the largest displacement.
-// onset: measured force [N] from which on, with the force limit, the displacement is constant.
+// onset: smallest measured force [N] at which, with the force limit, the displacement has reached its constant value.
 // plateau_spread: (max - min) / mean of the displacement beyond the onset.
 
 /// Displacements of the tool (depth) and of the handle into the flat [m], and the measured force [N], in a step with
@@ -53,8 +53,8 @@ std::vector<FlatRow> rows_on_flat(const Evidence& e, const std::string& scenario
 
 MeasuredValues measure_force_limit(const Evidence& e) {
   const std::vector<FlatRow> off = rows_on_flat(e, "force_limit_off"), on = rows_on_flat(e, "force_limit_on");
-  // The plateau is the mean displacement in the last quarter. The onset is the force at which the displacement first
-  // reaches 99 % of the plateau.
+  // The plateau is the mean displacement in the last quarter of the steps. The onset is the smallest force at which the
+  // displacement is at least 99 % of the plateau.
   double plateau = 0.0, onset = std::numeric_limits<double>::infinity();
   const std::size_t last = on.size() / 4;
   for (std::size_t i = on.size() - last; i < on.size(); ++i) plateau += on[i].depth / static_cast<double>(last);

@@ -218,9 +218,9 @@ Finding judge_convergence(const MeasuredCase& m, const PublishedNumbers& p) {
 }
 
 // ---- R2: the largest stiffness in any direction, in units of K, over contact sets found by a random search. One case
-// for each number of iterations. For every number of iterations at least 1 it is bounded by (1 + sqrt 3)/2, in the
-// plane by (1 + sqrt 2)/2; the proof is in results/reference/BEYOND.md. The search shows that the bound is sharp, and
-// would reveal an error in the proof.
+// for each number of iterations. After one or more iterations, the largest stiffness is at most (1 + sqrt 3)/2, and at
+// most (1 + sqrt 2)/2 if all directions lie in a plane; the proof is in results/reference/BEYOND.md. The search shows
+// that the bound is sharp, and would reveal an error in the proof.
 
 /// Value of `iterations` that selects the exact limit of infinitely many iterations.
 constexpr int kExactLimit = -1;
@@ -334,8 +334,8 @@ Finding judge_guarantee(const Measured& measured, const PublishedNumbers& publis
                     largest <= proved + kSearchRounding ? "no set exceeds" : "some set exceeds", proved)};
 }
 
-// ---- R5, S3, F5: bounds of formulas, over random sets of contacts. Each is exact; the sets would reveal an error of
-// the formula as implemented.
+// ---- R5, S3, F5: bounds of formulas, over random sets of contacts. Each bound follows from its formula; the sets
+// would reveal an error of the formula's implementation.
 
 constexpr int kRandomSets = 2000;
 constexpr double kRounding = 1e-9;  // stated in the rules' texts

@@ -17,9 +17,9 @@
 #include "scenarios/thesis/claims.hpp"
 #include "scenarios/thesis/measurements.hpp"
 
-/// Claims of chapters 1 and 4: how deep a drill pressed into the hole sinks in with other methods of merging forces,
-/// and the plain sum of forces (1.1, 1.2, B.3.1); both depth models (4.2); and other limitations that the thesis
-/// discusses.
+/// Claims of chapters 1 and 4: how deep a drill that is pressed into the hole sinks in with other methods of merging
+/// forces and with the plain sum of forces (1.1, 1.2, B.3.1); both depth models (4.2); and other limitations that the
+/// thesis discusses.
 namespace hapbench {
 namespace {
 
@@ -293,8 +293,9 @@ Finding judge_depth_cost(const MeasuredCase& m, const PublishedNumbers& p) {
                       times)};
 }
 
-// ---- C8: on the flat of task 1, the largest difference between the force of the highest depth, as in reference [3] of
-// the thesis, and the force of the points after the reduction, over the largest force.
+// ---- C8: on the flat of task 1, the largest difference between the force of the law "highest_depth" on all points, as
+// in reference [3] of the thesis, and the force of stiffness shaping on the points after the reduction; divided by the
+// largest force.
 
 constexpr double kIdentical = 1e-9;  // stated in the rule's text
 

@@ -21,9 +21,10 @@ struct Evidence {
   std::filesystem::path directory;  ///< has a subdirectory with the results of each scenario, named like the scenario
   /// Called with a scenario's name before its results are read. Runs the scenario if necessary.
   std::function<void(const std::string& scenario)> provide;
-  /// Returns overrides for load_scenario of a bundled scenario. May be empty.
+  /// Returns the overrides with which load_scenario loads a bundled scenario. No function: no overrides.
   std::function<std::vector<std::string>(const Scenario&)> overrides = {};
-  /// Called with the name of each bundled scenario that scene() reads, in contrast to result files. May be empty.
+  /// Called by scene() with the name of the bundled scenario. Not called for scenarios whose result files are read
+  /// (`provide`). No function: nothing is called.
   std::function<void(const std::string& scenario)> used = {};
   /// True: experiments with subjects have fewer targets (assumption_sets.hpp).
   bool reduced = false;

@@ -54,8 +54,8 @@ std::string link_to(const Json& claim) {
   return fmt::format("[{}](claim_pages.md#{})", id, lower_case(id));
 }
 
-/// Returns the robustness of a claim with its assumptions as code: "sensitive to `local.average`". Names the first
-/// `max_names` assumptions and counts the others.
+/// Returns the robustness of a claim as Markdown with the names of assumptions in code style, such as "sensitive to
+/// `local.average`". Names the first `max_names` assumptions and counts the others.
 std::string decided_by(const Json& claim, std::size_t max_names) {
   auto deciders = claim.at("deciders").get<std::vector<std::string>>();
   if (deciders.empty()) return text_at(claim, "robustness");

@@ -111,8 +111,8 @@ bool vibrates_much_more(const MeasuredCase& a, const MeasuredCase& b, const Publ
 
 /// Returns the damping ratio zeta of an oscillation about zero, from positions `x` [m], one for each time step. With
 /// the mean ratio q of the magnitudes of successive extremes, zeta = -ln q / sqrt(pi^2 + ln^2 q), or 0 if q is at least
-/// 1. Ignores the oscillation from the first extreme within 1 um of zero on: rounding and grazing contact are not
-/// oscillations. Empty with fewer than two extremes.
+/// 1. Ignores the first extreme whose magnitude is below 1 um, and all later extremes: rounding and grazing contact are
+/// not oscillations. Empty with fewer than two extremes.
 std::optional<double> damping_ratio_of_swings(std::span<const double> x);
 
 }  // namespace hapbench

@@ -59,7 +59,7 @@ bool was_judged(const std::string& verdict);
 struct Robustness {
   std::string word = {};  ///< kExactVerdict, kRobustVerdict, kSensitiveVerdict, kSeveralVerdict or kNotSampledVerdict
   std::vector<std::string> deciders = {};  ///< assumptions of which another plausible value changes the verdict
-  /// Returns "exact", "sensitive to NAME" or "depends on several: NAME, NAME".
+  /// Returns the word and the deciders, such as "exact", "sensitive to NAME" or "depends on several: NAME, NAME".
   std::string text() const;
 };
 inline constexpr const char* kExactVerdict = "exact";             ///< no assumption can change the claim

@@ -33,8 +33,8 @@ class Pointer {
  public:
   static constexpr std::size_t kLed = 5;
 
-  /// Adds a waypoint at time t [s]. `now` is the time of the next step [s]; only the last two waypoints before this
-  /// time are kept.
+  /// Adds a waypoint at time t [s]. `now` is the time of the next step [s]. Of the waypoints before this time, only the
+  /// last two are kept.
   void add(double t, const std::array<double, kLed>& values, double now) {
     for (std::size_t i = 0; i < kLed; ++i) {
       auto& points = led_[i].points;

@@ -32,7 +32,8 @@ void __cxa_free_exception(void* memory) {
 
 }  // extern "C"
 
-// The library declares these templates as instantiated elsewhere.
+// The headers declare these templates extern, but a standard library that is built without files does not instantiate
+// them.
 template class std::basic_filebuf<char>;
 template class std::basic_ifstream<char>;
 

@@ -204,8 +204,8 @@ def output_of_program(what, *words):
 
 
 def stop_on_ctrl_c(name):
-    """Makes Ctrl-C end this process with status 130 and a message of one line. Makes other uncaught exceptions end it
-    with one line, too.
+    """Makes Ctrl-C end this process with status 130 and a message of one line. Any other uncaught exception ends this
+    process with a message of one line instead of a traceback.
 
     The __main__ of a command calls this function before it imports large modules such as numpy. The program starts
     Python with Ctrl-C blocked; this function unblocks it. The handler ends the process itself, because a
@@ -230,7 +230,7 @@ def stop_on_ctrl_c(name):
             print_error(error if isinstance(error, InputError) else internal_error(name, error))
 
     sys.excepthook = fail_in_one_line
-    # A shell starts background jobs with Ctrl-C ignored. It then remains ignored.
+    # A shell starts background jobs with Ctrl-C ignored. Ctrl-C remains ignored in such a job.
     if signal.getsignal(signal.SIGINT) is not signal.SIG_IGN:
         signal.signal(signal.SIGINT, stop)
     signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
@@ -296,8 +296,8 @@ def exit_status(name, doing, work):
 
 
 def answer(options, text, data):
-    """Prints the result of a command: its warnings on standard error, then the text, or the JSON with --json, or
-    nothing with --quiet."""
+    """Prints the warnings of a command on standard error, then its result on standard output: the text, or with --json
+    the JSON. With --quiet, the result is not printed."""
     for warning in data["warnings"] if isinstance(data, dict) else []:
         print(f"hapbench: warning: {warning}", file=sys.stderr)
     if not options.quiet:
@@ -316,8 +316,8 @@ def shell_line(*words):
 
 
 def table_text(headings, rows, wide, numbers=False):
-    """Returns a table as text. The last column is wrapped if the terminal is too narrow, unless `wide`. `numbers`: true
-    aligns all columns except the first to the right."""
+    """Returns a table as text. If `wide` is false and the terminal is too narrow, the last column is wrapped.
+    `numbers`: true aligns all columns except the first to the right."""
     widths = [max(map(len, column)) for column in zip(headings, *rows)]
     if sys.stdout.isatty() and not wide:
         widths[-1] = min(
@@ -342,7 +342,7 @@ def nearest(name, names):
     """Returns the end of an error message about an unknown name: the most similar valid name, in the words of the
     program. Returns an empty text if no name is similar."""
     lower = {candidate.lower(): candidate for candidate in reversed(names)}
-    # Names that begin with the given name, or else contain it, precede names that are only similar.
+    # Prefers names that begin with the given name, then names that contain it, then names that are only similar.
     longer = sorted((n for n in lower if n.startswith(name.lower())), key=len) or [
         n for n in lower if name.lower() in n
     ]

@@ -61,8 +61,8 @@ SERIES = (
     Look("", "#14794E", "#8EE288", (6, 2), "x"),
 )
 
-# Name, colour and hatching of each class of runs. The brightness decreases along the list, so that the classes also
-# differ in grey.
+# Name, colour and hatching of each class of runs. The first five classes also differ in brightness, so that they can be
+# distinguished in grey.
 CLASSES = {
     "stable": ("stable", "#CFE6F5", ""),
     "decaying": ("decaying", "#E9F3FA", "/////"),
@@ -96,13 +96,14 @@ def by_class(names):
 FURTHER_DASHES = ((2, 2), (6, 1, 1, 1), (4, 2), (1, 2))
 FURTHER_MARKERS = ("8", "H", "3", "4", "+", "x", ".")
 # Pairs of limits: largest relative luminance of a colour on white, and smallest relative luminance of a colour on the
-# dark page. The first pair has a contrast of 4.5, the second pair a larger contrast.
+# dark page. Colours within the first pair of limits have a contrast of at least 5.4 to the background, within the
+# second pair at least 10.
 LUMINANCES = ((0.14, 0.30), (0.05, 0.60))
 HUES = 24
 # Smallest distance in OKLab at which the colours of two lines in a figure can be distinguished. It corresponds to about
 # 6 in CIEDE2000.
 MIN_DISTANCE = 0.08
-# Look by name of the algorithms for which distinguish() chose another look, for the current picture.
+# Looks that distinguish() chose for algorithms of the current picture, by the name of the algorithm.
 CHOSEN = {}
 
 # Matrices of linear RGB that simulate types of colour vision: Machado, Oliveira and Fernandes (IEEE TVCG 15, 2009),
@@ -172,9 +173,10 @@ def by_name(algorithm):
 
 
 def distinguish(algorithms):
-    """Chooses looks for those algorithms of one picture that have no entry in ALGORITHMS. Such an algorithm keeps the
-    look that follows from its name, unless the look is too close to another look for some type of colour vision. It
-    then gets the most distant colour of all hues."""
+    """Chooses looks for those algorithms of one picture that have no entry in ALGORITHMS. If the colour that follows
+    from an algorithm's name is too close to another colour for some type of colour vision, the algorithm gets the hue
+    that is most distant from all other colours. Otherwise it keeps its colour. If another algorithm has the same
+    marker, the algorithm gets a free marker."""
     CHOSEN.clear()
     names = sorted(set(algorithms))
     looks = [Look("", PUBLISHED, PUBLISHED_DARK, (), "")]

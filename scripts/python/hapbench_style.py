@@ -31,7 +31,7 @@ MM = 1 / 25.4  # [inch]
 
 @dataclass(frozen=True)
 class Sheet:
-    """Size of a picture. Fonts of 7 to 9 pt are designed for this size."""
+    """Size of a printed picture. At this size, its texts have 7 to 9 pt."""
 
     width: float  # [inch]
     columns: int  # largest number of panels side by side
@@ -66,8 +66,8 @@ SHEETS = {
 SHEET, PAGE = SHEETS["double"], Sheet(WIDTH, 3)
 
 # Colours of measured quantities, forces and contacts; algorithms have other colours. Each has a contrast of at least
-# 4.5 to white. Amber and petrol can be distinguished with every type of colour vision. A third colour has another line
-# style or marker in addition. Red is for the thesis's numbers.
+# 4.5 to white. Amber and petrol can be distinguished with every type of colour vision. A curve in a third colour also
+# has a different line style or marker. Red is for the thesis's numbers.
 BLACK, GREY, AMBER, PETROL, PLUM, RED = (
     "#000000",
     "#5F5F5F",
@@ -131,8 +131,8 @@ def panels(rows, columns, height, **keywords):
 
 
 def number_ticks(axis, subs=()):
-    """Adds tick labels to a logarithmic axis that shows too few powers of ten. With `subs`, adds labels at these
-    multiples of each power of ten."""
+    """Labels more ticks than the powers of ten on a logarithmic axis that shows too few powers of ten. With `subs`,
+    labels these multiples of each power of ten on every logarithmic axis, whatever its range."""
     low, high = axis.get_view_interval()
     if axis.get_scale() == "log" and (subs or high / low < 60):
         axis.set_major_locator(LogLocator(subs=subs or ((1, 2, 5) if high / low < 20 else (1, 3))))

@@ -1,9 +1,11 @@
-"""pip install ./scripts/python: compiles the program and the module with CMake, and installs them with the package.
+"""pip install ./scripts/python: compiles the program hapbench and the Python module _hapbench with CMake, and installs
+them with the package.
 
 The wheel contains the package and the files that `cmake --install --component program` installs: the module, the
 program in hapbench/bin, and the files of the program in hapbench/share, where the program finds them. The command
-hapbench of the environment calls the program. All files are in folders of the package, so that pip uninstall leaves
-nothing. The wheel is for this machine and this Python: it uses the processor's instructions and the system's libraries.
+hapbench of the Python environment calls the program. All files are in folders of the package, so that pip uninstall
+leaves nothing. The wheel is for this machine and this Python: it uses the processor's instructions and the system's
+libraries.
 
 HAPBENCH_BUILD_DIR names the build folder (default: build/pip of the source tree). A folder that CMake has already
 configured keeps its configuration, so that a build of scripts/build --python (build/release) is not compiled again.

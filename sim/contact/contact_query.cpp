@@ -10,7 +10,7 @@
 namespace hapbench {
 namespace {
 
-/// Compares every point of the shell with the tool, eight points at a time. Reference for the search by
+/// Compares every point of the shell with the tool, eight points at a time. Serves as the reference for the search by
 /// neighbour lists. O(shell size), about 0.3 ns for each point with 512-bit registers.
 class ShellQuery final : public ContactQuery {
  public:

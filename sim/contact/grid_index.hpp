@@ -89,16 +89,16 @@ class GridIndex {
   bool keeps_order_ = true;
 };
 
-/// Returns the indices of the points in the order in which the GridIndex of a PointShell sorts them. The PointShell has
-/// these points and this `cell_size` [m]. O(n).
+/// Returns the indices of the points, in the order in which a GridIndex would sort a PointShell with these points and
+/// this `cell_size` [m]. O(n).
 std::vector<std::uint32_t> grid_order(const std::vector<SurfacePoint>& points, double cell_size);
 /// Returns the points in the order of grid_order(). A search in a shell with this order need not sort its points
 /// (GridIndex::keeps_order).
 std::vector<SurfacePoint> in_grid_order(const std::vector<SurfacePoint>& points, double cell_size);
 
 /// Returns an upper bound of the number of shell points that can lie in the balls of `cover` at once, wherever the
-/// balls are. Used as the capacity of buffers. The bound is the number of balls times the number of points in the
-/// fullest cube of grid cells that can hold such a ball. For the drill and the block of the thesis, the bound is a
+/// balls are. Used as the capacity of buffers. The bound is the number of balls times the largest number of points in a
+/// cube of grid cells that is large enough for one ball. For the drill and the block of the thesis, the bound is a
 /// sixth of the block's points. O(shell size).
 std::size_t max_points_in(const PointShell& shell, const ToolShape::Cover& cover);
 

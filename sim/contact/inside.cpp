@@ -22,8 +22,8 @@ constexpr std::size_t kMaxEvaluations = 20000;
 constexpr double kOnTool = 1e-9, kCoarse = 0.25;
 
 /// Lengths in half widths of the tool. A segment of the tool's axis shorter than kShort is not halved. A segment longer
-/// than kLong has a single ball around it; a shorter segment has further balls. kPolyline: largest distance between a
-/// round body and the polyline that represents its outline.
+/// than kLong has a single ball around it; a shorter segment has further balls. kPolyline: largest distance between the
+/// outline of a body of revolution and the polyline that represents this outline.
 constexpr double kShort = 0.02, kLong = 1.0, kPolyline = 2e-4;
 /// Offsets of further ball centres from the centre of the smallest ball, in half widths.
 constexpr double kCentreOffsets[] = {0.25, -0.25, 0.5, -0.5, 1.0, -1.0, 2.0, -2.0, 4.0, -4.0, 8.0};
@@ -177,7 +177,7 @@ InsideBound::InsideBound(const ToolShape& tool, const Solid& solid)
       solid_(solid),
       half_width_(tool.half_width()),
       outline_(tool.outline()),
-      // The outline of a tool on a grid may omit up to a cell's diagonal.
+      // If the tool is sampled on a grid, its outline may be too narrow by up to the diagonal of a grid cell.
       margin_(kPolyline * half_width_ + 2.0 * tool.surface_error()) {
   const auto [far, tip] = std::ranges::minmax_element(outline_, {}, &ProfilePoint::s);
   segments_.push_back({far->s, tip->s});

@@ -105,7 +105,7 @@ class InsideBound {
   /// A ball around a segment of the tool.
   struct Ball {
     double position, radius;            ///< position of the centre on the axis, from the tip centre [m]; radius [m]
-    std::optional<KnownDistance> near;  ///< last centre with a known distance; empty if unknown
+    std::optional<KnownDistance> near;  ///< last evaluated centre; empty if the solid did not know its distance
   };
   /// A segment of the tool along its axis.
   struct Segment {

@@ -16,14 +16,15 @@ namespace hapbench {
 /// Multi-rate contacts: the contacts of another source, found in some steps only and used until newer contacts
 /// arrive. There are no contacts before the first query has returned.
 ///
-/// Held contacts keep depth, point and gradient. Linear contacts keep point and gradient, and their depth
-/// follows the motion of the tool's material at the point x_i since the query:
+/// Held contacts keep depth, point and gradient. With MultiRateSchedule::linear, contacts are moved instead: they keep
+/// point and gradient, and their depth follows the motion of the tool's material at the point x_i since the query:
 ///
 ///   d_i + <u_i, (p - p_q) + (Q - I)(x_i - p_q)>
 ///
 /// with the tip centre p of the current pose, the tip centre p_q of the query's pose, the identity I, and Q =
-/// turn_matrix of the two poses. Contacts with a depth <= 0 are dropped, except for springs that may pull. Integrators
-/// that query within a step get the contacts of the step, held or moved to the pose of their query.
+/// turn_matrix of the two poses. Moved contacts with a depth <= 0 are dropped, except for springs that may pull. An
+/// integrator that queries again within a step gets the contacts of the step, held or moved to the pose of the new
+/// query.
 ///
 /// A query first stores only its pose. The other source computes the contacts for this pose in the step in which they
 /// are due. Pending queries therefore store no contacts, and a source with internal state still gets all queries in

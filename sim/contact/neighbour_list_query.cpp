@@ -19,8 +19,8 @@ constexpr int kMaxDoublings = 12;
 /// Relative slack that covers rounding in the tool's motion and in the search.
 constexpr double kSlack = 1e-9;
 
-/// Returns an upper bound of the coordinates [m] of a tool that has shell points within twice its reach. For a tool
-/// farther away the list is empty.
+/// Returns an upper bound of the absolute coordinates [m] of a tool that has shell points within twice its reach. If
+/// the tool is farther away from the shell, the list is empty.
 double largest_scale(const PointShell& shell, const ToolShape& tool) {
   const Box& box = shell.bounds();
   return std::max(box.min.cwiseAbs().maxCoeff(), box.max.cwiseAbs().maxCoeff()) + 4.0 * tool.reach();
@@ -84,7 +84,7 @@ class NeighbourListQuery final : public ContactQuery {
     has_list_ = true;
     list_pose_ = pose;
 
-    // List the points within the normal skin.
+    // List the points within the skin before any doubling.
     skin_ = normal_skin_;
     mark_near(pose, skin_);
     take_marked();
@@ -158,7 +158,7 @@ class NeighbourListQuery final : public ContactQuery {
 
   const PointShell* shell_;
   const ToolShape* tool_;
-  double normal_skin_;  ///< normal thickness of the skin [m]
+  double normal_skin_;  ///< thickness of the skin before any doubling [m]
   std::size_t capacity_;
   GridIndex grid_;
   std::vector<PackRange> runs_;      ///< ranges of the grid's points near the tool

@@ -128,8 +128,9 @@ void RigidContact::linearise(const Vec3& axis, double reach) {
   }
 }
 
-/// Projects `wanted` onto the intersection of the half-spaces of the working set: finds up to three planes whose common
-/// projection is in all half-spaces and whose multipliers are positive. Returns false if no such planes exist.
+/// Projects `wanted` onto the intersection of the half-spaces of the working set. For this, finds up to three of their
+/// planes such that the projection of `wanted` onto the intersection of these planes lies in all half-spaces of the
+/// working set, with multipliers >= 0. Returns false if no such planes exist.
 // NOLINTNEXTLINE(readability-function-cognitive-complexity): loops over one, two and three planes.
 bool RigidContact::project(const Vec3& wanted, Vec3& result) const {
   const std::size_t n = working_.size();

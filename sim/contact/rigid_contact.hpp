@@ -8,8 +8,8 @@
 /// Frictionless contact of a tool with rigid triangles: a reference for force laws.
 namespace hapbench {
 
-/// A cylinder with a round tip, without its flat far end: all points within `radius` [m] of the segment from the tip
-/// centre to the point `length` [m] behind it.
+/// Model of a cylinder with a round tip: all points within `radius` [m] of the segment from the tip centre to the point
+/// `length` [m] behind it. The far end of the model is round, whereas the far end of the tool is flat.
 struct RoundTool {
   double radius, length;
 };
@@ -76,7 +76,7 @@ class RigidContact {
   Vec3 near_position_ = Vec3::Zero(), near_axis_ = Vec3::Zero();
   double near_reach_ = -1.0;
   std::vector<HalfSpace> half_spaces_;
-  std::vector<std::size_t> working_;  ///< indices of the half-spaces in the working set; some of these bound the result
+  std::vector<std::size_t> working_;  ///< working set: indices of the half-spaces that may bound the result
 };
 
 }  // namespace hapbench

@@ -15,9 +15,9 @@ namespace hapbench {
 /// position p, spring j has the unit gradient u_j and the depth d_j = <p, u_j> [m].
 ///
 /// Bilateral springs push and pull. Their depths are signed. Without signed depths, following thesis 2.3 (d >=
-/// 0), the depth is |<p, u_j>| and the gradient points along the displacement. The force is the same in both
-/// cases, but in a law that averages gradients, opposite springs then have equal gradients, whereas signed gradients
-/// would cancel. Unilateral springs are contacts only while d_j > 0.
+/// 0), the depth is |<p, u_j>| and the gradient points along the displacement. The force of a spring is the same in
+/// both cases. A law that averages gradients distinguishes the cases: with signed depths, the gradients of opposite
+/// springs cancel; without signed depths, they are equal. Unilateral springs are contacts only while d_j > 0.
 struct SpringSet {
   /// Unit vectors u_j.
   std::vector<Vec3> gradients;

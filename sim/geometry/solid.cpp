@@ -14,8 +14,8 @@ namespace {
 
 constexpr double kFar = 1e4;  ///< longer than any distance in a scene [m]
 
-/// Returns an upper bound of the distance of a point from the surface [m]. It exceeds the exact bound by more than
-/// rounding, also at a point of the surface.
+/// Returns an upper bound of the distance of a point from the surface [m]. The relative and the absolute margin cover
+/// rounding; the absolute margin is for points on the surface.
 double largest_distance(const Vec3& q, const KnownDistance& near) {
   constexpr double kRelative = 1e-9, kAbsolute = 1e-12;
   return (1.0 + kRelative) * (std::abs(near.value) + (q - near.point).norm()) + kAbsolute;
@@ -73,7 +73,7 @@ class MeshSolid final : public Solid {
     const auto nearest = nearest_triangle(q, near);
     if (!nearest) return Vec3::UnitZ();
     const Vec3 away = q - nearest->position, n = normal(nearest->triangle);
-    // If the point is closer to the surface than this, the direction from the closest point is dominated by rounding.
+    // At less than 1e-6 times `step` from the surface, rounding dominates the direction from the closest point.
     if (away.norm() < 1e-6 * step) return n;
     return away.normalized() * (signed_distance(q, *nearest, near).value < 0.0 ? -1.0 : 1.0);
   }

@@ -16,10 +16,10 @@ namespace hapbench {
 /// the created energy. Dissipated energy counts as absorbed, so it can hide energy that is created later.
 ///
 /// If a device's handle moves the tool, the force is held while the tool moves, and its work is f_render_k .
-/// (p_(k+1) - p_k). E then is the energy of the display and includes the energy created by sampling and
-/// holding. A prescribed motion holds no force: its work is the integral along the path by the trapezoidal
-/// rule, (f_k + f_(k+1))/2 . (p_(k+1) - p_k). This rule has an error of up to K d^2 / 8 where a contact of
-/// stiffness K begins or ends between two steps at a distance d.
+/// (p_(k+1) - p_k), with the position p_k of the tip centre. E then is the energy of the display and includes the
+/// energy created by sampling and holding. If a script prescribes the position, the force is not held: its work is the
+/// integral along the path by the trapezoidal rule, (f_k + f_(k+1))/2 . (p_(k+1) - p_k). If a contact of stiffness K
+/// begins or ends between two steps whose positions are d apart, this rule has an error of up to K d^2 / 8.
 ///
 /// Call `move`, then `answer` in every step. The passivity observer and the passivity controller share this code, so
 /// their results agree bitwise. A step without force and moment costs a few comparisons and a copy of the pose.

@@ -122,7 +122,6 @@ void Simulation::move_tool_by_script() noexcept {
 
 void Simulation::put_tool_on_handle() noexcept {
   const HandleState sampled = parts_.device->sampled();
-  /// Copies the measured position and velocity of the handle to the tool.
   tool_.pose.position = sampled.position;
   tool_.velocity = sampled.velocity;
 }
@@ -167,7 +166,7 @@ bool Simulation::step() noexcept {
   ++result_.rows;
   if (check_stop_rules()) return true;
 
-  // Integrate. The forces of this step move the handle, which the tool follows, or the virtual tool.
+  // Move the tool with the forces of this step: through the handle that it follows, or by integrating the virtual mass.
   if (handle_moves_tool_) {
     parts_.device->drive(r.force.rendered, r.hand_force);
     put_tool_on_handle();

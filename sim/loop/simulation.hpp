@@ -46,8 +46,8 @@ struct DivergenceBounds {
 struct SimulationConfig {
   double dt = 0.0005;       ///< time step [s]
   std::uint64_t steps = 0;  ///< the run has steps 0 … steps - 1
-  double mass = 0.2;        ///< mass of the virtual tool [kg]; not used if there is no virtual tool
-  const IntegratorEntry* integrator = &kLeapfrog;  ///< moves a virtual tool whose position is free; never null
+  double mass = 0.2;        ///< the virtual mass [kg]; not used if a device's handle or a script moves the tool
+  const IntegratorEntry* integrator = &kLeapfrog;  ///< moves the virtual mass; never null
   double event_tolerance = kEventTolerance;        ///< time tolerance of the integrator `event` [s]
   Vec3 position = Vec3::Zero();     ///< tip centre at t = 0 [m]; ignored if the motion prescribes the position
   Vec3 velocity = Vec3::Zero();     ///< velocity at t = 0 [m/s]

@@ -24,8 +24,8 @@ Vec3 position(const HalfEdgeMesh& mesh, OpenMesh::VertexHandle vertex) {
   return {p[0], p[1], p[2]};
 }
 
-/// Key of a cube and a direction: the cube's coordinates in cube edges, then the axis and the sign of the largest
-/// component of the normal.
+/// Key of a cube and a direction: the coordinates of the cube's centre divided by its edge length, then the axis and
+/// the sign of the largest component of the normal.
 using CubeKey = std::array<double, 5>;
 
 struct CubeKeyHash {
@@ -325,8 +325,8 @@ std::vector<Hinge> hinges_of(const std::vector<TriangleSide>& sides, const std::
 
 /// Assigns the triangles' corners to vertices of the surface (union-find). Corner 3 t + i is corner i of triangle
 /// t. Corners are joined across hinges, so that each vertex is one triangle fan. A half-edge mesh can represent
-/// every such surface: at most two sides connect the same two vertices, at the ends of an open fan, and they run in
-/// opposite directions.
+/// every such surface, because at most one triangle side runs from one vertex to another. Two sides between the same
+/// two vertices belong to a hinge or are the two ends of an open fan, and they run in opposite directions.
 class Fans {
  public:
   explicit Fans(std::size_t triangles) : parent_(3 * triangles) { std::iota(parent_.begin(), parent_.end(), 0u); }
@@ -466,7 +466,7 @@ double refined_face_count(const HalfEdgeMesh& mesh, double longest_edge, double 
   const double largest = longest_edge * longest_edge;
   double area = 0.0, count = 0.0;
   for (const auto face : mesh.faces()) area += mesh.calc_face_area(face);
-  // The equilateral triangle has the largest area of all triangles without a longer edge; this gives a lower bound.
+  // Of all triangles without an edge longer than `longest_edge`, the equilateral triangle has the largest area.
   const double lower_bound = area / (std::sqrt(3.0) / 4.0 * largest);
   if (lower_bound > max_count) return lower_bound;
   // Divide every triangle as refine() does, with the lengths of its sides only.

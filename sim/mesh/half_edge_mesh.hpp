@@ -34,9 +34,10 @@ void refine(HalfEdgeMesh& mesh, double longest_edge);
 double refined_face_count(const HalfEdgeMesh& mesh, double longest_edge, double max_count);
 
 /// Returns a subsample of the points. Space is divided into cubes with edges of length `spacing` [m], bounded by
-/// half-integer multiples of `spacing`. Keeps one point for each cube and each of the six axis directions closest to
-/// the normals, so that both sides of a thin wall remain. The kept point is the point closest to the cube's centre, or
-/// the first of several equally close points. Preserves the order of the points. O(n log n).
+/// half-integer multiples of `spacing`. In each cube, the points are grouped by the axis direction (+x, -x, +y, …)
+/// that is closest to their normal, so that both sides of a thin wall remain. Keeps one point of each group: the point
+/// closest to the cube's centre, or the first of several equally close points. Preserves the order of the points.
+/// O(n log n).
 std::vector<SurfacePoint> subsampled(const std::vector<SurfacePoint>& points, double spacing);
 
 /// Connected component of a surface: triangles that are connected across edges with two triangles.

@@ -58,12 +58,13 @@ struct IsoSurfaceOptions {
 /// Evaluates the field only near the surface: skips a square of nodes in a layer if the distance at its middle shows
 /// that all its nodes are inside or all are outside. Time and memory are proportional to the area of the surface, with
 /// two exceptions: the memory for a few layers of the grid, and the time for a few operations for every 64 nodes. A
-/// vertex takes 48 bytes in the result. During the computation, a vertex takes 48 bytes in the growing array of its
-/// slab (a range of grid layers). Runs on oneTBB's threads; the result does not depend on their number.
+/// vertex takes 48 bytes in the result. Before, it takes 48 bytes in the growing array of its slab (a range of grid
+/// layers), which is released as soon as the result contains the slab. Runs on oneTBB's threads; the result does not
+/// depend on their number.
 IsoSurface marching_cubes(const DensityField& field, IsoSurfaceOptions options = {});
 
-/// Returns the density field of the block for marching_cubes(). `spacing` of the grid [m]. Precondition: spacing >
-/// 0.
+/// Returns the density field of the block for marching_cubes(). `spacing`: distance between neighbouring grid nodes
+/// [m]. Precondition: spacing > 0.
 DensityField density_field(const BlockWithHole& block, double spacing, Density density);
 
 /// Returns the vertices of marching_cubes() as a shell in the order of its grid (in_grid_order). Omits vertices
@@ -73,8 +74,9 @@ PointShell surface_shell(const DensityField& field);
 
 /// Returns the vertices of a surface as the thesis stores them (2.1, C.2): each vertex is repeated for every cell
 /// that has it on an edge, four times on average, so that each point belongs to one cell. Cells are in the order of
-/// grid_order(), the points of a cell in the order of its edges. Omits vertices without a normal. `spacing` of the
-/// grid [m]. O(vertices). Precondition: the surface was computed with its cells (IsoSurfaceOptions::cells).
+/// grid_order(), the points of a cell in the order of its edges. Omits vertices without a normal. `spacing`: distance
+/// between neighbouring grid nodes [m]. O(vertices). Precondition: the surface was computed with its cells
+/// (IsoSurfaceOptions::cells).
 ShellPoints points_by_cell(const IsoSurface& surface, double spacing);
 
 /// Triangle of a marching cubes case. The cases are derived instead of copied from a table. Numbering: the bits of

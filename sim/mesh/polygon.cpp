@@ -18,8 +18,8 @@ constexpr double kSmallLength = 1e-6;
 constexpr double kSmallArea = 1e-9;
 /// Doubled area of a triangle, relative to the square of the diameter, up to which its corners count as collinear.
 constexpr double kFlat = 1e-12;
-/// Quality of a spike, whose neighbours are at the same position. Larger than the quality of every triangle, because an
-/// ear beside a spike may lie outside the polygon.
+/// Ear quality of a spike, a corner whose two neighbours are at the same position. Larger than the quality of every
+/// triangle, because an ear beside a spike may lie outside the polygon.
 constexpr double kSpike = 1.0;
 
 std::string percent(double fraction) {
@@ -143,7 +143,8 @@ void PolygonDivider::drop_repeated_corners() {
   }
 }
 
-/// Throws PolygonError if two edges cross, or if the boundary turns several times. Edges may touch and overlap.
+/// Throws PolygonError if two edges cross, or if the direction along the boundary does not make exactly one full turn
+/// (turns_once()). Edges may touch and overlap.
 void PolygonDivider::refuse_crossings() const {
   // Sort the edges by their smallest x, so that only edges with overlapping x are compared.
   struct Edge {

@@ -52,7 +52,7 @@ class Outline {
   std::vector<ProfilePoint> points_;
 };
 
-constexpr double kAbreast = 0.5 * std::numbers::pi;  ///< angle of the point beside a circle's centre [rad]
+constexpr double kAbreast = 0.5 * std::numbers::pi;  ///< angle of a circle's point farthest from the axis [rad]
 
 /// Returns a ball on a neck of radius `neck`.
 BurProfile ball(double radius, double neck) {

@@ -144,7 +144,7 @@ Meridian::Line line_between(const ProfilePoint& a, const ProfilePoint& b) {
   return {{ns, nr, ns * a.s + nr * a.rho}, nr * a.s - ns * a.rho, length};
 }
 
-/// Divides the section of a meridian with s <= 0 into convex parts.
+/// Divides the section that a meridian encloses, without the half ball of a round tip (s <= 0), into convex parts.
 class SectionParts {
  public:
   /// Convex part under construction.

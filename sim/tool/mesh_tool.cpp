@@ -22,7 +22,7 @@ using simd::Mask, simd::Pack;
 struct GridFrame {
   Mat3 turn;
   Vec3 position, shift;
-  Vec3 last;  ///< largest coordinates with 27 nodes around the nearest node; the smallest are 1
+  Vec3 last;  ///< largest coordinates of the grid; the smallest are 1, so that the nearest node has all 26 neighbours
   double spacing;
   double row, layer;  ///< index differences between neighbours along y and along x
 
@@ -303,7 +303,8 @@ class ExitSearch {
   bool bracketed_ = false, done_ = false;
 };
 
-/// Returns the unit gradient in the world frame, or `otherwise` if the gradient is only rounding.
+/// Returns the unit gradient in the world frame, or `otherwise` if the gradient is only rounding. `by_nodes`: gradient
+/// with respect to the coordinates of the nodes [m].
 Vec3 outwards(const GridFrame& frame, const Vec3& by_nodes, const Vec3& otherwise) {
   const double length = by_nodes.norm();
   if (!(length > kUndefinedBelow * frame.spacing)) return otherwise;

@@ -17,8 +17,7 @@ namespace hapbench {
 ///
 /// For a convex mesh the proxy's guarantee (ToolShape::surface_constraints) holds whatever the error of the
 /// gradient: the constraint of a point is the plane that is normal to the field's gradient and touches the mesh
-/// from outside. For a concave mesh the constraint is the field's value, and points may enter the tool at the
-/// proxy.
+/// from outside. For a concave mesh the constraint is the field's value, and points may be inside the proxy.
 class MeshTool final : public ToolShape {
  public:
   /// Precondition: `grid` is not null.

@@ -140,7 +140,7 @@ class Motion {
 /// Orientation of the tool as three angles over time. The tool is tilted by `tilt` from `up` towards lean', which
 /// is `lean` rotated by `azimuth` about `up`: axis = -(cos(tilt) up + sin(tilt) lean'). At tilt 0 the tip points
 /// down. If all three angles are 0, the tool's own x axis points along `lean` and its z axis along `up`. `roll`
-/// rotates it about its axis.
+/// rotates the tool about its axis.
 struct Orientation {
   Vec3 up = {0.0, 0.0, 1.0};    ///< unit vector
   Vec3 lean = {1.0, 0.0, 0.0};  ///< unit vector, perpendicular to up

@@ -81,8 +81,8 @@ struct NearestPoint {
 /// Returns the closest point of the outline for points with axial coordinate s and distance rho from the axis.
 [[gnu::always_inline]] inline NearestPoint nearest_point(const Meridian& meridian, const Pack& s, const Pack& rho) {
   const Pack zero(0.0);
-  // If a point is closer to a corner than this, the direction to the corner is dominated by rounding. The segment's
-  // normal is then used, which is one of the valid directions.
+  // Closer to a corner than this distance [m], rounding dominates the direction to the corner. The segment's normal is
+  // then used, which is one of the valid directions.
   const Pack at_line(1e-12 * meridian.widest);
   NearestPoint nearest{Pack(std::numeric_limits<double>::infinity()), zero, zero, Pack(1.0) < zero};
   for (const Meridian::Line& line : meridian.lines) {

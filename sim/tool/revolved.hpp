@@ -42,8 +42,8 @@ class Revolved final : public ToolShape {
 
   void push_inside(const ToolPose& pose, const PointColumns& points, std::size_t packs,
                    ContactBuffer& contacts) const noexcept override;
-  /// At the edges of a convex body also marks points farther away than the margin, but only points within the
-  /// margin of the cylinder around the body.
+  /// Near the edges of a convex body, also marks points that are farther away than the margin. All marked points lie in
+  /// the bounding cylinder of the body, enlarged by the margin.
   void mark_near(const ToolPose& pose, double margin, const PointArrays& points, std::span<const PackRange> ranges,
                  std::uint8_t* marks) const noexcept override;
   Box box_near(const ToolPose& pose, double margin, const Box& bounds) const noexcept override;
@@ -57,8 +57,8 @@ class Revolved final : public ToolShape {
   /// points outwards.
   void exit_distances(const ToolPose& pose, const ContactBuffer& contacts, double* exits) const noexcept override;
   /// For a body that is not convex, the constraints only describe the distance to the closest point. After a long
-  /// displacement, the point may be inside another part of the body, such as the far side of an undercut. A flush
-  /// face (kFlush) does not replace an edge.
+  /// displacement of the body, the contact's point may be inside another part of the body, such as the far side of an
+  /// undercut. In a body that is not convex, a flush face (kFlush) does not replace an edge.
   void surface_constraints(const ToolPose& pose, const Vec3& wanted, double slack,
                            ContactBuffer& contacts) const noexcept override;
   void support_points(const ToolPose& pose, const ContactBuffer& contacts,

@@ -67,8 +67,8 @@ std::vector<std::uint32_t> support_candidates(const std::vector<Vec3>& points, s
   return found;
 }
 
-/// Number of nodes between the mesh and the border of the grid on each side. With three, all 27 nodes around a node
-/// on the border are outside of the body.
+/// Smallest distance of the mesh from the border of the grid, in node spacings, on each side. With three spacings, all
+/// 27 nodes around a node of the second layer from the border are outside of the body.
 constexpr double kMarginNodes = 3.0;
 constexpr double kMaxBytes = 1024.0 * 1024.0 * 1024.0;
 constexpr double kBytesPerNode = sizeof(double) + sizeof(std::uint8_t);

@@ -25,13 +25,13 @@ class SupportTable {
 
   /// Returns the support function max <direction, p> over the points [m]. The direction need not be a unit vector.
   double support(const Vec3& direction) const noexcept;
-  /// Returns the support point of the hull along the unit direction. If a whole edge or face is extreme, returns a
-  /// point on it close to the point closest to `near`.
+  /// Returns the support point of the hull along the unit direction. If a whole edge or face is extreme, returns one of
+  /// its points, approximately the point closest to `near`.
   Vec3 foremost(const Vec3& direction, const Vec3& near) const noexcept;
 
  private:
   std::vector<Vec3> points_;
-  double tie_;  ///< points count as extreme if they are at most this far behind the extreme point [m]
+  double tie_;  ///< points within this distance behind the extreme point also count as extreme [m]
   std::vector<std::vector<std::uint32_t>> cells_;
 };
 
@@ -60,14 +60,14 @@ class SupportTable {
 /// triangles).
 class SignedDistanceGrid {
  public:
-  /// `surface`: in the tool frame [m]; `spacing`: distance between neighbouring nodes [m]. Throws
-  /// std::invalid_argument with the measured values and advice in three cases: the winding number at a node is
-  /// neither 0 nor 1 (overlapping parts; overlaps between nodes are not detected), more than a tenth of the surface
-  /// is less than two spacings thick, or the nodes would take more than 1 GiB.
+  /// `surface`: in the tool frame [m]; `spacing`: distance between neighbouring nodes [m]. Throws std::invalid_argument
+  /// with the measured values and advice in three cases: the winding number at a node is neither 0 nor 1 (overlapping
+  /// parts; overlaps between nodes are not detected), the body is less than two spacings thick below more than a tenth
+  /// of its surface, or the nodes would take more than 1 GiB.
   SignedDistanceGrid(const ClosedSurface& surface, double spacing);
 
-  /// Returns the spacing [m] at which the grid around a mesh has about 128^3 nodes, with margins. Such a grid takes
-  /// 20 MB and at most some seconds.
+  /// Returns the spacing [m] at which the grid around a mesh has about 128^3 nodes, including the nodes in the margins
+  /// around the mesh. Such a grid takes 20 MB and at most some seconds.
   static double suggested_spacing(std::span<const Vec3> vertices);
 
   double spacing() const noexcept { return nodes_.spacing; }  ///< [m]
@@ -83,7 +83,7 @@ class SignedDistanceGrid {
   /// Returns true if no vertex of the mesh lies in front of the plane of a triangle by more than 1 % of the
   /// spacing.
   bool convex() const noexcept { return convex_; }
-  /// Large flat face of a convex body: <normal, x> <= offset [m] for all of its points x.
+  /// Large flat face of a convex body: <normal, x> <= offset [m] for all points x of the body.
   struct Face {
     Vec3 normal;
     double offset;
@@ -98,8 +98,8 @@ class SignedDistanceGrid {
 
   const GridNodes& nodes() const noexcept { return nodes_; }
   const double* values() const noexcept { return values_.data(); }  ///< phi of each node [m], and one padding number
-  /// Class of all points whose nearest node is a given node, as far as the 27 nodes around it determine it: all
-  /// outside, all inside, or to be evaluated (mixed).
+  /// Class of all points whose nearest node is a given node: all outside or all inside the body. `mixed`: the 27 nodes
+  /// around the given node do not determine the class, so each point must be evaluated.
   enum Kind : std::uint8_t { outside = 0, inside = 1, mixed = 2 };
   const std::uint8_t* kinds() const noexcept { return kinds_.data(); }
 

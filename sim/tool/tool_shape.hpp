@@ -37,8 +37,8 @@ struct PackRange {
 };
 
 /// Cosine of the largest angle, 6 degrees, between a tool's flat face and a surface at which the face counts as flush
-/// with the surface. The normals of shells are wrong by a few degrees. If faces at larger angles counted as flush, they
-/// would stop the edge of the face above the surface too early.
+/// with the surface. The normals of shells are wrong by a few degrees. If faces at larger angles counted as flush, the
+/// proxy would stop too early, with the edge of the face still above the surface.
 inline constexpr double kFlush = 0.9945;
 
 /// Shape of the tool: the geometry that contact search, depth models, the proxy and metrics need. Code outside of the
@@ -69,15 +69,15 @@ class ToolShape {
   /// Returns true for a solid of revolution about the axis. A rotation about the axis maps such a body to itself,
   /// so no result depends on the roll of a pose.
   virtual bool is_axisymmetric() const noexcept = 0;
-  /// Returns the outline for drawings, in the axial half plane: a polyline from the rear end on the axis to the
-  /// front end on the axis. For a body that is not a solid of revolution, rho is the largest distance from the axis
-  /// at each s. Allocates.
+  /// Returns the outline for drawings, in the axial half plane: a polyline from the rear end on the axis to the front
+  /// end on the axis. For a body that is not a solid of revolution, rho at each s is the largest distance of the body
+  /// from the axis (ProfilePoint). Allocates.
   virtual std::vector<ProfilePoint> outline() const = 0;
 
   // Contact search.
 
-  /// Appends the points of the first `packs` packs that lie in the body or on its surface, in order. Appends
-  /// nothing if the pose is not finite. Precondition: `contacts` has room for them.
+  /// Appends the points of the first `packs` packs that lie in the body or on its surface, in the order of the points.
+  /// Appends nothing if the pose is not finite. Precondition: `contacts` has room for them.
   virtual void push_inside(const ToolPose& pose, const PointColumns& points, std::size_t packs,
                            ContactBuffer& contacts) const noexcept = 0;
   /// Marks every point of the ranges within `margin` [m] of the body, and possibly some points slightly farther
@@ -89,9 +89,9 @@ class ToolShape {
   /// the part of the body near `bounds`. The box is empty if no part of the body is near `bounds`.
   virtual Box box_near(const ToolPose& pose, double margin, const Box& bounds) const noexcept = 0;
   /// Number and radius [m] of balls whose union contains the body and everything that `mark_near` marks with this
-  /// margin. Used to bound the number of points that the body can touch (max_points_in, grid_index.hpp); many
-  /// small balls give a tighter bound than one ball. The default is one ball, valid for a `mark_near` that reaches
-  /// at most twice the margin.
+  /// margin. Used to bound the number of points that the body can touch (max_points_in, grid_index.hpp); many small
+  /// balls give a tighter bound than one ball. The default is one ball. It is valid if `mark_near` marks no point
+  /// farther away than twice the margin.
   struct Cover {
     std::size_t balls;
     double radius;
@@ -131,14 +131,14 @@ class ToolShape {
   ///
   ///     d_i + <m_i, x> <= 0   =>   the point is not inside the moved body,
   ///
-  /// for displacements of any length. If the closest point is not unique, any of the closest points has that
-  /// property.
+  /// for displacements of any length. If the closest point is not unique, this holds for the normal at any of the
+  /// closest points.
   ///
   /// A flat face that slides along a surface would be stopped by the points ahead: they lie in the plane of the face,
   /// and their closest point on the body is the edge of the face. A point that lies beyond both faces of an edge, or at
   /// most `slack` [m] inside one of the faces, is kept out by the constraint of either face. Therefore, if the
-  /// displacement `wanted` [m] violates the constraint of the closest point, a face that is flush (kFlush) with the
-  /// contact's normal replaces it.
+  /// displacement `wanted` [m] violates the constraint at the closest point, the constraint of a face replaces it. This
+  /// face must be flush with the surface (kFlush), whose normal is the contact's normal.
   virtual void surface_constraints(const ToolPose& pose, const Vec3& wanted, double slack,
                                    ContactBuffer& contacts) const noexcept = 0;
   /// Writes the support point of the body in the direction -n_i for each contact normal n_i: argmin <q, n_i> over

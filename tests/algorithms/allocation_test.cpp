@@ -107,7 +107,7 @@ std::vector<Instance> instances() {
   return all;
 }
 
-/// Returns the thesis's springs, or the thesis's 2-D peg, wide enough to touch many points.
+/// Returns the springs of the thesis, or its 2-D peg in a hole. The peg is wide enough to touch many points.
 test::Setting setting_of(const Instance& instance) {
   test::Setting setting;
   if (instance.springs) {
@@ -136,7 +136,7 @@ SimulationParts parts_of(const Instance& instance, const RenderingConfig& config
   return parts;
 }
 
-/// Counts steps with contact. Requests the ratio, so that the step computes it.
+/// Counts steps with contact. Requests the stiffness ratio, so that each step computes the ratio.
 class ContactCounter final : public Observer {
  public:
   bool wants_ratio() const noexcept override { return true; }

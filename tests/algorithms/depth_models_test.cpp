@@ -43,7 +43,7 @@ Vec3 at(double s, double a) {
 
 TEST(ShortestDistance, AnUndefinedDirectionFallsBackToTheInwardNormal) {
   const Vec3 normal = Vec3(3, 4, 0) / 5;
-  // On the median line, the side is the nearest surface, but its direction is undefined.
+  // On the axis, the side is the nearest surface, but the direction towards the side is undefined.
   const Cylinder flat{kUnit, 16 * kUnit, Tip::flat};
   const auto on_axis = evaluate(flat, kPose, at(-8, 0), normal);
   EXPECT_EQ(on_axis.depth, kUnit);
@@ -64,8 +64,8 @@ TEST(ShortestDistance, DirectionsLongerThan1e12thOfTheRadiusAreDefined) {
   }
 }
 
-/// Calls check(tool, pose, shell, contacts) with cylinders of both tips. The shell has points in, on and around the
-/// tool.
+/// Calls check(tool, pose, shell, contacts) with random cylinders, with flat and with round tips. The shell has points
+/// in, on and around the tool.
 template <class Check>
 void for_tools(std::size_t n, Check check) {
   Random random(1);
@@ -142,9 +142,9 @@ class NormalProjectionDepthOf : public testing::TestWithParam<test::ToolKind> {}
 INSTANTIATE_TEST_SUITE_P(Both, NormalProjectionDepthOf, testing::ValuesIn(cylinders().begin(), cylinders().end()),
                          [](const auto& kind) { return kind.param.name; });
 
-/// Checks that the ray from the point against its normal leaves the tool at the distance `depth`: the slack is zero
-/// there, not negative before and not positive after. The rounding of a slack is a few roundings of coordinates up to 1
-/// m.
+/// Checks that the ray from the point against its normal leaves the tool at the distance `depth`. The slack, which is
+/// the distance from the body's surface and positive inside the body, is zero there, not negative before and not
+/// positive after. The rounding of a slack is a few roundings of coordinates up to 1 m.
 void expect_exit(const test::DefinedTool& tool, const ToolPose& pose, const Vec3& point, const Vec3& normal,
                  double depth) {
   constexpr long double rounding = 2e-15L;
@@ -335,8 +335,8 @@ TEST(ContinuousNormalProjectionDepth, FollowsItsFormulaFromStepToStep) {
 }
 
 TEST(ContinuousNormalProjectionDepth, AFlatTipPressedInIsAsDeepAsItsTip) {
-  // Press up to twice the radius, far beyond the saturation of the shortest distance. Each step rounds lengths below 2
-  // mm.
+  // Press the tip in by up to twice the radius. The shortest distance does not exceed the radius. Each step rounds
+  // lengths below 2 mm.
   Stroke stroke(surface_points(Plane{0.002, 0.0001}));
   for (int step = 0; step <= 1000; ++step) {
     const double depth = 1e-6 * step;

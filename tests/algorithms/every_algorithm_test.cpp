@@ -65,14 +65,14 @@ class AlgorithmOnSceneTest : public testing::TestWithParam<AlgorithmOnScene> {
 
   test::Setting setting = GetParam().scene->setting();
   RenderingConfig config = test::config_for(GetParam().algorithm, *GetParam().scene);
-  /// Scale of rounding errors of a force [N]: the sum of all penalty forces, plus the force of one micrometre, because
-  /// coordinates are rounded, not depths.
+  /// Scale of rounding errors of a force [N]: the sum of all penalty forces, plus the force at a depth of 1 um. The
+  /// second term is needed because coordinates are rounded, not depths.
   double magnitude = config.stiffness * (test::total_depth(setting, config) + 1e-6);
 };
 
 /// Relative rounding error of any law if its inputs are exact but in another order or frame. Coordinates and normals
 /// change by a few 1e-16 of their size, which is 1e-12 of a depth of 0.1 mm. exact_shaping has the worst condition
-/// number: it computes single weights to 2e-16 divided by its epsilon of 1e-6.
+/// number: it computes each weight to 2e-16 divided by its epsilon of 1e-6.
 constexpr double kAnyLawsRounding = 1e-9;
 
 /// Instantiates a suite derived from AlgorithmOnSceneTest. Its tests have names such as `summation_on_single_spring`.
@@ -107,8 +107,8 @@ TEST_P(Answer, HasTheKnownDirectionAndIsBoundedByTheSumOfAllSprings) {
   }
 }
 
-/// Scenes for which the force of the algorithm is known. In other scenes (new algorithms, scenes with many points) only
-/// a bound is known.
+/// Instances (algorithm and scene) for which the force is known. For other instances, such as new algorithms or scenes
+/// with many points, only a bound is known.
 class ExactAnswer : public AlgorithmOnSceneTest {};
 HAPBENCH_FOR_EVERY_ALGORITHM(ExactAnswer, [](const AlgorithmOnScene& instance) {
   return instance.scene->answer().spring_over_K.contains(instance.algorithm);
@@ -224,7 +224,7 @@ class Invariance : public AlgorithmOnSceneTest {
   }
   double rounding() const { return kAnyLawsRounding * magnitude; }
   /// Returns the rounding error of a rendered force. B S v and friction are added to the springs, and S is as accurate
-  /// as single weights.
+  /// as an individual weight.
   double rounding_in_motion(const RenderedForce& force) const {
     return 4 * rounding() + kAnyLawsRounding * (force.rendered - force.spring).norm();
   }
@@ -236,7 +236,8 @@ HAPBENCH_FOR_EVERY_ALGORITHM(Invariance, always);
 class RigidMotion : public Invariance {
  protected:
   /// In a slot that is too narrow for the tool, the 3x3 system of the proxy's compromise has the condition number n /
-  /// epsilon = 640 / 1e-6; the rounding error is this number times the rounding 2e-16 of the entries.
+  /// epsilon = 640 / 1e-6 for n = 640 contacts. The rounding error is the condition number times the rounding 2e-16 of
+  /// the entries.
   static constexpr double kCompromiseRounding = 640 / 1e-6 * 2e-16;
   bool is_proxy() const { return GetParam().algorithm == "proxy"; }
   double rounding() const {
@@ -247,9 +248,9 @@ class RigidMotion : public Invariance {
     return 4 * rounding() + rounding_of_S() * (force.rendered - force.spring).norm();
   }
 };
-/// Excludes scenes in which the tool exactly touches, and merged_shaping, which has preferred directions and its own
-/// test. Also excludes a proxy whose peg is too wide for the hole of a planar scene, because rounding decides to which
-/// side the proxy slips out of the plane.
+/// Excludes scenes in which a point lies exactly on the tool's surface, and merged_shaping, which has preferred
+/// directions and its own test. Also excludes a proxy whose peg is too wide for the hole of a planar scene, because
+/// rounding decides to which side the proxy slips out of the plane.
 HAPBENCH_FOR_EVERY_ALGORITHM(RigidMotion, [](const AlgorithmOnScene& instance) {
   const bool slips = instance.algorithm == "proxy" && instance.scene->name.starts_with("tilted_peg");
   return !instance.scene->touches && !slips && instance.algorithm != "merged_shaping";
@@ -284,7 +285,8 @@ TEST_P(RigidMotion, OfTheWholeSceneTurnsForceAndTorque) {
   }
 }
 
-/// Returns the configuration with the algorithm's own parameters in newtons scaled, such as a saturation force.
+/// Returns the configuration in which the algorithm's own parameters in newtons, such as a saturation force, are
+/// multiplied by s.
 RenderingConfig with_forces_scaled(RenderingConfig config, double s) {
   for (const AlgorithmParameter& own : find_algorithm(config.algorithm)->algorithm_parameters) {
     if (std::string_view(own.range.unit) == "N")

@@ -90,8 +90,8 @@ WedgeStiffness in_series(double w, double n, double added) {
   return {along / (added + along), across / (added + across)};
 }
 
-/// Returns the stiffness after the first update, which is also the limit of the iteration up to epsilon = 1e-6. Under
-/// merged_shaping each face is a group.
+/// Returns the stiffness after the first update of the shaping iteration, which is also the limit of the iteration. The
+/// weights of exact_shaping differ from the limit by about epsilon = 1e-6. Under merged_shaping each face is a group.
 WedgeStiffness of_shaping(double w, double) {
   return of_weight(w, 1.0 / (1.0 + std::pow(std::cos(2.0 * w), 2)));
 }
@@ -135,8 +135,9 @@ TEST(Registry, EveryWedgeHasTheTensorOfItsClosedForm) {
         setting.springs->gradients.resize(2 * points, Vec3(-std::cos(w), -std::sin(w), 0.0));
         const Mat3 S = test::Probe(setting, config).force_at({{0.0, -1e-3, 0.0}, -Vec3::UnitY()}).S;
         const WedgeStiffness expected = wedge(w, static_cast<double>(points));
-        // The error of the weights is their regularisation (1e-6 in exact shaping), or otherwise rounding, divided by
-        // the smallest eigenvalue of their equations, sin^2 2w.
+        // The error of the weights is an error of their equations divided by the smallest eigenvalue of these
+        // equations, sin^2 2w. The error of the equations is the regularisation (1e-6) for exact_shaping and
+        // merged_shaping, and rounding for other laws.
         const bool exact = config.algorithm == "exact_shaping" || config.algorithm == "merged_shaping";
         const double tolerance = (exact ? 2.0 * kExactShapingEpsilon : 1e-12) / std::pow(std::sin(2.0 * w), 2);
         EXPECT_LE((S - Mat3(Vec3(expected.across, expected.along, 0.0).asDiagonal())).norm(), tolerance)
@@ -163,10 +164,11 @@ TEST(ForceBound, HoldsForSpringsOfEqualDepthInClosedForm) {
     EXPECT_GE(bound("shaped_stiffness", n), 1.0);
     EXPECT_LE(bound("shaped_stiffness", n), 3.0);
   }
-  // The bound of a proxy is its motion: 64 passes, each at most a fifth of the radius of 0.5 mm.
+  // The bound of a proxy is its largest motion in a step: 64 passes with a motion of at most a fifth of the radius of
+  // 0.5 mm each.
   EXPECT_DOUBLE_EQ(bound("proxy", 1), 64 * 0.2 * 0.0005);
   config.iterations = 0;
-  EXPECT_EQ(bound("shaped_stiffness", 50), 50.0);  // summation
+  EXPECT_EQ(bound("shaped_stiffness", 50), 50.0);  // without iterations, the law equals summation
 }
 
 /// Returns a hash of the contacts of the tilted peg in its hole after the algorithm has processed them. Renders two

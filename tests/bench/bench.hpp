@@ -27,9 +27,9 @@ void register_searches(bool full);
 /// Ends a benchmark because its result is wrong. The program runs the other benchmarks and then exits with status 1.
 void refute(benchmark::State& state, const std::string& what);
 
-/// Checks a result, for checks that take long: calls `wrong` only once per process and benchmark. `wrong` returns a
-/// description of the error, or an empty text. With an error, ends the benchmark like refute() and returns false.
-/// Otherwise returns true.
+/// Checks the result of a benchmark by a check that takes long: calls `wrong` only once per process and benchmark.
+/// `wrong` returns a description of the error, or an empty text if the result is right. If there is an error, ends the
+/// benchmark like refute() and returns false. Otherwise returns true.
 bool proved(benchmark::State& state, const std::string& benchmark, const std::function<std::string()>& wrong);
 
 /// Numbers of contacts at which the growth of the run time is measured.
@@ -64,7 +64,7 @@ const TaskScene& task_scene(std::string_view task);
 /// - `upright`, `upright_proxy`: a simulated subject of appendix D leads the upright drill over the bottom of the hole,
 ///   with shaping or with a proxy
 /// - `pressed_ideal`, `pressed_impedance`: a hand's spring presses an upright drill on the bottom of the hole, through
-///   the device of this name
+///   an ideal device or an impedance device
 /// - a task followed by `_mesh`: the scenario of the task; TimedRun replaces its drill by a mesh of the drill
 const LoadedScenario& step_scenario(const std::string& name);
 /// Returns a bundled scenario that records nothing, with overrides as for `--set`.

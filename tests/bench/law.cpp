@@ -31,7 +31,8 @@ ContactBuffer task_contacts(std::size_t n) {
 
 namespace {
 
-/// Number of contacts from which repeated_contacts() repeats contacts. It returns n contacts for any n.
+/// Largest number of different contacts in the result of repeated_contacts(). For a larger n, the contacts repeat in
+/// turn.
 constexpr std::size_t kRepeated = 1000;
 ContactBuffer repeated_contacts(std::size_t n) {
   const ContactBuffer base = task_contacts(std::min(n, kRepeated));

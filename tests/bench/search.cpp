@@ -172,7 +172,7 @@ std::vector<ToolPose> some_poses() {
   return poses;
 }
 
-/// Times a search that builds a new list in each query, as in the longest step.
+/// Times a search that builds a new neighbour list in each query. In a run, the steps that build a list take longest.
 void list_rebuild(benchmark::State& state, std::size_t points) {
   using Clock = std::chrono::steady_clock;
   constexpr int kRepeats = 5;

@@ -130,9 +130,9 @@ struct WatchedRun {
   }
 };
 
-/// Returns the scenario of one of kSteps. In `_revolved` the drill is a solid of revolution whose side is divided into
-/// eight lines, the same body. In `_grooved` it has grooves of 0.1 um, so that it is not convex but touches nearly the
-/// same points.
+/// Returns the scenario of one of kSteps. In `_revolved` the drill is described as a solid of revolution whose side is
+/// divided into eight lines; the shape of its body is the same. In `_grooved` it has grooves of 0.1 um, so that it is
+/// not convex but touches nearly the same points.
 Scenario scenario_of(const std::string& name, Skips skips) {
   Scenario scenario = step_scenario(name.substr(0, name.find("_revolved")).substr(0, name.find("_grooved"))).scenario;
   scenario.rendering.skips = skips;

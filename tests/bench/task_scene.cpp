@@ -30,8 +30,8 @@ LoadedScenario load_step_scenario(const std::string& name) {
                                               "rendering.reduction=null"});
   }
   if (name == "upright" || name == "upright_proxy") {
-    // Take the first 10 s of the first trial, with points shared by cells. In this scene the proxy needs the largest
-    // number of passes per step.
+    // Take the first 10 s of the first trial, with a shell that lists each vertex once. In this scene the proxy needs
+    // the largest number of passes per step.
     std::vector<std::string> overrides = {"environment.vertices=shared", "time.duration_s=10"};
     if (name == "upright_proxy") overrides.emplace_back("rendering.algorithm=proxy");
     return load_unrecorded("vertical_peg_in_hole_shaped_stiffness", std::move(overrides));

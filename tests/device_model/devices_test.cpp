@@ -90,8 +90,8 @@ TEST(VelocityFilter, LowPassesAnswerAStepLikeTheContinuousOnes) {
   }
 }
 
-/// For a slow sine, the power after the sampled filter is |H|^2 = 1 / (1 + (f / f_c)^(2 n)), up to the fraction of the
-/// sine that holding it over a period loses, below (pi f T)^2.
+/// For a slow sine, the power after the sampled filter is |H|^2 = 1 / (1 + (f / f_c)^(2 n)), up to the loss of power
+/// because the filter holds each sample over a period T, a fraction below (pi f T)^2.
 TEST(SampledLowPass, HasHalfThePowerAtItsCutOffWhateverItsOrder) {
   for (std::size_t order = 1; order <= LowPassFilter::kMaxOrder; ++order) {
     for (const double f : {2.0, 4.0, 6.0}) {
@@ -135,9 +135,9 @@ TEST(ImpedanceDevice, ItsNoiseIsThatOfTheSeedAndGaussian) {
   EXPECT_NEAR(beyond / 20'000, 0.3173, 0.0132);
 }
 
-/// Returns the slope of the longest window that ends at the last sample and is a line. The window grows from 1
-/// interval, while all its samples differ from the line through its ends by at most the noise. Uses all samples at
-/// once.
+/// Returns the slope of the longest window that ends at the last sample and whose samples lie on a line. The window
+/// grows from 1 interval as long as all its samples differ from the line through its ends by at most the noise. Unlike
+/// the filter, this function gets all samples at once.
 double longest_line(const std::vector<double>& x, double noise) {
   const std::size_t k = x.size() - 1;
   double slope = 0.0;

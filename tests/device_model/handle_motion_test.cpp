@@ -137,9 +137,9 @@ TEST(ElasticMotion, WithDryFrictionFollowsAnIndependentIntegrator) {
     EXPECT_GT(std::abs(fine.x_h), 1e-4);
     return worst;
   };
-  // In the reference, stops and starts are up to h late. With 30 m/s^2 this changes the speed by 30 h for some 10 ms:
-  // 3e-7 m for h = 1e-6 s, for a few stops at a time. The error is of first order in h, so steps that are ten times
-  // finer reduce it by a factor of ten.
+  // In the reference, stops and starts are up to h late. At 30 m/s^2 a stop that is late by h changes the speed by 30 h
+  // for some 10 ms, and the position by 3e-7 m for h = 1e-6 s. The errors of a few stops add up. The error is of first
+  // order in h, so steps that are ten times finer reduce it by a factor of ten.
   const double coarse = largest_error(1e-6), fine = largest_error(1e-7);
   EXPECT_LT(coarse, 1e-6);
   EXPECT_LT(fine, 0.3 * coarse);

@@ -41,7 +41,7 @@ TEST(ImpedanceHand, IsASpringAndADamperFromTargetToHandle) {
 }
 
 /// Checks the mean square over ten minutes. For eight tones it equals the sum of the mean squares of the tones to 1 %:
-/// beats are faster than one in ten seconds or contribute less than this.
+/// beats between tones are faster than one in ten seconds, or contribute less than 1 %.
 TEST(Tremor, HasItsStandardDeviationInItsBandAlone) {
   const Tremor tremor({{20e-6, 0.0, 5e-6}, 8.0, 12.0}, 3);
   constexpr double kStep = 0.005;
@@ -109,8 +109,9 @@ TEST(SmoothedSurface, OfASphereFollowsIt) {
   for (int i = 0; i < 200; ++i) {
     const Vec3 radial = random.direction();
     const SurfacePoint found = surface.nearest((kRadius + 0.001 * random.uniform()) * radial);
-    // Neighbours lie within R of a position near the sphere. Therefore no normal among them, and no mean of the
-    // normals, differs by more than the angle 2 asin(R / 2r), and their centre is no deeper than the sagitta of R.
+    // Let R be the smoothing radius and r the radius of the sphere. The neighbours lie within R of a position near the
+    // sphere. Therefore neither a normal of a neighbour nor the mean of the normals differs from the radial direction
+    // by more than the angle 2 asin(R / 2r), and the centre of the neighbours is no deeper than R^2 / 2r.
     EXPECT_LT(std::acos(std::min(1.0, found.normal.dot(radial))), 2.0 * std::asin(kSmoothing / (2.0 * kRadius)));
     EXPECT_NEAR(found.position.norm(), kRadius, kSmoothing * kSmoothing / (2.0 * kRadius));
   }
@@ -318,8 +319,8 @@ TEST(TrackingHand, NoiseHasTheGivenDeviationAndBandwidth) {
     last = x;
   }
   const double memory = std::exp(-2.0 * std::numbers::pi * subject.noise_bandwidth * kStep);
-  // A sum of correlated samples is as accurate as a sum of n (1 - a^2) / (1 + a^2) independent samples. Allow five
-  // standard errors.
+  // Let a (`memory`) be the correlation of successive samples. A sum of the squares of n samples is as accurate as a
+  // sum of the squares of n (1 - a^2) / (1 + a^2) independent samples. Allow five standard errors.
   const double independent = kSamples * (1.0 - memory * memory) / (1.0 + memory * memory);
   EXPECT_NEAR(squares / kSamples / 0.25, 1.0, 5.0 * std::sqrt(2.0 / independent));
   // 1 - products / squares estimates 1 - a with relative error about sqrt(2 / (n (1 - a))).

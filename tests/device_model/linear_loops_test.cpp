@@ -97,7 +97,8 @@ double first_crossing(SampledLoop loop) {
   for (int i = 1; i <= 2000; ++i) {
     const double high = 1e-3 + (std::numbers::pi - 1e-3) * i / 2000;
     const std::complex<double> at = stiffness_at(high);
-    // There is no pole between the two angles.
+    // The imaginary part changes its sign at a crossing or at a pole. The second condition excludes a pole between the
+    // two angles.
     if (before.imag() * at.imag() <= 0.0 && std::abs(before - at) < std::abs(at)) {
       double a = low, b = high;
       while (b - a > 1e-13) {
@@ -128,8 +129,8 @@ TEST(SampledLoop, HasNoCrossingBelowItsLimit) {
   }
 }
 
-/// Checks a run of the device on bilateral springs, without quantization and dry friction, against the map sample by
-/// sample.
+/// Checks a run of the device on bilateral springs, without quantization and dry friction, sample by sample against the
+/// linear map of the loop (state_matrix()).
 TEST(SampledLoop, IsTheMapOfTheDeviceWithFiltersOfAnyOrder) {
   for (const std::size_t order : {1u, 2u, 3u, 5u, 8u}) {
     for (const bool filters_position : {false, true}) {
@@ -168,8 +169,8 @@ TEST(SampledLoop, IsTheMapOfTheDeviceWithFiltersOfAnyOrder) {
   }
 }
 
-/// Checks a run of the device with a transmission and a hand against the map sample by sample, from a state displaced
-/// by 1 mm.
+/// Checks a run of the device with a transmission and a hand, sample by sample against the linear map of the loop
+/// (state_matrix()), from a state displaced by 1 mm.
 TEST(SampledLoop, IsTheMapOfTheDeviceWithATransmission) {
   for (const double delay : {0.0, 1.0, 1.75}) {
     for (const std::size_t order : {1u, 2u}) {
@@ -321,7 +322,9 @@ TEST(StiffnessLimits, AllowsWithDelayAndWithoutDampingWhatTheClosedFormAllows) {
   EXPECT_FALSE(limit("passive_with_delay", loop)) << "the sum over the aliases needs whole delays";
 }
 
-/// Checks that the inequality itself, on a grid of angles, holds slightly below the limit and fails slightly above it.
+/// Checks the inequality of passivity itself, b > T / (2 (1 - cos theta)) Re((1 - e) e^d H) with e = e^(-j theta), on a
+/// grid of angles theta. The inequality holds slightly below the limit and fails slightly above it. b is the viscous
+/// friction, T the sampling period, d the delay in samples, and H the transfer function of the wall.
 TEST(StiffnessLimits, ThePassiveStiffnessIsTheLargestThatMeetsTheInequality) {
   const auto holds = [](const SampledLoop& loop, double K) {
     for (int i = 1; i <= 20000; ++i) {

@@ -80,7 +80,7 @@ def printed_fields():
         for word in described("words")["words"]
         if word["kind"] not in NO_WORDS
     ]
-    # The runs of compare have the same files as run.
+    # Keys that repeat a column or a key of `run --json` are not listed again, except for the commands in NO_TABLES.
     printed = [
         (command, *key)
         for bench in FOUND.values()

@@ -132,9 +132,9 @@ def verdict_on(f):
 
 @scene
 def convergence_in_thirds(bench):
-    """Checks converge for leapfrog on one damped spring, with steps divided by r = 3. With the differences d_1 and d_2
-    of successive results f, the order is p = log(d_1 / d_2) / log r. Richardson's value is
-    f + (f - f_before) / (r^p - 1)."""
+    """Checks converge for leapfrog on one damped spring, with time steps that are divided by r = 3 from level to level.
+    With the differences d_1 and d_2 of successive results f, the order is p = log(d_1 / d_2) / log r. Richardson's
+    value is f + (f - f_before) / (r^p - 1)."""
     K, M, dt, n, r = 1500.0, 0.1, 0.002, 40, 3
     B = 2 * 0.2 * math.sqrt(K * M)
     base = bench.scenario(
@@ -180,8 +180,8 @@ def convergence_in_thirds(bench):
 
 @scene
 def convergence(bench):
-    """Checks converge for leapfrog on one damped spring with five steps, evaluated at the same time. Orders and
-    extrapolated value follow from a recurrence."""
+    """Checks converge for leapfrog on one damped spring with five time steps. The results of all time steps are
+    evaluated at the same time. Orders and extrapolated value follow from a recurrence."""
     K, M, dt, n = 1500.0, 0.1, 0.002, 40
     B = 2 * 0.2 * math.sqrt(K * M)
     base = bench.scenario(

@@ -184,7 +184,7 @@ def devices(bench):
 
 
 def linear_limit_of_device(bench, B, T, b, cell, m, number, printed, theory):
-    """Checks the linear limit of a device in a hand, by the eigenvalues of the sampled loop."""
+    """Checks the linear limit of a device that a hand holds, by the eigenvalues of the sampled loop."""
     pushed = ("mine", "pushes", "summation")
     linear = limit_of(lambda K: held_loop(m + 0.2, b + 2, T, K, B, spring=300), 100.0, 1e6)
     close = Within("an edge by eigenvalues, bisected to 1e-9 or better", relative=1e-8)

@@ -76,7 +76,7 @@ def ends(bench):
             "completes",
             None,
         ),
-        # y_k = -1 mm + k 0.05 mm first exceeds 0 at k = 21; at k = 20 it is 0 up to rounding.
+        # y_k = -1.02 mm + k 0.05 mm first exceeds 0 at k = 21.
         (
             "leaves_hole",
             dict(
@@ -234,8 +234,8 @@ def classes(bench):
         EXACT,
         ("a tool at rest in free fall is stable", "stable"),
     )
-    # Two patches of points. The tool is dragged off the first patch: it sinks by 1 N over 50 N s/m, and in the end it
-    # is within its reach of the bounding box of the points.
+    # The scene has two patches of points. The tool is dragged off the first patch and sinks at 0.02 m/s = 1 N / (50 N
+    # s/m). At the end, the distance of the tool from the bounding box of the points is less than the tool's reach.
     bench.write(
         "gap.csv",
         "x_m,y_m,z_m,nx,ny,nz",

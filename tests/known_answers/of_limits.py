@@ -424,8 +424,8 @@ def stressed(bench):
         ("some twice", len(table.rows) - 1),
     )
     reached = Within("sums of up to 137 equal springs, rounded", relative=1e-13)
-    # The sets include parallel springs of equal depth: their stiffness is the stiffness of one spring, and with the
-    # rule 10 / N of ten springs.
+    # The sets include parallel springs of equal depth. For them, `mean` and `highest_depth` render the stiffness of one
+    # spring, and the 10/N rule (`mcneely`) renders the stiffness of ten springs.
     bench.add(
         "stress.csv:largest_force_per_K_d",
         table["largest_force_per_K_d"][rows],

@@ -241,8 +241,9 @@ def beside_the_ideal(bench):
 
 @scene
 def pressed_ball(bench):
-    """Checks the depth of a ball of 1 mm that is pressed 3 mm into a plane. The depth is the radius minus the height,
-    independent of the plane's width. The depth of a contact is at most the radius."""
+    """Checks the depth of a ball of 1 mm diameter that is pressed 3 mm into a plane. The depth of the ball is its
+    radius minus the height of its centre, independent of the plane's width. In contrast, the depth of a contact is at
+    most the radius."""
     n, dt, a = 600, 0.001, 0.5e-3
     height = {
         "type": "waypoints",

@@ -74,9 +74,9 @@ def subjects(bench):
 
 @scene
 def one_subject(bench):
-    """Checks the targets of one subject by their rule. A target is reached if the tool stays within 0.2 mm for 1 s
-    without interruption while the force on the hand is at least 1 N. The target ends after 1.5 s. The force on the hand
-    is the rendered force of the previous row."""
+    """Checks the targets of one subject by their rule. A target is reached if the tool stays within 0.2 mm of the
+    target for 1 s without interruption while the force on the hand is at least 1 N. The target ends after 1.5 s. The
+    force on the hand is the rendered force of the previous row."""
     run = bench.run(
         "vertical_peg_in_hole_shaped_stiffness",
         "--set",

@@ -98,8 +98,8 @@ def times_of_laws(bench):
 
 @scene
 def errors_of_settings(bench):
-    """Checks the errors of velocity Verlet with several steps h. It moves as X cos(omega' t) with cos(omega' h) = 1 -
-    (omega h)^2 / 2, instead of X cos(omega t)."""
+    """Checks the errors of velocity Verlet with several time steps h. With velocity Verlet the mass moves as X
+    cos(omega' t) with cos(omega' h) = 1 - (omega h)^2 / 2, instead of X cos(omega t)."""
     base = oscillator(bench, "errors_of_settings")
     bench.hapbench(
         "converge",
@@ -190,8 +190,8 @@ def errors_of_settings(bench):
         ("default", [1e-6] * 4),
     )
     add_times(bench, "convergence_timing.csv", times, h, deadline=h)
-    # The error decreases and the cost increases with each level, so that all settings are on the front. The front is
-    # straight.
+    # The error decreases and the cost increases with each level, so that all settings are on the front. In logarithmic
+    # scales the front is straight, so it has no knee.
     cost = times["seconds_per_simulated_second"]
     front = [not np.any((cost < cost[i]) & (known < known[i])) for i in range(4)]
     texts = lambda values: ["true" if value else "false" for value in values]

@@ -127,7 +127,7 @@ def tuned_margins(bench, K, at_K, by, delay, gain, law, loop, margin, table, zet
 
 
 def tuned_order(bench, law, printed, runs, table):
-    """Checks the columns that are known for a single law, and the bounds, which repeat the options."""
+    """Checks the columns and fields that follow from tuning a single law, and the bounds, which repeat the options."""
     bench.add(
         "tune.csv:algorithm",
         table["algorithm"],
@@ -181,7 +181,8 @@ def tuned_order(bench, law, printed, runs, table):
 
 
 def tuned_words(bench, law, m):
-    """Checks fields of the answer for one law that only its loop limits, and fields that repeat the options."""
+    """Checks fields of the answer for a law whose stiffness only the stability of its loop limits, and fields that
+    repeat the options."""
     for name, known, naive in (
         ("feasible", True, False),
         ("lambda_max", 1.0, 2.0),

@@ -117,8 +117,8 @@ def held_loop(m, b, T, K, B, delay=0, spring=0.0):
 
 
 def motion_of(matrix, x, n=8000):
-    """Returns the velocities [m/s] of n rows of the motion by step_matrix() or held_loop(), from rest at the position x
-    [m]. Returns None if the motion leaves the default bounds."""
+    """Returns the velocities [m/s] of n rows of the motion that starts at rest at the position x [m]. `matrix`: result
+    of step_matrix() or held_loop(). Returns None if the motion leaves the default bounds."""
     values, vectors = np.linalg.eig(matrix)
     start = np.zeros(len(matrix))
     start[:3:2] = x  # the previous sample has the same position

@@ -108,7 +108,7 @@ def judged(build, controls, claims):
             entry = {"name": control["name"], "cases": []}
             recorded.append(entry)
         entry["meaning"] = control["meaning"]
-        # Keeps only cases that were compared with the verdict and number that the ledger has now.
+        # Keep only cases that were compared with the verdict and number that claims.json has now.
         now = {
             claim["id"]: [claim["verdict"], claim["number"]]
             for claim in read(REFERENCE / "claims.json")["claims"]

@@ -19,8 +19,9 @@ from pathlib import Path
 
 SOURCE = Path(__file__).resolve().parent.parent.parent
 FOLDERS = ("sim", "algorithms", "device_model", "results/observe")
-# Selections of tests, as options of ctest. Names of GoogleTest suites have no dot; names of tests that are scripts do.
-# The test Library inspects the libraries, which the counters of coverage change, and is excluded.
+# Selections of tests, as options of ctest. The names of GoogleTest suites contain no dot. The names of tests that are
+# scripts contain a dot. The test Library inspects the libraries, which the counters of coverage change, and is
+# excluded.
 TESTS = (
     ["-L", "^fast$", "-E", "^Library[.]"],
     ["-L", "^slow$", "-E", "[.]"],

@@ -33,17 +33,17 @@ void write_plainly(const std::filesystem::path& path, const std::string& content
 /// directory.
 std::map<std::string, std::string> files_below(const std::filesystem::path& directory);
 
-/// Returns only the paths of these files.
+/// Returns the relative paths of the files that files_below() returns.
 std::vector<std::string> names_below(const std::filesystem::path& directory);
 
 /// Fails the test unless both directories have the same files with the same bytes. Names in `ignored` are not compared.
 void expect_same_files(const std::filesystem::path& a, const std::filesystem::path& b,
                        const std::vector<std::string>& ignored = {});
 
-/// Return the lines of a text without line ends, and the cells of a line.
+/// Return the lines of a text without line ends, and the cells of a line of CSV.
 std::vector<std::string> lines_of(const std::string& text);
 std::vector<std::string> cells_of(const std::string& line);
-/// Returns the number in a cell. Fails the test if the cell has anything else.
+/// Returns the number in a cell. Fails the test if the cell is not exactly one number.
 double number_in(const std::string& cell);
 
 /// While an object exists, no file of this process may grow beyond `bytes`: writing fails as on a full disk.
@@ -59,8 +59,8 @@ class FileSizeLimit {
   void (*handler_before_)(int);
 };
 
-/// While an object exists, an environment variable of this process and of programs that it starts has the given value,
-/// or is unset without a value. The destructor restores the previous value.
+/// While an object exists, an environment variable of this process and of programs that it starts has the value
+/// `value`. If `value` is empty, the variable is unset. The destructor restores the previous value.
 class EnvironmentVariable {
  public:
   EnvironmentVariable(std::string name, const std::optional<std::string>& value);

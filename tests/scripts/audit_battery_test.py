@@ -13,8 +13,8 @@ from hapbench import audit  # noqa: E402  (finds the program in the environment)
 T = 1e-3  # sampling period [s]
 # Mass of the handle [kg], stiffness [N/m] and damping [N s/m] of the hand.
 MASS, HAND, HAND_DAMPING = 0.12, 250.0, 3.5
-# Relative width of intervals for exact models, which contain only rounding: positions have six decimals, forces nine
-# digits.
+# Allowed error of the intervals, relative to the true value, for a model that is exact. It covers the rounding of the
+# log: positions have six decimals, forces nine digits.
 ROUNDING = 1e-4
 
 
@@ -69,8 +69,7 @@ class Battery(unittest.TestCase):
         self.assertTrue(low - slack <= truth <= high + slack, (message, interval, truth))
 
     def determined(self, log, stiffness, damping, delay):
-        """Asserts that the intervals contain the true values, and that the values are accurate to 2 % of the
-        stiffness."""
+        """Asserts that the intervals contain the true values, and that the reported stiffness is accurate to 2 %."""
         spring = audit(log)["stiffness"]
         name = (stiffness, damping, delay)
         self.assertIsNotNone(spring, name)

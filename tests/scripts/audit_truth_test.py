@@ -241,8 +241,8 @@ class Diagnosis(unittest.TestCase):
         self.assertIn("chatter", rules_of(audit(log_of(t, z, force))))
 
     def test_energy_of_a_delay_that_the_log_does_not_determine(self):
-        """Checks the advice for contacts of 12 rows, which have no stiffness. It must name the delay as a possible
-        cause of the created energy."""
+        """Checks the advice for contacts of 12 rows each, from which no stiffness can be determined. It must name the
+        delay as a possible cause of the created energy."""
         t = 1e-2 * np.arange(1200)
         z = presses(t, 40, 0.12, depth=4e-3, rise=0.06, every=0.28)
         energy = rules_of(audit(log_of(t, z, spring(z, 800.0, delay=2))))["energy"]

@@ -1,5 +1,5 @@
 """Tests the manuals: documented commands and examples work, link targets exist, generated tables equal the stored
-tables, and the first page keeps its size."""
+tables, and README.md keeps its size."""
 import json
 import math
 import os
@@ -237,8 +237,8 @@ class Generated(unittest.TestCase):
                 )
 
     def test_controls_and_pairs_are_about_the_verdicts_on_record(self):
-        """Checks that the verdicts in controls.json and pairs.json were compared with the current verdicts and numbers
-        of the ledger. A wrong law or a pair of assumptions says nothing about a verdict that has changed since.
+        """Checks that controls.json and pairs.json are about the verdicts and numbers that claims.json has now. What
+        they say about a wrong law or a pair of assumptions does not apply to a verdict that has changed since.
         """
         ledger = {claim["id"]: claim for claim in record("claims")["claims"]}
         faults = json.loads((SOURCE / "tests/mutants/controls.json").read_text(encoding="utf-8"))

@@ -112,7 +112,7 @@ class Layouts(Given):
             "their names say otherwise",
             self.report(last, "time=t,position=x,qw=qx,qx=qy,qy=qz,qz=qw")[1]["warnings"][0],
         )
-        # The columns do not form an orientation.
+        # With --orientation none, columns for an orientation are refused.
         for columns in ("orientation=qx", "qw=qw,qx=qx,qy=qy,qz=qz"):
             self.assertIn(
                 "is not used: --orientation none takes no columns",
@@ -517,8 +517,8 @@ class Layouts(Given):
             self.assertAlmostEqual(found["rate_Hz"], 1000 / rows, delta=1e-6)
             np.testing.assert_allclose(stroke.position, moved(time[::rows]), atol=1e-9)
             self.assertIn(f"each pose is repeated in {rows} rows", found["warnings"][0])
-        # The rate of the log is not a multiple of the rate of the measurement. One row alone would seem too fast, and
-        # the tool rests for some time.
+        # In the first log, the rate of the log is not a multiple of the rate of the measurement. If a jump were divided
+        # by the time of a single row, the speed would be too high. In the second log, the tool rests for some time.
         held = np.floor(60 * time) / 60
         _, found = self.report(table("t,x,y,z", time, 40 * moved(held)), "time=t,position=x")
         self.assertAlmostEqual(found["rows_per_held_sample"], 1000 / 60, delta=0.1)

@@ -219,7 +219,6 @@ class Moments(unittest.TestCase):
         # than the settling time, so that no landing follows it.
         t = np.arange(100) / 10
         touching = ((1 <= t) & (t < 3) | (3.2 <= t) & (t < 5) | (t >= 7)).astype(int)
-        # A gap shorter than the settling time does not cause a landing.
         rows = {"time_s": t, "colliding": touching}
         for metrics, settled in (
             ({"settling_s": 0.5}, (1.5 <= t) & (t < 3) | (3.2 <= t) & (t < 5) | (t >= 7.5)),

@@ -23,7 +23,8 @@ def make_results(directory):
     """Computes short runs for the report, and the recordings of its replay."""
     for scenario in SCENARIOS:
         hapbench("run", scenario, "--quiet", "--out", directory / "thesis" / scenario)
-    # Every third algorithm and a quarter of the duration of the long scene. The page shows the runs that exist.
+    # Record only every third algorithm, and a quarter of the duration of the long scene. The page shows the runs that
+    # exist.
     few = [
         (scenario, ("time.duration_s=1.5",) if further else (), algorithms[::3])
         for scenario, further, algorithms in command.REPLAYED

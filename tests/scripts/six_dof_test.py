@@ -58,7 +58,7 @@ def distances(points, tip, turn):
 
 class Problem:
     """Energy and contacts of tool and handle near a start pose. The unknowns x are the displacement of the tool's force
-    point [mm], the rotation of the tool and the rotation of the handle [rad times mm]."""
+    point [mm], and the rotation vectors of the tool and of the handle [rad]."""
 
     def __init__(self, points, stiffness, tip, axis, intent_tip, intent_axis, handle_turn):
         self.points = points

@@ -149,8 +149,8 @@ Gradients graded_clusters(Random& random, std::size_t n) {
   return fill(n, [&] { return tilted(random, centres[random.below(centres.size())], small_angle(random)); });
 }
 
-/// Returns a ring of gradients around an axis, like the wall of a hole. Without the regularisation epsilon, infinitely
-/// many weights would be optimal.
+/// Returns a ring of gradients around an axis, like the wall of a hole. Without the regularisation epsilon, the optimal
+/// weights would not be unique.
 Gradients cone(Random& random, std::size_t n) {
   const Mat3 frame = random_rotation(random);
   const double z = random.uniform(-1.0, 1.0);

@@ -26,8 +26,9 @@ def held(rate, inputs, t):
 
 
 class LowPass:
-    """Butterworth low-pass of a sampled input. The input at a sample is constant over the period T [s] before this
-    sample. `given`: dict with the fields cutoff_Hz and order of a scenario, or None for no filter.
+    """Butterworth low-pass of a sampled input. The filter treats the input as constant over the period T [s] before
+    each sample, with the value at this sample. `given`: dict with the fields cutoff_Hz and order of a scenario, or None
+    for no filter.
     """
 
     def __init__(self, given, T):

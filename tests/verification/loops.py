@@ -17,8 +17,8 @@ from loop_models import MAPS, between, limit_of, radius, random_device, random_h
 PROGRAM = Path(sys.argv[1]).resolve()
 COUNT = int(sys.argv[2]) if len(sys.argv) > 2 else 2
 RANDOM = np.random.default_rng(85)
-# Largest relative difference of a limit on a spring. `limit` bisects eigenvalues to 1e-11. Rounding changes a double
-# eigenvalue by the square root of the machine precision, 1e-8.
+# Largest relative difference of a limit on a spring. `limit` bisects eigenvalues to 1e-11. Rounding changes an
+# eigenvalue of multiplicity two by the square root of the machine precision, 1e-8.
 SPRINGS_AGREE = 1e-7
 # Largest relative difference of a limit on a surface. The derivative of a rendered force is a difference quotient with
 # an error of 1e-7. The limit depends on it about linearly.
@@ -172,7 +172,8 @@ def check_surfaces(folder, faults):
         scene["rendering"]["damping_N_s_per_m"] = 1.5
         still = json.loads(json.dumps(scene))
         still["hand"] = {"type": "none"}
-        # A softer tip sinks in under F without a limit: its slope is 0, and an eigenvalue is 1.
+        # If K is smaller than `softest`, the force F presses the tip in without end: the slope is 0, and an eigenvalue
+        # is 1.
         softest = F / sides_of_flat_tip(0.002).mean()
         expected = limit_of(
             lambda K: radius(MAPS["impedance"](still, slope_of_flat_tip(K, F, 0.002))) <= 1,

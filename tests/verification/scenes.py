@@ -38,8 +38,8 @@ SHARE = 0.06
 # error of 1e-7. The limit depends on it about linearly. Newton's method finds an equilibrium to 1e-10 m, which changes
 # the slope of a round tip by up to 1e-10 / 1e-5.
 AGREE = 3e-5
-# An eigenvalue within this distance of 1 belongs to a mode that moves freely. Rounding changes a double eigenvalue by
-# the square root of the machine precision.
+# An eigenvalue within this distance of 1 belongs to a mode that moves freely. Rounding changes an eigenvalue of
+# multiplicity two by the square root of the machine precision.
 FREE = 1e-6
 # DURATION_S: duration of a run [s]. CUTOFF_HZ: cutoff of the filter for vibration. MAX_M_PER_S: largest velocity of
 # low vibration. UNSURE: factor around a threshold within which a run has no verdict.

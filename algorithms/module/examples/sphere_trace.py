@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
-"""Contacts by Python: those of a ball of 0.5 mm, led over a sphere of 2 mm about the origin, as a
-trace, and the scene that plays them to every law:
+"""Computes contacts in Python: a ball of radius 0.5 mm moves over a sphere of radius 2 mm about the
+origin. Writes the contacts as a trace, and a scenario in which a force law receives these contacts.
+The second command runs the scenario with every algorithm:
 
     python3 algorithms/module/examples/sphere_trace.py FOLDER
     hapbench compare FOLDER/sphere.json --algorithms all
@@ -15,7 +16,7 @@ folder, dt, steps = Path(sys.argv[1]), 0.0005, 1000
 t = dt * np.arange(steps)
 tip = np.column_stack([-0.001 + 0.004 * t, 0 * t, np.full(steps, 0.0024)])
 distance = np.linalg.norm(tip, axis=1)
-out = tip / distance[:, None]  # of the sphere, towards the tip
+out = tip / distance[:, None]  # outward normal of the sphere at the point nearest to the tip
 touches = distance <= 0.0025
 trace = np.column_stack([t, 0.002 * out, -out, 0.0025 - distance])[touches]
 np.savetxt(

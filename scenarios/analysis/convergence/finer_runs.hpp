@@ -15,32 +15,33 @@
 /// spacing.
 namespace hapbench {
 
-/// Error estimate of a metric, in the metric's unit. The errors by time step and point spacing are the errors of the
-/// coarsest of three levels (convergence_of).
+/// Error estimate of a metric, in the metric's unit. `step` and `spacing` are the errors due to the time step and to
+/// the point spacing. Each is the error at the coarsest of three levels (convergence_of).
 struct KnownError {
-  std::optional<double> step, spacing;  ///< empty if a refined run has another outcome or lacks the metric
+  std::optional<double> step, spacing;  ///< empty if the refinement is impossible, or if a refined run
+                                        ///< has another outcome or lacks the metric
   bool has_points = true;               ///< false if the scene has no point spacing to refine
   double tolerance = 0.0;               ///< error of computing the metric in one run, such as the error of a quantile
                                         ///< from a histogram
 
-  /// Returns the sum of the three errors. Empty if the error by the time step is unknown, or if the scene has a point
-  /// spacing and the error by the point spacing is unknown.
+  /// Returns the sum of `step`, `spacing` and `tolerance`. Empty if `step` is empty, or if the scene has a point
+  /// spacing and `spacing` is empty.
   std::optional<double> sum() const;
 };
 
 /// The runs of a comparison, repeated with refined time steps and refined point spacing.
 class FinerRuns {
  public:
-  /// Makes all refined runs, without result files. `reports`: the results of the runs of `comparison`, in its order.
-  /// Both must outlive this object. Throws Stopped.
+  /// Makes all refined runs, without result files. `reports`: the results of the runs of `comparison`, in the same
+  /// order. `comparison` and `reports` must outlive this object. Throws Stopped.
   FinerRuns(const Comparison& comparison, std::span<const Result> reports, const JobOptions& jobs);
 
   /// Returns the error estimate of a metric of run number `run` of the comparison. Metrics of refined runs are sampled
   /// at the times of the original run's steps.
   KnownError known_error(std::size_t run, const std::string& metric) const;
 
-  /// Returns a clause about both refinements of a scene: for each, the values of its levels, or the reason why it was
-  /// not made.
+  /// Returns a clause about the refinements of time step and point spacing of a scene: for each refinement, the values
+  /// of its levels, or the reason why the refinement was not made.
   std::string refined(std::size_t scene) const;
 
  private:

@@ -24,8 +24,8 @@ namespace {
 
 /// Returns the formal order of convergence in the time step. With a device, the order is 1, because the device holds
 /// the force between samples. Without damping, leapfrog has order 2 for amplitudes and energies; its velocity belongs
-/// to a time half a step earlier. Its values at a fixed time have order 1, because the run begins with the velocity of
-/// the full step.
+/// to a time half a step earlier. Its values at a fixed time have order 1, because the run starts with the velocity at
+/// time 0 instead of half a step earlier.
 double order_in_step(const Scenario& scenario) {
   const IntegratorEntry& integrator = *scenario.integrator.type;
   if (has_device(scenario)) return 1.0;
@@ -63,8 +63,8 @@ LevelSweep step_levels(const Scenario& scenario, std::size_t levels, double rati
   return sweep;
 }
 
-/// Returns the value of the first level: the scenario's value, or the mean vertex distance for a spacing that is not
-/// given. Throws InputError if there is neither a value above 0 nor a mean vertex distance.
+/// Returns the value of the first level: the scenario's value, or, for a spacing that is not given, the mean distance
+/// between neighbouring vertices. Throws InputError if there is neither a value above 0 nor such a mean distance.
 double coarsest_value(const LoadedScenario& loaded, const std::string& path) {
   const Json own = current_value(loaded.scenario, path);
   if (own.is_number_float() && own.get<double>() > 0.0) return own.get<double>();

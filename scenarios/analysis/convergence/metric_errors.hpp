@@ -26,15 +26,15 @@ enum class Refinement {
   depth  ///< one run with the depth evaluated at every step: ten times as expensive as the run of the scene itself
 };
 
-/// Returns true if evaluating the depth at every step can change the metric: the two depths of the tool inside the
-/// environment. All other metrics are equal in both runs.
+/// Returns true for the two metrics of the depth of the tool inside the environment. Evaluating the depth at every step
+/// can change only these metrics.
 inline bool depends_on_sampled_depth(std::string_view metric) {
   return metric == "inside_max_m" || metric == "inside_settled_m";
 }
 
-/// Returns the largest change of each value in `metrics` by a refinement; infinite for a metric that a refined run
-/// lacks. Uses up to `threads` threads. Adds the number of refined runs to `runs`. Without surface points,
-/// Refinement::depth makes no run and all its changes are 0.
+/// Returns, for each value in `metrics`, the largest change over the refined runs of `refinement`; infinite for a
+/// metric that a refined run lacks. Uses up to `threads` threads. Adds the number of refined runs to `runs`. Without
+/// surface points, Refinement::depth makes no run and all its changes are 0.
 MetricValues metric_changes(const ScenarioText& scene, const std::vector<std::string>& overrides,
                             const MetricValues& metrics, Refinement refinement, unsigned threads, std::size_t& runs);
 

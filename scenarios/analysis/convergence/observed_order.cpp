@@ -12,8 +12,8 @@
 namespace hapbench {
 namespace {
 
-/// A difference below this fraction of the results may be the rounding error of up to 10^6 steps. No order follows
-/// from such differences.
+/// A difference between two results below this fraction of the largest result may be the rounding error of up to 10^6
+/// steps. No order follows from such differences.
 constexpr double kRoundingShare = 1e-10;
 constexpr double kGciSafety = 1.25;        // Roache's safety factor for three or more levels
 constexpr double kAsymptoticWithin = 0.1;  // largest |GCI_21 / (r^p GCI_32) - 1|
@@ -26,7 +26,8 @@ std::size_t min_levels(const MetricTraits& traits) {
   return traits.smooth ? kMinLevels : kMinLevelsOfEvents;
 }
 
-/// Returns why fewer levels count than an order needs. `first`: index of the first level that counts.
+/// Returns the reason why fewer levels count (CountedLevels) than an order needs. `first`: index of the first level
+/// that counts.
 std::string too_few_reason(std::span<const LevelResult> levels, std::size_t first, const MetricTraits& traits) {
   const std::size_t count = levels.size() - first;
   const char* needed = traits.smooth ? "three" : "five";
@@ -60,8 +61,8 @@ std::string switching_reason(std::span<const LevelResult> last) {
 std::string incredible_reason(std::span<const double> f, std::span<const std::optional<double>> orders,
                               std::size_t count, double formal, double ratio) {
   const std::size_t last = f.size() - 1, from = f.size() >= count ? f.size() - count : 0;
-  // The largest credible order. It allows the same relative deviation of the differences as the asymptotic range,
-  // beyond twice the formal order.
+  // The largest credible order: twice the formal order, and beyond it the same relative deviation of the ratio of two
+  // differences as in the asymptotic range (kAsymptoticWithin).
   const double largest_credible = 2.0 * formal + math::log(1.0 + kAsymptoticWithin) / math::log(ratio);
   for (std::size_t i = from + 2; i <= last; ++i) {
     const double coarse = f[i - 2] - f[i - 1], fine = f[i - 1] - f[i];
@@ -78,7 +79,7 @@ std::string incredible_reason(std::span<const double> f, std::span<const std::op
 /// The levels that count: the finest consecutive levels that have a result and the outcome of the finest level.
 struct CountedLevels {
   std::size_t first = 0;  ///< index of the first level that counts
-  std::vector<double> f;  ///< results of the levels that are used, coarsest first
+  std::vector<double> f;  ///< results of the levels that count, coarsest first
   double largest = 0.0;   ///< largest magnitude of the results
 
   std::size_t count() const { return f.size(); }

@@ -37,20 +37,22 @@ struct Convergence {
   std::string reason;                  ///< why there is no order, as a clause; empty with an order
   std::optional<double> extrapolated;  ///< f*; only with an order
   std::optional<double> gci;  ///< GCI of the finest level, relative to its result; only with an order and a result != 0
-  /// True if the levels are in the asymptotic range: |GCI_21 / (r^p GCI_32) - 1| <= 0.1 for the three finest levels,
-  /// and, if a fourth level counts, also for the second to fourth finest levels with the same p.
+  /// True if the levels are in the asymptotic range: |GCI_21 / (r^p GCI_32) - 1| <= 0.1 for the three finest levels (1:
+  /// coarsest, 3: finest of the three), and, if a fourth level counts, also for the second to fourth finest levels with
+  /// the same p.
   bool asymptotic = false;
-  /// Smallest and largest result of the last three levels that count, or of two levels; empty with fewer. For a metric
-  /// that is not smooth, both are moved outwards by its sampling spread at the finest level.
+  /// Smallest and largest result of the finest levels that count: of three levels, or of two if only two count; empty
+  /// if fewer count. For a metric that is not smooth, the two numbers are moved apart, each by the sampling spread at
+  /// the finest level.
   std::optional<std::pair<double, double>> band;
   /// Observed order at each level, computed from this level and the two next coarser levels; empty if undefined.
   std::vector<std::optional<double>> orders;
   /// Error estimate (not a bound) of each level [metric's unit]. With an order: 1.25 |f - f*|, which at the finest
   /// level equals |f| times the GCI. Without an order: the largest distance to the result of a finer level, at least
-  /// the range of the last three levels. The estimate of a metric that is not smooth includes more. With an order, it
-  /// is at least the range of the last three levels. Without an order, the difference of the two finest levels is
-  /// added: at first order, further levels would change the result by this difference. In both cases, the sampling
-  /// spread at the finest level is added.
+  /// the range of the last three levels. For a metric that is not smooth, the estimate is larger. With an order, it is
+  /// at least the range of the last three levels. Without an order, the difference of the two finest levels is added:
+  /// at first order, further levels would change the result by this difference. In both cases, the sampling spread at
+  /// the finest level is added.
   std::vector<std::optional<double>> errors;
 };
 
@@ -66,8 +68,9 @@ LevelResult level_result(const LevelSweep& levels, std::size_t level, const Resu
 /// - LevelSweep::no_order gives a reason;
 /// - fewer than three levels count, or fewer than five for a metric that is not smooth;
 /// - the last two results differ by rounding only;
-/// - contacts switch between the last three levels (of a metric that is not smooth: five);
-/// - within the last four levels (five), differences change their sign or an order is not in (0, 2 formal_order];
+/// - contacts switch between the last three levels (last five levels for a metric that is not smooth);
+/// - within the last four levels (last five for a metric that is not smooth), differences change their sign
+///   or an order is not in (0, 2 formal_order];
 /// - the extrapolated value is negative, and the metric cannot be.
 Convergence convergence_of(const LevelSweep& sweep, std::span<const LevelResult> levels,
                            const MetricTraits& traits = {});

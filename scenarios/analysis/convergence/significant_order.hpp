@@ -22,7 +22,7 @@ struct SignificantOrder {
 /// no two numbers differ significantly; then all numbers are in one group.
 SignificantOrder significant_order(std::span<const NumberWithError> numbers);
 
-/// Returns significant_order() of named numbers, such as "mean ~ shaped_stiffness < proxy".
+/// Returns the text of significant_order() for named numbers, such as "mean ~ shaped_stiffness < proxy".
 std::string order_text(std::span<const NumberWithError> numbers, std::span<const std::string> names);
 
 /// Returns significant_order() as a sentence about named numbers, such as "significant order: mean < proxy".

@@ -38,8 +38,9 @@ std::optional<ComparedDevice> with_friction_times(ComparedDevice device, double 
 /// touch[soft] and touch[stiff]. Empty for other devices.
 std::vector<ComparedDevice> with_unpublished_numbers(const ComparedDevice& device);
 
-/// Returns the overrides that replace the scene's device, followed by the given overrides. If the device cannot carry a
-/// hand's mass (!has_place_for_mass), the mass is dropped: the virtual mass represents it.
+/// Returns the overrides that replace the scene's device, followed by the given overrides. If the device has no place
+/// for the hand's mass (!has_place_for_mass), also replaces the hand by the same hand without a mass: the virtual mass
+/// of the scene represents the hand's mass. Overrides of the hand's mass are then dropped.
 std::vector<std::string> overrides_on(const ComparedDevice& device, const ScenarioText& scene,
                                       const std::vector<std::string>& overrides);
 

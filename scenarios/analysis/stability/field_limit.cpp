@@ -34,7 +34,8 @@ void check_sampling(const LoadedScenario& loaded) {
                       kVibrationCutoff, 0.5 / kVibrationCutoff));
 }
 
-/// The runs of a search. Runs each value once and caches its result.
+/// The runs of a search. Runs each value of the field once and caches the result. A parameter t in [0, 1] stands for a
+/// value (IntervalSearchOptions::value_at).
 class RunCache {
  public:
   explicit RunCache(const LimitQuestion& question) : question_(question) {}
@@ -74,7 +75,8 @@ class RunCache {
   std::map<double, RunStability> runs_;
 };
 
-/// Evaluates the given parameters (middles of the intervals that are stable in theory) and the end points of a scan.
+/// Evaluates the given parameters (middles of the intervals that are stable in theory) and the end points of the
+/// kScanIntervals intervals of a scan.
 EvaluatedParameters evaluate_first(RunCache& runs, std::vector<double> parameters) {
   for (int i = 0; i <= kScanIntervals; ++i) parameters.push_back(static_cast<double>(i) / kScanIntervals);
   runs.run_ahead(parameters);
@@ -157,13 +159,13 @@ void add_linear_limit(const LimitQuestion& question, const std::map<double, RunS
     return;
   }
   // Springs that cannot lose contact have the same linear loop in every run. The search for an equilibrium in contact
-  // is skipped, because at zero deflection no spring is in contact.
+  // is skipped, because it would count springs at zero deflection as not in contact.
   if (has_permanent_springs(scenario)) {
     const TheoreticalLimit loop = frictionless_limit(question);
     limit.linear = loop.has_none ? 0.0 : loop.value;
     if (limit.linear) return;
   }
-  // Find the largest stable value up to the limit whose run has a contact that lasts.
+  // Among the stable values up to the limit, find the largest value whose run has a lasting contact (contact_lasts()).
   for (auto run = std::make_reverse_iterator(runs.upper_bound(*limit.end.value)); run != runs.rend(); ++run) {
     const auto& [value, judged] = *run;
     if (!question.rule.holds(judged.verdict) || !contact_lasts(judged.settled, question.at(value).scenario)) continue;

@@ -47,14 +47,15 @@ struct FieldLimit {
   bool theory_has_none = false;  ///< true if the theory applies and no value of the range is stable
   /// Limit by the integrator's stability inequality, for a tool without hand and device on springs; empty otherwise.
   std::optional<double> closed_form;
-  /// Linear limit of a tool on a surface that can be left, if `theory` is empty: contact_limit(), searched from the run
-  /// with the largest stable value in which contact lasts. Dry friction and encoder are ignored; they and loss of
-  /// contact can raise the simulated limit above it. Infinite if the whole range is stable.
+  /// Linear limit if `theory` is empty. For springs in permanent contact, it is frictionless_limit(). For a surface
+  /// that the tool can leave, it is contact_limit(), searched from the run with the largest stable value in which
+  /// contact lasts. Dry friction and the encoder are ignored. Dry friction, the encoder and loss of contact can raise
+  /// the simulated limit above the linear limit. Infinite if the whole range is stable; 0 if no value is stable.
   std::optional<double> linear;
   std::string no_linear = {};  ///< why neither `theory` nor `linear` has a value; empty if one of them has a value, or
-                               ///< with `smallest`
-  /// Errors of the bounded metrics at the limit: their largest change when step and point spacing are halved. The
-  /// bounds hold with these errors added.
+                               ///< in a search for the smallest stable value
+  /// Errors of the bounded metrics at the limit: their largest change if the time step or the point spacing is halved.
+  /// The bounds hold with these errors added.
   MetricValues metric_errors = {};
   /// WallLimits::closed_forms [N/m].
   std::vector<std::optional<double>> closed_forms;
@@ -71,21 +72,21 @@ struct FieldLimit {
   bool has_effect = true;  ///< false if the handle's motion is bitwise equal in all runs
   /// Number of verification samples in the interval, all stable: distinct values between its ends that were run.
   std::size_t tried_between = 0;
-  bool scattered = false;  ///< true if stable values exist, but no contiguous stable interval as long as kNearLimit
+  bool scattered = false;  ///< true if stable values exist, but no stable interval is kNearLimit times the limit long
   std::vector<JudgedValue> runs;          ///< all runs, by increasing value
   std::vector<JudgedValue> inconsistent;  ///< unstable runs inside the interval and stable runs outside of it
   std::size_t undecided = 0;              ///< number of runs that were too short to judge (RunStability::undecided)
 
   /// Returns the linear limit: `theory` if it has a value, otherwise `linear`.
   const std::optional<double>& known_linear_limit() const { return theory ? theory : linear; }
-  /// Returns the width of the interval that encloses the quoted limit, if it is the simulated limit; empty if it is the
-  /// linear limit, which is known to many digits.
+  /// Returns the width of the interval that encloses the quoted limit if the simulated limit is quoted. Empty if the
+  /// linear limit is quoted, which is known to many digits.
   std::optional<double> quoted_tolerance() const { return quoted.value == end.value ? end.tolerance() : std::nullopt; }
 };
 
 /// Finds a stability limit. Evaluates 17 equidistant parameters, the scenario's value and the middles of intervals that
-/// are stable in theory, then searches the interval: with find_stable_interval (`beside`), or with
-/// find_verified_interval if LimitQuestion::between. Makes 35 to 120 runs; each failed verification costs up to 56
+/// are stable in theory, then searches the interval: with find_verified_interval if LimitQuestion::between is set,
+/// otherwise with find_stable_interval (`beside` true). Makes 35 to 120 runs; each failed verification costs up to 56
 /// more. Bounds on metrics hold with the metrics' errors at the limit added, as in `tune`; if a metric with its error
 /// violates a bound, searches again with bounds that are tighter by these errors. Throws InputError, with the file, if
 /// the rule limits vibration and the sampling rate is 60 Hz or less.

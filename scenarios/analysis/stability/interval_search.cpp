@@ -25,7 +25,7 @@ class TransitionSearch {
   TransitionSearch(const IntervalSearchOptions& options, EvaluatedParameters& evaluated, const IsStable& stable)
       : options_(options), evaluated_(evaluated), stable_(stable) {}
 
-  /// Returns the first transition without samples beside it: only `stable` and `beyond`.
+  /// Returns the first transition, without evaluating samples beside it. Sets only `stable` and `beyond` of the result.
   StableInterval first() {
     start();
     const std::optional<Transition> transition = next_transition();
@@ -100,7 +100,8 @@ class TransitionSearch {
     return {stable, unstable};
   }
 
-  /// Evaluates three parameters on either side of a transition, within one interval of the scan.
+  /// Evaluates three parameters on either side of a transition, at most the length of one scan interval away from the
+  /// transition.
   void evaluate_beside(double first_stable, const StableInterval& interval) {
     constexpr int kBeside = 3;  // number of samples on either side
     constexpr double kInterval = 1.0 / kScanIntervals;
@@ -217,8 +218,8 @@ StableInterval find_verified_interval(const IntervalSearchOptions& options, Eval
     const std::optional<double> failing = first_failing(parameters_below(options, *interval.stable));
     if (!failing) return interval;
     if (*failing > first) continue;
-    // The unstable sample lies below the interval: the interval is shorter than kNearLimit. Search above the interval,
-    // except if the interval contains the current value.
+    // The unstable sample lies below the interval: the interval is shorter than kNearLimit times the limit. Search
+    // above the interval, except if the interval contains the current value.
     scattered = true;
     const std::optional<double> current = options.current_parameter();
     if (current && first <= *current && *current <= *interval.stable) return {.scattered = true};

@@ -36,8 +36,8 @@ void check_scene(const LoadedScenario& loaded) {
             fmt::format("got {}; allowed for limit and tune: at least 4", scenario.time.steps));
 }
 
-/// Returns the range from 2^-10 to 2^10 times the current value. Throws InputError if the current value is not a number
-/// above 0.
+/// Returns the range from 2^-10 to 2^10 times the current value, narrowed to values that the field allows. Throws
+/// InputError if the current value is not a number above 0.
 Range default_range(const LimitQuestion& question, const Json& current) {
   // For a field that does not exist or is not a number, question.at() throws a more specific error.
   if (!current.is_number()) question.at(1.0);

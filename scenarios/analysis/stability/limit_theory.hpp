@@ -23,11 +23,11 @@ struct TheoreticalLimit {
 };
 
 /// Returns the limit by the eigenvalues of one time step (all inside the unit circle). Applies to springs in permanent
-/// contact, with a tool without hand and device, or with a device whose feedback loop is linear.
+/// contact if the loop of tool, hand and device is linear.
 TheoreticalLimit eigenvalue_limit(const LimitQuestion& question);
 
-/// Returns the limit by the eigenvalues of one time step as eigenvalue_limit(), for an impedance device without its dry
-/// friction and the steps of its encoder and force.
+/// Returns the same limit as eigenvalue_limit(), but with dry friction, encoder step and force step of an impedance
+/// device set to zero.
 TheoreticalLimit frictionless_limit(const LimitQuestion& question);
 
 /// Returns the limit by the integrator's stability inequality. Applies to springs in permanent contact with a tool
@@ -44,7 +44,7 @@ std::optional<double> contact_limit(const LimitQuestion& question, double stable
 /// Limits of the stiffness K [N/m] on a two-sided wall that holds the handle of an impedance device.
 struct WallLimits {
   /// Limits by the closed forms of stiffness_limits(), in their order; an entry is empty if its form does not apply.
-  /// The list is empty if the question does not vary K on such a wall.
+  /// The list is empty if the question does not vary K on a two-sided wall with an impedance device.
   std::vector<std::optional<double>> closed_forms = {};
   std::optional<double> worst_hand = {};  ///< smallest limit over the hands of typical_hands()
   std::string no_theory = {};             ///< why the eigenvalues of the loop give no limit; empty if they give a limit

@@ -6,9 +6,9 @@
 namespace hapbench {
 namespace {
 
-// Ratios of amplitudes: smallest growth from one quarter of the run to the next, largest remainder of a decayed motion
-// in the last quarter relative to the first, smallest ratio of consecutive quarters of a sustained motion, and largest
-// speed at rest relative to the largest speed of the run.
+// Ratios of amplitudes. kGrowth: smallest growth from one quarter of the run to the next. kLeft: largest remainder of a
+// decayed motion in the last quarter relative to the first quarter. kSustained: smallest ratio of consecutive quarters
+// of a sustained motion. kRest: largest speed at rest relative to the largest speed of the run.
 constexpr double kGrowth = 1.01, kLeft = 0.01, kSustained = 0.9, kRest = 1e-12;
 constexpr double kFelt = 1e-3;  // smallest speed that a hand can feel [m/s]
 

@@ -26,7 +26,7 @@ class MotionClassifier final : public Observer {
  public:
   /// `steps`: number of time steps of the run. Precondition: steps >= 4.
   explicit MotionClassifier(std::uint64_t steps) : steps_(steps) {}
-  /// Returns a classifier for a tool that a script moves. Such a tool may never be at rest. `time_step` [s].
+  /// Returns a classifier for a tool that a script moves. Such a tool need not come to rest. `time_step` [s].
   ///
   /// Classifies the part of the velocity above 30 Hz (the whole velocity if steps are longer than 1/60 s). The run is
   /// stable if this part stays below 1 mm/s in the last quarter, which is about the smallest speed that a hand feels.
@@ -62,7 +62,7 @@ class MotionClassifier final : public Observer {
     /// Returns the class of motion in the interval. It is stable if the speed stays below `felt` [m/s] in the last
     /// quarter.
     MotionClass motion_class(double felt) const noexcept;
-    /// Returns true if the amplitude grows by 1 % from each quarter to the next.
+    /// Returns true if the amplitude grows by more than 1 % from each quarter to the next.
     bool grows() const noexcept;
   };
 

@@ -47,7 +47,7 @@ void RunEndObserver::on_step(const StepRecord& record) noexcept {
 }
 
 void RunEndObserver::add_contact(const StepRecord& record) noexcept {
-  constexpr double kTurned = 0.01;  // change of S relative to its norm
+  constexpr double kTurned = 0.01;  // allowed change of S relative to its norm
   if (!contact_set_) S_first_ = record.force.S;
   directions_change_ |= (record.force.S - S_first_).norm() > kTurned * S_first_.norm();
   // Hash the set of contacts. A sum does not depend on their order.

@@ -15,8 +15,9 @@
 /// Observes the state at the end of a run, from which the run is judged.
 namespace hapbench {
 
-/// The settled state of a run: `contacts`, `lambda_max`, `share_away` and the two changes are over the steps of its
-/// last quarter. The last quarter of a run that comes to rest early is the quarter in which it came to rest.
+/// The settled state of a run: `contacts`, `lambda_max`, `share_away`, `contacts_change` and `directions_change` refer
+/// to the steps of the last quarter of the run. The last quarter of a run that comes to rest early is the quarter in
+/// which it came to rest.
 struct SettledState {
   /// Vibration of the handle above 30 Hz over the judged steps (EvaluationWindow) [m/s rms]; empty at sampling rates of
   /// 60 Hz or less.
@@ -24,17 +25,17 @@ struct SettledState {
   double contacts = 0.0;    ///< mean number of rendered contacts, over the steps in contact
   double lambda_max = 0.0;  ///< largest eigenvalue of the mean stiffness tensor S in contact, in units of K
   std::optional<ContactState> last_contact;  ///< state at the last step in contact; empty without contact
-  double share_away = 1.0;                   ///< fraction of the steps without contact
+  double share_away = 1.0;                   ///< share of the steps in which the tool is not in contact
   bool contacts_change = false;  ///< true if the set of touching points differs between two consecutive steps
   bool directions_change =
-      false;             ///< true if S changes by more than 1 % of its norm, so that the stiff directions turn
+      false;             ///< true if S differs from the first S of the quarter by more than 1 %: the stiff axes turn
   bool rests = false;    ///< true if the run was stopped because the tool came to rest
   bool is_held = false;  ///< true if dry friction of device or surface acts on the tool that rests
 };
 
-/// Returns true if the contact persists over the last quarter of the run and has a single linear loop, because the same
-/// points touch. If a script moves the tool in the last quarter, the touching points may change as long as the stiff
-/// directions do not.
+/// Returns true if, in the last quarter of the run, the contact persists and the same points touch, so that the contact
+/// has a single linear loop. If a script moves the tool in the last quarter, the touching points may change as long as
+/// the stiff directions do not.
 bool contact_lasts(const SettledState& settled, const Scenario& scenario);
 
 /// Records the end position of the tool, whether the tool was in contact, and the vibration and bounces over the

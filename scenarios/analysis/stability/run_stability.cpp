@@ -34,7 +34,8 @@ MotionClassifier classifier_of(const Scenario& scenario) {
   return MotionClassifier::of_moved_tool(steps, scenario.time.step, script_moves_until(scenario) / scenario.time.step);
 }
 
-/// Returns the verdict by the vibration if `max_vibration` has a value [m/s rms]; otherwise the class of the motion.
+/// Returns the verdict by the vibration if `max_vibration` [m/s rms] has a value and the motion has not diverged.
+/// Otherwise returns the class of the motion.
 RunVerdict verdict_of(MotionClass motion, const SettledState& settled, std::optional<double> max_vibration) {
   if (!max_vibration || motion == MotionClass::diverged) return motion;
   return settled.vibration && *settled.vibration <= *max_vibration ? RunVerdict::stable : RunVerdict::vibrating;
@@ -61,8 +62,8 @@ RunStability judged_once(const Scenario& scenario, const NamedFiles& files,
   RunEndObserver run_end(scenario);
   SimulationParts parts = assemble(scenario, files, shell, {});
   const std::shared_ptr<const ToolShape> tool = parts.tool;
-  // Simulate the whole run, which the class of the motion needs. After the tool has gone through the surface, the
-  // outcome observer no longer searches its depth.
+  // Simulate the whole run, which the class of the motion needs. With RunLength::until_failure, the outcome observer
+  // stops searching the depth of the tool after the tool has gone through the surface; the run goes on.
   const auto outcome_seen = outcome_observer(scenario, files, parts, nullptr, RunLength::until_failure);
   Simulation simulation(simulation_config(scenario), std::move(parts), {&classifier, &run_end, outcome_seen.get()});
   const MotionClass motion = classify(simulation, classifier);

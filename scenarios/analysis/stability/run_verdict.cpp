@@ -5,7 +5,7 @@
 namespace hapbench {
 namespace {
 
-/// Returns the text of a verdict that is an outcome.
+/// Returns the text of a verdict that has the name and meaning of an outcome.
 RunVerdictText of_outcome(Outcome outcome) {
   const OutcomeInfo& info = outcome_infos()[static_cast<std::size_t>(outcome)];
   return {info.name, info.meaning};

@@ -37,7 +37,8 @@ std::span<const RunVerdictText> run_verdict_texts() noexcept;
 /// Returns RunVerdictText::name of a verdict.
 std::string_view run_verdict_name(RunVerdict verdict) noexcept;
 
-/// Returns true for `stable` and `dying_out` (named "decaying" in results): the tool comes to rest in contact.
+/// Returns true for `stable` and `dying_out` (named "decaying" in results): the tool is at rest, comes to rest or
+/// creeps slowly in contact.
 bool is_stable(RunVerdict verdict) noexcept;
 
 }  // namespace hapbench

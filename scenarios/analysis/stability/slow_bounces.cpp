@@ -31,8 +31,8 @@ void SlowBounces::leave(const StepRecord& record) noexcept {
 
 void SlowBounces::land(std::uint64_t step, const EvaluationWindow& judged) noexcept {
   const std::uint64_t in_contact = std::exchange(steps_in_contact_, 0);
-  // Count the bounce only if it is slow, if it lasted longer than the contact before it, and if the hand pressed the
-  // tool towards the surface.
+  // Count the bounce only if it is slow, if the tool was out of contact for longer than the preceding contact lasted,
+  // and if the hand pressed the tool towards the surface.
   const bool slow = static_cast<double>(in_contact + steps_away_) > longest_vibration_;
   if (!slow || in_contact >= steps_away_ || !is_pressed_ || !judged.contain(step)) return;
   const std::size_t half = 2 * (step - *judged.begin()) / (judged.end() - *judged.begin());

@@ -18,7 +18,7 @@ struct StressCounts {
   std::uint64_t in_contact = 0;      ///< sets with at least one contact
   std::uint64_t non_finite = 0;      ///< sets with a force, tensor or depth that is not finite
   std::uint64_t out_of_bound = 0;    ///< sets whose results are finite, and at least one result exceeds its bound
-  std::uint64_t points_dropped = 0;  ///< points dropped because the reduction was full
+  std::uint64_t points_dropped = 0;  ///< points that the contact reduction dropped when it was full
   double largest_force = 0.0;        ///< largest |f_spring| / (K d) over all sets, with the largest depth d of each set
   /// Largest ratio of |f_spring| to its bound (AlgorithmEntry::force_bound); empty for algorithms without a bound.
   std::optional<double> largest_share;

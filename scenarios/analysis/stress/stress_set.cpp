@@ -29,7 +29,7 @@ bool chance(Random& random, double probability) {
   return random.uniform() < probability;
 }
 
-/// Returns a unit vector whose distance from u is random, between about 1e-16 (rounding) and 1.
+/// Returns a unit vector near u: the sum of u and a random vector of length 1e-16 (rounding) to 1, normalised.
 Vec3 nearly(Random& random, const Vec3& u) {
   return (u + log_uniform_vector(random, 1e-16, 1.0)).normalized();
 }
@@ -101,8 +101,8 @@ Draw normals(Random& random, const ContactSet& set) {
 
 /// Draws the tool's size, pose and velocity.
 void draw_tool(Random& random, ContactSet& set) {
-  // A fifth of the scenes has the smallest size, a fifth has the largest size, and the other scenes have sizes in
-  // between.
+  // The scale of lengths is the smallest for a fifth of the sets, the largest for another fifth, and log-uniform in
+  // between for the other sets.
   const double which = random.uniform();
   const double scale = which < 0.2 ? 1e-12 : which < 0.4 ? 1e3 : log_uniform(random, 1e-12, 1e3);
   set.tool = {scale * random.uniform(0.05, 1.0), scale * random.uniform(0.1, 3.0),

@@ -18,7 +18,7 @@ struct ContactSet {
   ToolPose pose;
   Vec3 velocity = Vec3::Zero();      ///< [m/s]
   std::vector<SurfacePoint> points;  ///< inside the tool up to rounding; normals are unit vectors or zero
-  RenderingConfig rendering;         ///< settings of the rendering; their algorithm is not used
+  RenderingConfig rendering;         ///< settings of the rendering; the field `algorithm` is not used
 };
 
 /// Largest number of points of a set. In some sets the reduction keeps fewer points (n_ext).
@@ -26,7 +26,7 @@ inline constexpr std::size_t kMaxContacts = 200;
 
 /// Returns set number `i` of a seed (StressCounts::first_bad is the number of a set). Points are random, coincident, on
 /// the tool's axis or on its surface. Normals are random, zero, or exactly or nearly equal or opposite. The number of
-/// different normals can exceed n_ext. Scenes measure 1e-12 to 1e3 m.
+/// different normals can exceed n_ext. The scale of all lengths is 1e-12 to 1e3 m.
 ContactSet stress_set(std::uint64_t seed, std::uint64_t i);
 
 }  // namespace hapbench

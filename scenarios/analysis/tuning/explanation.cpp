@@ -31,8 +31,8 @@ double printed_beyond(double value, bool up) {
   return std::stod(fmt::format("{:.3g}", value + (up ? kRounding : -kRounding) * std::abs(value)));
 }
 
-/// Relaxes one limit of a trial so far that the trial keeps it, and by `factor` further. Returns false if this is not
-/// possible, because the metric has no value.
+/// Relaxes one limit to the worst value of the trial with its error, times `factor` (a lower limit: divided by
+/// `factor`). For a low-vibration rule, drops all low-vibration rules. Returns false if the metric has no value.
 bool relax(const Trials& trials, const TuneTrial& trial, const std::string& name, double factor,
            Relaxation& relaxation) {
   const auto append = [&](const std::string& text) { relaxation.text += (relaxation.text.empty() ? "" : "; ") + text; };
@@ -112,7 +112,8 @@ bool violates_only(const Trials& trials, const TuneTrial& trial, const std::stri
 std::string relaxations(Trials& trials, const TuneTrial& nearest, const IsFeasible& is_feasible) {
   constexpr std::size_t kMaxCompleted = 8;  // maximum number of trials that are evaluated further for each limit
   const TuneLimits limits = trials.limits();
-  // Complete the nearest trials of each limit before the searches with other limits begin.
+  // For each limit, find the nearest trial that still violates only this limit after a complete evaluation. Do so
+  // before the searches with other limits begin.
   std::vector<std::pair<const TuneTrial*, MetricValues>> chosen;
   for (const auto& [name, found] : candidates(trials, kMaxCompleted)) {
     for (const TuneTrial* candidate : found) {
@@ -135,8 +136,8 @@ std::string relaxations(Trials& trials, const TuneTrial& nearest, const IsFeasib
 
 // ---- Trials whose motion fails
 
-/// Returns the most frequent failure among the trials whose failing variant comes last. If a later variant fails, the
-/// scene itself and the earlier variants are settled with the margin.
+/// Returns the most frequent failure among the trials whose failing variant has the highest index. In such a trial, the
+/// scene itself and the variants with lower indices are settled with the margin.
 const TuneFailure* binding_failure(const Trials& trials) {
   const auto key_of = [](const TuneFailure& f) {
     return std::tuple(f.variant_index, f.binding == "margin", f.variant, f.verdict);

@@ -76,7 +76,8 @@ std::optional<double> smallest_damping_ratio(const std::vector<NamedLoop>& loops
   return smallest;
 }
 
-/// Returns the largest factor on K; empty if the range of K ends at the required margin.
+/// Returns the largest factor on K up to which all variants of the choice are settled; empty if the range of K ends at
+/// the required margin.
 std::optional<double> gain_margin(Trials& trials, const TuneTrial& choice) {
   const double G = trials.question().margin, largest = trials.ranges().stiffness.to;
   const double largest_gain = std::min(largest, trials.smallest_unstable()) / choice.stiffness;
@@ -88,7 +89,8 @@ std::optional<double> gain_margin(Trials& trials, const TuneTrial& choice) {
   return trials.smallest_unstable() < largest ? std::optional(G) : std::nullopt;
 }
 
-/// Returns the largest additional delay [samples]; empty for an ideal device.
+/// Returns the largest additional delay [samples] up to which all variants of the choice are settled; empty for an
+/// ideal device.
 std::optional<double> delay_margin(Trials& trials, const TuneTrial& choice, const Scenario& scenario) {
   if (!has_device(scenario)) return std::nullopt;
   const bool whole = std::holds_alternative<AdmittanceDeviceConfig>(scenario.device);

@@ -22,8 +22,8 @@ struct SceneVariant {
   std::string family = {};                  ///< element of kFamilies; empty for the scene itself
 };
 
-/// Returns the variants of a set. Empty if the scene has nothing to vary, such as a hand whose force is a script.
-/// Precondition: `family` is an element of kFamilies.
+/// Returns the variants of a set. Empty if the scene has nothing to vary; for example, a hand whose force follows a
+/// script has no stiffness to vary. Precondition: `family` is an element of kFamilies.
 std::vector<SceneVariant> scene_variants(const LoadedScenario& loaded, const std::string& family);
 
 }  // namespace hapbench

@@ -45,7 +45,7 @@ struct TuneFailure {
   /// Name of the verdict on the run, such as "no_contact"; empty if the linear loop is unstable.
   std::string verdict = {};
   bool too_soft = false;          ///< true if a larger K may help
-  bool unstable_at_K = false;     ///< true if the linear loop is unstable at K itself, so that no margin helps
+  bool unstable_at_K = false;     ///< true if the linear loop is unstable at K itself, and not only above K
   std::size_t variant_index = 0;  ///< index of the variant; 0: the scene itself
 };
 
@@ -53,7 +53,7 @@ struct TuneFailure {
 /// a linear loop.
 struct ContactOfTrial {
   std::optional<LinearContact> linear = {};
-  RenderingConfig rendering = {};  ///< stiffness and damping of `linear`
+  RenderingConfig rendering = {};  ///< rendering settings with which `linear` was computed
 };
 
 /// A setting with a stiffness, evaluated for one law. G: the required gain margin.
@@ -74,17 +74,17 @@ struct TuneTrial {
   /// Worst value of each limited metric over the evaluated variants, and the low-vibration numbers of the scene itself.
   MetricValues worst = {};
   std::map<std::string, std::string> worst_text = {};  ///< the values in `worst` as text for the user
-  /// Error estimates of `metrics` by the refinements that were made; empty unless all limits are kept, or nearly,
-  /// without errors.
+  /// Error estimates of `metrics` by the refinements that were made. Empty if the metrics, without errors, are far from
+  /// keeping the limits.
   MetricValues error = {};
 
   // How far the trial was evaluated. Trials evaluates a trial only as far as a caller needs it (Need).
   std::size_t judged = 0;     ///< number of variants whose motion was judged, the scene itself first
-  bool is_measured = false;   ///< true if the limits were measured in the run of the scene itself
-  bool is_complete = false;   ///< true if the limits were measured in all variants
+  bool is_measured = false;   ///< true if metrics were measured in the run of the scene itself
+  bool is_complete = false;   ///< true if limited metrics were measured in all variants
   bool is_refined = false;    ///< true if `error` has the changes by Refinement::resolution
   bool has_error = false;     ///< true if `error` has the changes by all refinements
-  double depth_within = 0.0;  ///< largest change of inside_max_m by Refinement::depth [m]: tolerance of the search
+  double depth_within = 0.0;  ///< bound of the change of inside_max_m by Refinement::depth [m]: its tolerance
   std::size_t runs = 0;       ///< number of simulations of the trial
   /// The variant whose motion fails and how it fails; empty if no motion fails. The failure does not depend on limits.
   std::optional<TuneFailure> failure = {};

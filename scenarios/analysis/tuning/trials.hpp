@@ -84,7 +84,7 @@ class Trials {
   const TuneLimits& limits() const { return limits_; }
   /// Returns true if the search has reached its maximum number of runs (kMaxTuneRuns). New trials then fail.
   bool is_exhausted() const { return search_runs_ >= kMaxTuneRuns; }
-  /// Requests all trials of all searches and evaluates them with the current limits.
+  /// Counts all trials of all searches as trials of this search, and judges them by the current limits.
   void recall_all();
 
   // ---- Trials
@@ -97,7 +97,7 @@ class Trials {
   bool is_too_soft(const TuneSetting& setting, double K);
   /// Evaluates a trial further and returns it.
   const TuneTrial& evaluated(const TuneTrial& trial, Need need);
-  /// Estimates the errors of all metrics of a trial that are still missing, and returns the trial.
+  /// Estimates the errors that metrics of a trial still lack, and returns the trial.
   const TuneTrial& with_errors(const TuneTrial& trial);
   /// Evaluates a trial, and measures its metrics if the run of the scene itself is settled.
   void evaluate_and_measure(const TuneSetting& setting, double stiffness);

@@ -48,8 +48,8 @@ std::optional<TuneTrial> verified_choice(Trials& trials, bool any, TunedLaw& law
   return std::nullopt;
 }
 
-/// Explains why nothing is feasible. If the searches with other limits find a trial that keeps all limits, this trial
-/// becomes the choice.
+/// Explains why nothing is feasible. If the searches with other limits find a trial that keeps all original limits,
+/// this trial becomes the choice.
 void explain_or_find(Trials& trials, TunedLaw& law) {
   const TuneLimits limits = trials.limits();
   const auto is_feasible = [&](const TuneLimits& other) {

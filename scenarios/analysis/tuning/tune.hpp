@@ -25,7 +25,7 @@ struct TunedLaw {
   std::string relax;  ///< without a choice: which limit to relax, and by how much; or which option to change
   TuneMargins margins;
   FieldLimit limits;  ///< stability limits of K in the scene with the choice and the scene's hand
-  /// Error estimates: largest change of each metric of the scene's run if the step is halved, the point spacing is
+  /// Error estimates: largest change of each metric of the scene's run if the time step is halved, the point spacing is
   /// halved, or depth is evaluated at every step. A metric that one of these runs lacks has no entry.
   MetricValues error;
   std::vector<TuneTrial> trials;       ///< all trials, by setting and K
@@ -37,8 +37,8 @@ struct TunedLaw {
 /// Tunes one law. The result does not depend on the number of threads. G: TuneQuestion::margin.
 ///
 /// A setting at K is feasible if
-/// - every variant of the scene, including the scene itself, is settled at K, that is, stable by rule_of(). It also
-///   keeps the limits on metrics if its metrics are off by their errors.
+/// - every variant of the scene, including the scene itself, is settled at K, that is, stable by rule_of(). Its
+///   metrics keep the limits even with their errors added.
 /// - unless TuneQuestion::allow_vibration, the run of the scene itself has low vibration (low_vibration_numbers in
 ///   diagnosis.hpp).
 /// - the run of the scene itself renders a force, and explicit integration of friction is stable in all its steps.
@@ -49,7 +49,7 @@ struct TunedLaw {
 /// The search (tune_search.hpp) finds the feasible setting with the largest K. This choice is then verified
 /// (verification.hpp). If the verification fails, the search is repeated without this choice. If nothing is feasible,
 /// searches with relaxed limits confirm the relaxations that are named; a trial of these searches that keeps all limits
-/// becomes the choice. Throws InputError for a scene without a free position, and Stopped.
+/// becomes the choice. Throws InputError if the tool's position is prescribed, and Stopped.
 TunedLaw tuned_law(const TuneQuestion& question, const std::string& algorithm);
 
 }  // namespace hapbench

@@ -26,7 +26,7 @@ struct TuneQuestion {
   /// Unless true, the run of the scene itself must have low vibration by the rules of the diagnosis.
   bool allow_vibration = false;
   std::vector<std::string> families = {"hands"};  ///< variant sets, from kFamilies
-  Range damping_ratio = {0.01, 10.0, true};       ///< zeta of rendering.mass_kg, also on impedance devices
+  Range damping_ratio = {0.01, 10.0, true};       ///< zeta, with rendering.mass_kg even on impedance devices
   /// Virtual mass of an admittance device [kg]; empty: half to twice the scene's virtual mass.
   std::optional<Range> mass = {};
   bool filters = false;  ///< true: velocity filters of impedance devices are searched too

@@ -132,8 +132,8 @@ bool TuneSearch::improve(const TuneSetting& setting) {
   const StableInterval interval = find_stable_interval(options, scan, holds, false);
   if (!interval.stable) return false;
   best_ = trials_.trial_at(setting, options.value_at(*interval.stable));
-  // If rounding makes this stiffness differ from the stiffness of a known feasible trial, use the largest feasible
-  // stiffness.
+  // The scan may have started from a known feasible stiffness, which rounding has changed slightly. If the stiffness
+  // found is infeasible, use the largest stiffness that is known to be feasible.
   if (!best_->feasible()) best_ = trials_.trial_at(setting, trials_.feasible_stiffnesses(setting).back());
   trials_.begin_purpose(fmt::format("search above K = {:.3g} N/m", best_->stiffness));
   if (interval.beyond) {

@@ -12,11 +12,12 @@
 namespace hapbench {
 namespace {
 
-// If a longer run is not settled, all stiffnesses above the choice's K divided by this number are refuted.
+// If a longer run is not settled, all stiffnesses above K / kStiffnessReduction are refuted, where K is the choice's
+// stiffness.
 constexpr double kStiffnessReduction = 1.25;
 
-/// Records that K is not settled, and refutes all stiffnesses from K / G (or from the K of the choice, if smaller).
-/// Returns true.
+/// Records that K is not settled. Refutes all stiffnesses from the smaller of K / G and the stiffness of the choice to
+/// the larger of K and the stiffness of the choice. Returns true.
 bool refute(Trials& trials, const TuneTrial& choice, double K, const std::string& why) {
   trials.note_unstable(K);
   const double lowest = std::min(K / trials.question().margin, choice.stiffness) * (1.0 - kTuneResolution);
@@ -38,7 +39,8 @@ bool fails_between(Trials& trials, const TuneTrial& choice, TunedLaw& law) {
   return false;
 }
 
-/// Finds the stability limits of K in the scene with the choice. Returns true if there is a limit below G K.
+/// Finds the stability limits of K in the scene with the choice. Returns true, and refutes the choice, if there is a
+/// limit below G K or no contiguous stable interval.
 bool scene_limit_is_near(Trials& trials, const TuneTrial& choice, TunedLaw& law) {
   const ScenarioText& scene = trials.question().scenario;
   const std::vector<std::string> chosen = trials.overrides(choice.setting, choice.stiffness);

@@ -23,7 +23,8 @@ std::vector<std::size_t> pareto_front(std::span<const CostAndError> points);
 std::optional<std::size_t> knee(std::span<const CostAndError> points, std::span<const std::size_t> front);
 
 /// Smallest distance of a knee from the chord, as a fraction of the scaled axes. A timing that is wrong by 10 % shifts
-/// a point by 0.04 / sqrt(2) of a decade of cost, and must not make a knee of a straight front.
+/// a point by 0.04 decades of cost. On a front over one decade, this changes the distance from the chord by 0.04 /
+/// sqrt(2), which must not give a straight front a knee.
 inline constexpr double kMinKnee = 0.05;
 
 }  // namespace hapbench

@@ -26,9 +26,9 @@ struct WorkPrecisionQuestion {
   std::vector<std::string> overrides = {};  ///< overrides for all runs, as in --set
   /// Fields that vary. The axis `integrator.type` gives the curves of a problem, every other axis gives problems.
   std::vector<Axis> over = {};
-  std::size_t levels = 4;   ///< number of step sizes; the largest is the time step of the scenario
+  std::size_t levels = 4;   ///< number of different time steps; the largest is the time step of the scenario
   double ratio = 2.0;       ///< ratio of two neighbouring time steps; an integer
-  double max_error = 1e-6;  ///< requested error: rms of the tip's position [m]
+  double max_error = 1e-6;  ///< requested error: rms error of the tip's position [m]
 };
 
 /// A reference solution uses a time step that is at least this factor smaller than the smallest step of the settings.
@@ -63,7 +63,8 @@ struct WorkPrecisionSetting {
 struct WorkPrecisionProblem {
   std::string name;
   std::string reference = {};  ///< description of the reference solutions
-  double grown_shift = 0.0;    ///< rms distance [m] of two runs of the smallest step that start kInitialShift apart
+  double grown_shift = 0.0;    ///< rms distance [m] of two runs of the smallest time step that start kInitialShift
+                               ///< apart
   bool is_predictable = true;  ///< true if grown_shift is at most the requested error
   std::vector<WorkPrecisionSetting> settings = {};
 

@@ -3,7 +3,7 @@
 #include <math.h>
 
 static int step(void* state, const HapbenchPose* pose, HapbenchContacts* contacts, HapbenchForce* force, char* fault) {
-  double a = 0, b = 0, c = 0, d = 0, e = 0, f = 0; /* sum of u u^T: diagonal a b c, beside it d e f */
+  double a = 0, b = 0, c = 0, d = 0, e = 0, f = 0; /* sum of u u^T: xx, yy, zz, xy, xz, yz */
   for (size_t i = 0; i < contacts->n; ++i) {
     const double x = contacts->gx[i], y = contacts->gy[i], z = contacts->gz[i];
     a += x * x, b += y * y, c += z * z, d += x * y, e += x * z, f += y * z;

@@ -22,7 +22,7 @@ Columns<ComparedRun> comparison_columns(bool seeds);
 /// Returns the columns of ranking.csv, which has a row for each scenario, algorithm and metric. `seeds`: true if
 /// there are several seeds; the printed table then has the spread.
 Columns<RankingEntry> ranking_columns(bool seeds);
-/// Returns the columns of the table of the algorithms over all scenarios and metrics.
+/// Returns the columns of the table that ranks the algorithms over all scenarios and metrics.
 Columns<LawRankingEntry> law_ranking_columns();
 /// Returns the tables that this command writes and prints, for `describe`.
 std::vector<DescribedTable> ranking_tables();

@@ -162,7 +162,7 @@ int compare(const CompareOptions& given, ProgramContext& context) {
   print_warnings(context, comparison.warnings);
   Report report(options, kCompareFiles, several ? "compare" : "compare_" + comparison.names[0], context);
   const std::filesystem::path& out = report.folder();
-  // Prepare the folders of the results, unless another command writes to one of them.
+  // Prepare the folders of the results. If another command writes to one of them, throw IoError.
   require_unlocked_parents(out, kCompareFiles, 1);
   if (several) require_unlocked(comparison.scene_folders(out), kCompareFiles);
   require_unlocked(comparison.run_folders(out), kRunFiles);
@@ -177,7 +177,8 @@ int compare(const CompareOptions& given, ProgramContext& context) {
   const std::vector<Result> reports = run_all(
       comparison.scenes, timed, [&](std::size_t run) { return out / comparison.folder(run); }, comparison.length);
   // Rank the algorithms and write the results of all runs.
-  // With --errors, first repeat the runs with finer steps and spacings: their errors decide which ranks are equal.
+  // With --errors, first repeat the runs with finer steps and spacings. These runs give estimates of the errors, and
+  // algorithms whose difference is within the errors share a rank.
   std::optional<FinerRuns> finer;
   if (options.errors) finer.emplace(comparison, reports, jobs);
   EstimatedError estimated_error;

@@ -26,8 +26,8 @@ std::string metric_text(const RankingEntry& entry, double factor) {
   const auto scaled = [factor](const std::optional<double>& number) {
     return number ? std::optional(factor * *number) : std::nullopt;
   };
-  // A spread over the seeds below the resolution of the ranks does not make the number more precise: its error is at
-  // least this resolution.
+  // If the spread over the seeds is smaller than the resolution of the ranks, print the number without the spread and
+  // with this resolution as its smallest error.
   const double resolution = kRankResolution * std::abs(*entry.mean);
   if (entry.spread && *entry.spread < resolution)
     return deserved(factor * *entry.mean, factor * std::max(entry.tolerance.value_or(0.0), resolution));

@@ -19,9 +19,10 @@ struct Description {
 /// unchanged. Precondition: there is at least one meaning.
 Description joined(const std::vector<Description>& meanings);
 
-/// Returns the text of an entry that is described by its JSON. The first line has the name, unit and kind. The
-/// description and the other members follow, each with its key. A member that is an array of objects becomes a list
-/// of such entries. `indent`: spaces in front of each line.
+/// Returns the text of an entry that is described by its JSON. The first line has the name, unit and kind. Then follow
+/// the members that describe the entry in a sentence, without their keys, and the other members, each with its key. If
+/// a member is an array of objects, each object is printed as an entry in the same form. `indent`: spaces in front of
+/// each line.
 std::string entry_text(const Json& item, const Layout& layout, std::size_t indent = 0);
 
 /// Returns the entry's text and JSON as a description.

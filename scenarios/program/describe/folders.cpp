@@ -78,7 +78,7 @@ IndexEntry on_record(const char* kind, const Json& item, const std::string& summ
   return {kind, item.at("id").get<std::string>(), summary, describe};
 }
 
-/// Returns the cases of a claim's record of sensitivity that have another verdict, as texts.
+/// Returns, as texts, the cases in a claim's sensitivity record whose verdict differs from the recorded verdict.
 std::vector<std::string> moved_cases(const Json& claim) {
   std::vector<std::string> texts;
   for (const Json& one : claim.at("cases_moved")) {
@@ -107,7 +107,7 @@ IndexEntry recorded_claim(const Json& claim, const Layout& layout) {
           fmt::format("{} ({}); changed because {}", before.at("rule").get<std::string>(),
                       before.at("verdict").get<std::string>(), before.at("reason").get<std::string>());
     }
-    // Move the measured cases under their title, and omit data for programs.
+    // Rename the member "measured" to "cases", and omit members that only programs need.
     named["cases"] = named.at("measured");
     for (const char* member : {"measured", "ours", "timing", "added", "deciders", "cases_tried", "cases_moved",
                                "revised", "published_short", "sampled_verdict"})

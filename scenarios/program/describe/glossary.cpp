@@ -20,8 +20,8 @@ std::string normalized(std::string_view name) {
   return normal;
 }
 
-/// Returns true if `name` is the whole title of an entry, or one of its names between commas without the text
-/// in parentheses.
+/// Returns true if `name` is the whole title of an entry, or one of the names that commas separate in the title,
+/// without the text in parentheses after this name.
 bool is_name_of(std::string_view title, std::string_view name) {
   const std::string wanted = normalized(name);
   if (normalized(title) == wanted) return true;

@@ -127,7 +127,7 @@ void add_columns(Index& index, const std::vector<DescribedTable>& tables, const 
   for (const DescribedTable& table : tables) {
     if (table.file.empty()) continue;
     for (const auto& [name, unit, meaning] : table.columns) {
-      // The entry of a metric names the files with this column.
+      // Skip the column of a metric: add_metric_terms() adds an entry that names the files with this column.
       const Metric* metric = find_metric(all_metrics(), name);
       if (metric != nullptr && metric->meaning == meaning) continue;
       Json column = {{"kind", "column"}, {"name", name}, {"unit", unit}, {"meaning", meaning}};

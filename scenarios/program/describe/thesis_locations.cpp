@@ -38,8 +38,8 @@ std::string location_kind(const std::string& word) {
   return "section";
 }
 
-/// Parses a location, of any kind if `name` gives none. Also accepts the file name of a figure, such as
-/// figure_A.4_springs.svg. Returns empty for other names.
+/// Parses the name of a location. If `name` has no kind, the kind of the location is empty. Also accepts the file name
+/// of a figure, such as figure_A.4_springs.svg. Returns empty for other names.
 std::optional<ThesisLocation> parse_thesis_location(const std::string& name) {
   static const std::regex kLocation(R"((?:(fig|figs|figure|table|section|eq|eqs|equation)[._ ]*)?)"
                                     R"(\(?((?:[a-f]\.? ?)?\d+(?:\.\d+)*[a-d]?)\)?(?:_[a-z_]+)?(?:\.(?:svg|png|pdf))?)",
@@ -52,7 +52,7 @@ std::optional<ThesisLocation> parse_thesis_location(const std::string& name) {
     std::erase(location.number, ' ');
     if (location.number[1] != '.') location.number.insert(1, ".");
   }
-  // A number without a dot and a kind is ambiguous.
+  // Reject a number that has neither a kind nor a dot, because it is ambiguous.
   if (location.kind.empty() && location.number.find('.') == std::string::npos) return std::nullopt;
   if (location.number.find('.') == 1) location.number[0] = static_cast<char>(std::toupper(location.number[0]));
   return location;

@@ -70,8 +70,8 @@ auto of(Part part, Get get) {
   return [part, get](const LimitRow& row) { return cell_of(std::invoke(get, std::invoke(part, row))); };
 }
 
-/// Returns the columns of the stability limit, of the stable interval at whose end it lies, and of the linear limit.
-/// A single case also prints the other end of the interval.
+/// Returns the columns of the stability limit, of the stable interval at whose end the limit lies, and of the linear
+/// limit. If the limits are not printed as a grid, the other end of the interval is printed too.
 Columns<LimitRow> limit_value_columns(const LimitTable* table) {
   const auto is_printed = [table](bool low) {
     return table == nullptr || (!table->is_grid() && low != table->first().question.search.smallest);

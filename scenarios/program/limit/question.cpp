@@ -27,7 +27,7 @@ namespace {
 
 constexpr const char* kNoFriction = "none";
 
-/// Returns true if --set changes fields of the devices. Throws InputError if it would select another device.
+/// Returns true if --set changes fields of the devices. Throws InputError if --set would select another device.
 bool are_devices_changed(const LimitOptions& options) {
   const bool has_factors = !options.friction.empty() && options.friction != std::vector<std::string>{kNoFriction};
   bool is_changed = false;

@@ -28,7 +28,8 @@ struct LimitRow {
   FieldLimit limit = {};
   std::vector<std::string> axis_values = {};  ///< value of each axis of LimitTable::cases
   const ComparedDevice* device = nullptr;     ///< null: the scene's device
-  Scenario scenario = {};  ///< the scenario with overrides, device and axis values, and its current value of the field
+  /// The scenario with overrides, device and axis values. The searched field has the value that the scenario gives it.
+  Scenario scenario = {};
   LimitQuestion question = {};
   /// stiffness_ratio: the limit divided by the limit of the reference case. The reference case has the first scene, the
   /// first algorithm, and the same values of all other axes. rendered_ratio: the same ratio of the rendered stiffness K

@@ -26,7 +26,7 @@ Vec3 highest_at_center(const std::vector<SurfacePoint>& points, const Box& box, 
 }
 
 DragStart choose_drag(const PointShell& shell, std::span<const Vec3> positions, double smoothing, double min_length) {
-  // A later path must be this factor longer than the best path.
+  // A later path replaces the best path only if it is longer than the best path by this factor.
   constexpr double kMinImprovement = 1.1;
   const double furthest = diagonal(shell.bounds());
   DragStart best{positions.front(), Vec3::UnitX(), smoothing, 0.0};

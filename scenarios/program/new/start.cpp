@@ -146,15 +146,15 @@ class Start {
     return points;
   }
 
-  /// Returns the command that repeats this start with an option, as an error message shows it.
+  /// Returns the command line of this `hapbench new` with an additional option, as an error message shows it.
   std::string command_with(const std::string& option) const {
     return fmt::format("\"hapbench new {} {} {} {}\"", options_.kind, options_.on.empty() ? "--from" : "--on",
                        shell_file(mesh_file()), option);
   }
 
-  /// Returns the scale of an object: its stated unit, the factor that gives it its stated size, or 1 for a file in
-  /// metres. `box`: the object's bounds, read as millimetres. Throws InputError if neither is stated and the object is
-  /// shorter than 1 mm or longer than 1 m in metres.
+  /// Returns the length of the file's unit [m]: the unit of --unit, the length that gives the object the size of
+  /// --extent, or 1 without both options. `box`: the object's bounds, read as millimetres. Throws InputError if neither
+  /// option is given and the object, read in metres, is shorter than 1 mm or longer than 1 m.
   double choose_scale(const Box& box, const char* object) {
     const double longest = box.size().maxCoeff() / 0.001;
     if (!extent_ && !unit_ && (longest < kShortestObject || longest > kLongestObject)) {
@@ -179,7 +179,8 @@ class Start {
                        scale > unit.metres ? "larger" : "smaller", unit.name, unit.name);
   }
 
-  /// Throws InputError for a point shell, which is in metres, that is not 1 mm to 1 m long. --unit m confirms its size.
+  /// Throws InputError if the point shell is shorter than 1 mm or longer than 1 m, because its file may not be in
+  /// metres. Does not throw if --unit m confirms the size.
   void check_shell_size() {
     const double longest = bounds_of(points()).size().maxCoeff();
     const bool has_size = longest > 0.0;  // unlike a single point
@@ -221,8 +222,8 @@ class Start {
     return box;
   }
 
-  /// Scales the mesh, and chooses the spacing of its points. The tool gets its size from the mesh unless a
-  /// stroke moves it.
+  /// Scales the mesh, and chooses the spacing of its points. If no stroke moves the tool, chooses the tool's size by
+  /// the size of the mesh.
   void scale_environment() {
     const Box box = box_of_mesh();
     const double scale = choose_scale(box, "mesh");
@@ -415,7 +416,8 @@ class Start {
                               0.8 * drag.free_length);
   }
 
-  /// Prescribes the tip's positions: from above the surface down to the depth, and along the path at this depth.
+  /// Prescribes the tip's positions: from above the surface down to the depth of --depth below the surface, and then
+  /// along the path at this depth.
   void place_path() {
     constexpr double kLanding = 0.25;     // duration of the approach [s]
     constexpr double kMaxPoints = 400.0;  // largest number of points of the path

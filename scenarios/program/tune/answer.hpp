@@ -27,8 +27,8 @@ struct Tuning {
 /// in scenes without this metric it has the largest rendered stiffness K lambda_max.
 std::vector<const TunedLaw*> ranking_of(const std::vector<TunedLaw>& laws);
 
-/// A stability margin of a choice: its column in tune.csv, its heading, its JSON key, and its printed text. From the
-/// value `max` on, the text says "more than", because the search ends there.
+/// A stability margin of a choice: its column in tune.csv, its heading, its JSON key, and its printed text. If the
+/// margin is at least `max`, the text says "more than", because the search for the margin ends there.
 struct Margin {
   const char *column, *unit, *meaning, *heading, *key, *text;
   std::optional<double> TuneMargins::*of;

@@ -91,9 +91,10 @@ def compare(
     """Run scenarios with several algorithms (default: all), as `hapbench compare` does.
 
     Returns a Report. `runs` has the runs by path: "mean", or "drag_molar/mean/seed_0" with several scenarios and seeds.
-    Its tables are `comparison` and, with several scenarios or seeds or with `by`, `ranking`. A run that fails ends at
-    its failure and has no metrics, unless `full`. `out` names the folder to keep; without `out`, the folder is deleted
-    with the Report. `scenarios`, `overrides` and `progress` as in `run`.
+    Its tables are `comparison` and, with several scenarios or seeds or with `by`, `ranking`. A run that fails stops at
+    its failure and has no metrics; with `full`, it continues to its end and has metrics. `out` names the folder of the
+    results, which is kept; without `out`, the folder is temporary and is deleted with the Report. `scenarios`,
+    `overrides` and `progress` as in `run`.
     """
     return _report(
         ["compare"],
@@ -127,9 +128,8 @@ def sweep(
     """Run a scenario over a grid or a sample of values of any fields, as `hapbench sweep` does.
 
     `vary`: values by field, such as {"rendering.stiffness_N_per_m": [2e4, 4e4]}; a string is interpreted as by --vary
-    ("1e4:1e5:10:log"). A run that fails stops at its failure and has no metrics; with `full`, it
-    continues to its end and has metrics. Returns a Report whose
-    table `sweep` has a row for each run.
+    ("1e4:1e5:10:log"). A run that fails stops at its failure and has no metrics; with `full`, it continues to its end
+    and has metrics. Returns a Report whose table `sweep` has a row for each run.
     """
     words = ["sweep"]
     for field, values in vary.items():
@@ -191,7 +191,7 @@ def limit(
 
 def command(*words: object, progress: Progress = None) -> Any:
     """Run a command of the program, such as `hapbench.command("describe", "mean")`, and return the parsed output of
-    --json. Returns Empty if the command prints nothing. Raises ScenarioError if the program rejects the input.
+    --json. Returns None if the command prints nothing. Raises ScenarioError if the program rejects the input.
     """
     status, text, messages, errors = _hapbench.command([*map(str, words), "--json"], progress)
     _warn(messages + errors, status)

@@ -259,7 +259,7 @@ class Folder(_WithTables):
             file.parent.relative_to(self.folder).as_posix(): load_run(file.parent) for file in files
         }
         for run in found.values():
-            # Keeps this folder object alive, because its files may be deleted together with it.
+            # The run keeps this Folder alive, because the files may be deleted together with the Folder.
             run.part_of = self
         return found
 
@@ -363,8 +363,8 @@ def _columns_of(file):
 
 def _reader(file, described=None):
     """Returns a function that reads the table of `file`. `described`: name, unit and meaning of each column, or a
-    function that returns them for a file. Only without `described`, or with a function, may the table contain texts.
-    """
+    function that returns them for a file. If `described` is a list, all columns must contain numbers; otherwise the
+    table may also contain texts."""
 
     def read():
         if not described or callable(described):
@@ -399,8 +399,8 @@ class MissingResult(Exception):
 
 
 class Files:
-    """Reads tables and JSON files below a directory. Files are named by their path. `sources`: the files that were read
-    since `sources` was last cleared."""
+    """Reads tables and JSON files below a directory. The argument `path` of each method is relative to the directory.
+    `sources`: the paths that were read since `sources` was last cleared."""
 
     def __init__(self, directory):
         self.directory, self.sources = Path(directory), set()
@@ -413,7 +413,7 @@ class Files:
         return self._read(path, _columns)
 
     def records(self, path):
-        """Returns the rows of a table as dictionaries of texts, for tables with names or empty fields. Raises
+        """Returns the rows of a table as dictionaries of texts, also if fields are no numbers or are empty. Raises
         ResultError if there are no rows."""
         rows = self._read(path, read_records)
         if not rows:

@@ -124,7 +124,7 @@ class Table(Mapping[str, Column]):
         return plot_table(self, y, x, width)
 
     def where(self, **chosen: object) -> "Table":
-        """Returns the rows whose columns have these values: `table.where(algorithm="mean")`."""
+        """Returns the rows that have the given value in each given column: `table.where(algorithm="mean")`."""
         found = self
         for column, value in chosen.items():
             rows = found[column] == value
@@ -191,7 +191,8 @@ def joined(tables: Mapping[str, Table], column: str, name: str) -> Table:
 
 
 def _cell(value: Any) -> str:
-    """Formats a value for printing: a number with few digits, an integer with all digits, and NaN as an empty text."""
+    """Formats a value for printing: an integer below 1e9 with all digits, another number with 5 significant digits, NaN
+    as an empty text, and a text unchanged."""
     if isinstance(value, str):
         return value
     return (

@@ -84,9 +84,9 @@ def each_contact(log, contacts):
 
 
 def with_springs(log, contacts, every):
-    """Sets `spring` of each contact in `every`, and returns the spring of the whole log for the JSON, or None. If no
-    contact determines a stiffness and no contact contradicts a spring, the rows of the longest sequence of contacts
-    (Contacts.stretches) determine the spring together."""
+    """Sets `spring` of each contact in `every`. Returns the spring of the whole log for the JSON, or None if the log
+    does not determine a stiffness. If no contact determines a stiffness and no contact contradicts a spring, the spring
+    is fitted to all contact rows of the longest sequence of contacts (Contacts.stretches)."""
     evidences = [
         evidence_of_run(log, contacts, np.arange(first, after)) if after - first >= FEWEST else None
         for first, after in contacts.runs.tolist()

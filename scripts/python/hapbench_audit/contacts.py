@@ -1,5 +1,5 @@
 """Finds the contacts of a log, each from touch to release. Separates landings from settled contact by the rules of
-`run`: a landing is the first 0.05 s after a touch that follows at least 0.05 s without contact."""
+`hapbench run`: a landing is the first 0.05 s after a touch that follows at least 0.05 s without contact."""
 from dataclasses import dataclass
 
 import numpy as np
@@ -7,9 +7,11 @@ import numpy as np
 from .log import LONG_INTERVALS
 
 SETTLING = 0.05  # duration of a landing [s]; equals the default of metrics.settling_s of a scenario
-# Smallest fraction of rows without force for the rule that any force is a contact.
+# If at least this fraction of the rows has zero force, every row with a force counts as contact.
 SOME_ZEROS = 0.01
-FAR = 3.0  # margin of the contact thresholds above the noise, as a multiple of the rms noise
+# The release threshold is at least FAR times the rms noise. The touch threshold is higher than the release threshold by
+# 2 FAR times the rms noise of one force component.
+FAR = 3.0
 # Threshold of release as a fraction of the 99th percentile of the force. It applies if fewer than the fraction
 # SOME_ZEROS of the rows have zero force.
 TOUCH_SHARE = 0.05
@@ -19,13 +21,15 @@ TOUCH_SHARE = 0.05
 class Contacts:
     in_contact: np.ndarray  # for each row, true if it is in contact
     runs: np.ndarray  # for each contact, the first row and the row after the last row
-    # (first contact, contact after the last) of each sequence of contacts separated by less than SETTLING
+    # For each sequence of contacts separated by less than SETTLING: index in `runs` of its first contact, and index
+    # after its last contact.
     stretches: list
     # First row of each contact that begins after at least SETTLING without contact.
     landings: np.ndarray
-    landing: np.ndarray  # for each row, true if it is within SETTLING of a landing
+    landing: np.ndarray  # for each row, true if it is part of a landing
     settled: np.ndarray  # for each row, true if it is in contact and not part of a landing
-    # Force above which a row is in contact [N]; 0 if any force counts, or if the log counts contacts.
+    # Force above which a row is in contact [N]; 0 if any force counts as contact, or if a column of the log states the
+    # number of contacts.
     touch_N: float
     rule: str  # how contact was detected, in words
     # For each interval between rows, true if it is so long that a contact ends in it.

@@ -13,7 +13,8 @@ def device_limit(device, interval, contact):
     stiffness.
 
     If the log does not determine damping or delay, `linear_limit_N_per_m` is None. `linear_limit_interval` is the range
-    of the limit over all dampings and delays that the log allows."""
+    of the limit over the dampings and delays that the log allows, computed for at most MAX_DELAYS of these delays.
+    """
     if not contact:
         return None
     stiffness, loops = contact["stiffness_N_per_m"], contact["loops"]

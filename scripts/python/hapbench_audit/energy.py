@@ -4,16 +4,17 @@ import numpy as np
 
 
 class Port:
-    """Work of the force on the tool in each interval between two rows [J]; 0 in gaps of the clock. `held`: the force of
-    a row acts until the next row, as on a device that holds the force. `path`: the force changes linearly between rows
-    (trapezoidal rule)."""
+    """Work of the force on the tool in each interval between two rows [J]; 0 in gaps of the clock. `held`: work if the
+    force of a row acts until the next row, as on a device that holds the force. `path`: work if the force changes
+    linearly between rows (trapezoidal rule)."""
 
     def __init__(self, log, contacts):
         moved, f = np.diff(log.position, axis=0), log.force
         moved[contacts.gap] = 0.0
         self.held = work(f[:-1], moved)
         self.path = work(0.5 * (f[:-1] + f[1:]), moved)
-        # The error of a position is at most half its resolution, and so is the error of a force.
+        # The error of a position is at most half the resolution of positions, and the error of a force at most half the
+        # resolution of forces.
         changes = np.abs(np.diff(f, axis=0, prepend=np.zeros((1, 3))))
         self._of_positions = np.append(changes @ (0.5 * log.quantum_m), 0.0)
         self._of_forces = np.append(np.abs(moved) @ (0.5 * log.quantum_N), 0.0)

@@ -18,13 +18,13 @@ FEWEST = 20  # smallest number of samples of a log
 LONG_INTERVALS = 10.0  # number of mean intervals; a longer time step is a gap, which ends a contact
 LATEST_START = 1e6  # start of a log [s] from which on its times are counted from its first row
 FASTEST = 5.0  # largest plausible speed of a hand [m/s]
-# Largest error of a time step, in intervals, for which its number of missing rows is clear. At an error of 0.5, two
-# numbers of missing rows fit equally well.
+# Largest error of a time step [intervals] at which the number of missing rows in the step is unambiguous. At an error
+# of 0.5, two numbers of missing rows fit equally well.
 CLEAR = 0.25
 SEVERAL = 20  # number of time steps over which the mean interval is measured
 # Largest number of missing rows that are counted between two rows; equals the longest delay of a model [rows].
 MAX_MISSING = 50
-FOLLOWED = 0.05  # smallest fraction of a time stamp's error by which the mean clock is corrected
+FOLLOWED = 0.05  # at each time stamp, the mean clock is shifted by at least this fraction of the stamp's error
 # Usual names of the first column of each quantity. Names are in lower case, without units and without any character
 # other than letters and digits.
 USUAL = {
@@ -66,7 +66,7 @@ class Log:
     quantum_N: np.ndarray | None = None  # resolution of each force component [N]; 0: full precision
     held: object = None  # Hold of the positions, or None if positions are not held
     held_force: object = None  # Hold of the forces, or None if forces are not held
-    # Force above which a row is in contact [N]; None: found from the log.
+    # Force above which a row is in contact [N]; None: rows_in_contact() determines it.
     touch: float | None = None
 
     @cached_property
@@ -239,9 +239,9 @@ def missing_rows(steps):
     intervals.
 
     There are two models of jitter. In the first model, each interval has an independent error. In the second model,
-    each time stamp of a regular clock has an independent error. These errors do not add up over the steps, so that each
-    step is measured from the mean clock of the earlier rows. The function uses the model with the smaller mean square
-    error."""
+    each time stamp of a regular clock has an independent error. The errors of the second model do not add up over the
+    steps; each step is therefore measured from the mean clock of the earlier rows. The function uses the model with the
+    smaller mean square error."""
     interval = float(np.median(steps))
     found = np.maximum(np.rint(steps / interval).astype(int) - 1, 0)
     errors = steps / interval - found - 1.0
@@ -442,9 +442,9 @@ def with_zeros(recording, count):
 
 def extra_columns(names, quantity, word, axes):
     """Returns the columns of a quantity of EXTRA (velocity, measured force, number of contacts). `word`: name or number
-    of a column that the user gave, or None. Fails if the log does not have the column that the user gave. Without
-    `word`, searches for a column with a usual name, and returns None if the log has no such column, or no columns for
-    its y and z components. `axes`: number of axes of the log."""
+    of a column that the user gave, or None. Fails if the log does not have this column or the columns of the y and z
+    components. If `word` is None, searches for a column with a usual name, and returns None if the log does not have
+    such a column or the columns of the y and z components. `axes`: number of axes of the log."""
     if word is not None:
         column, by_number = names.find(quantity, [word], ("_x", ".x", "x", "[0]", "_0", ".0", "0"))
         if column is None:

@@ -20,9 +20,10 @@ LONGEST_MEMORY = 1000  # largest lag of the autocorrelation of residuals [rows]
 LOW_PASSES = (1, 2, 4, 8, 16)  # time constants of a filtered velocity [rows]
 LOW_PASS = "low-pass "  # prefix of the kinds of filtered velocities
 EVEN = "even "  # prefix of the kinds of velocities that assume a constant time step
-# Prefix of the kinds of velocities in a control loop that is slower than the positions of the log.
+# Prefix of the kinds of velocities in a control loop that runs at a lower rate than the positions of the log.
 LOOP = "loop "
-# Rows before the fitted rows that are needed: the longest delay, and the decay of a filter's initial state.
+# Number of rows before the fitted rows that a Motion contains: the longest delay, plus the rows over which the initial
+# state of a filter decays.
 BEFORE = MAX_DELAY + 10 * max(LOW_PASSES)
 BLOCKS = 10  # number of blocks of the jackknife
 # Largest number of values per column that are processed together, so that they fit in the processor's cache.
@@ -61,8 +62,8 @@ class Fit:
 
 
 class Motion:
-    """Position and velocities along a direction for some rows of a log, and for the earlier rows that delays and
-    filters need. The force along the direction is for the rows themselves."""
+    """Positions, velocities and forces of some rows of a log along a direction. The positions and velocities also cover
+    the earlier rows that delays and filters need."""
 
     def __init__(self, log, rows, direction):
         self.first = max(int(rows[0]) - BEFORE, 0)
@@ -92,8 +93,8 @@ class Motion:
         }
 
     def sampling_of(self, kind, within):
-        """Returns the mean square error [m^2/s^2] of the velocity `kind` in the rows `within`, as an approximation of
-        the velocity that the engine uses. The error of a logged velocity is 0."""
+        """Returns the estimated mean square difference [m^2/s^2] between the velocity `kind` and the velocity that the
+        engine uses, over the rows `within`. It is 0 for a logged velocity."""
         if kind == "logged":
             return 0.0
         backward = self.speeds["backward"][within]
@@ -157,8 +158,9 @@ class Motion:
         return self.usable() & ~self.unknown[np.maximum(self.rows - delay, 0)]
 
     def columns(self, model, with_sign=False):
-        """Returns (matrix, force) of the known rows, each column minus its mean. The columns of the matrix are the
-        delayed position, the delayed velocity, and `with_sign` the sign of the delayed velocity."""
+        """Returns (matrix, force) of the rows known(), each column minus its mean. The columns of the matrix are the
+        delayed position, the delayed velocity, and, if `with_sign` is true, the sign of the delayed velocity.
+        """
         keep = self.known(model.delay)
         before = self.rows[keep] - model.delay
         x, v, f = self.position[before], self.speeds[model.kind][before], self.force[keep]
@@ -188,7 +190,7 @@ def speeds(log, part, position, direction):
     fresh = np.arange(len(position)) if log.held is None else np.flatnonzero(log.held.fresh[part])
     if len(fresh) < 3:
         return {}
-    # Each new sample keeps its velocity until the next new sample.
+    # Number of the latest new position in each row. Rows that repeat a position also repeat its velocity.
     sample = np.maximum(np.searchsorted(fresh, np.arange(len(position)), side="right") - 1, 0)
     found = {} if log.velocity is None else {"logged": log.velocity[part] @ direction}
     steps = np.diff(time[fresh])
@@ -240,9 +242,10 @@ def five_point(rates):
 
 
 def neighbours_of(model, kinds):
-    """Returns the models with the same delay and a neighbouring approximation of the velocity: the next smaller or
-    larger time constant of a filter, or the other one of central and five-point difference. The velocity of an engine
-    may lie between both approximations."""
+    """Returns the models with the same delay and a neighbouring approximation of the velocity. The neighbours of a
+    filtered velocity have the next smaller time constant (0 is the backward difference) and the next larger one. The
+    central and the five-point difference are neighbours of each other. The velocity of an engine may lie between two
+    neighbours."""
     clock, kind = without_clock(model.kind)
     constant = low_pass_of(kind)
     if constant:
@@ -304,9 +307,9 @@ def centred(values, known):
 
 
 def residuals_of_kind(motion, kind, delays, position, speed, force, known):
-    """Returns the Residual by Model of the velocity `kind` for some delays, by Gram-Schmidt orthogonalization.
-    `position`, `speed`, `force`: centred values, with one array row per delay; 0 where `known` is false.
-    """
+    """Returns a dict from Model to Residual: one Model with the velocity `kind` for each of `delays`. The fits use
+    Gram-Schmidt orthogonalization. `position`, `speed`, `force`: centred values, with one array row per delay; 0 where
+    `known` is false."""
 
     def dot(a, b):
         return np.einsum("ij,ij->i", a, b)
@@ -344,8 +347,8 @@ def residuals_of_kind(motion, kind, delays, position, speed, force, known):
 
 
 def factors(matrix):
-    """Returns (q, r, sizes) with matrix = q r diag(sizes) and orthonormal q; None if a column is constant or a linear
-    combination of the others."""
+    """Returns (q, r, sizes) with matrix = q r diag(sizes) and orthonormal q. Returns None if a column is zero or a
+    linear combination of the other columns, or if the matrix has fewer than FEWEST rows."""
     sizes = np.linalg.norm(matrix, axis=0)
     if len(matrix) < FEWEST or not (sizes > 0.0).all():
         return None
@@ -354,8 +357,8 @@ def factors(matrix):
 
 
 def fit_of(motion, model, with_sign=False):
-    """Returns the Fit of a model, or None if the columns are collinear. The motion caches the fits. `with_sign`: see
-    Motion.columns()."""
+    """Returns the Fit of a model, or None if factors() of its columns returns None. The motion caches the fits.
+    `with_sign`: see Motion.columns()."""
     key = model, with_sign
     if key not in motion.fits:
         motion.fits[key] = new_fit(motion, model, with_sign)

@@ -14,14 +14,17 @@ TILTS = 8  # largest number of iterations of the search for the normal
 MAX_ROWS = 500  # largest number of rows of the search
 # Kinds of velocities (see models.py) that the search for the normal uses.
 SEARCHED = ("logged", "backward", "central", "low-pass 4")
-# Smallest number of rows of a contact with a new force that is above 0 and below the largest force of the log.
+# Smallest number of usable rows from which a contact is analysed. In a usable row, the force is new, above 0 and below
+# the largest force of the log.
 FEWEST_NEW = 15
 BLOCKS = 10  # number of residuals of normal_by_friction() that count as independent
-AS_GOOD = 0.5  # a normal is better if it reduces the unexplained fraction below this factor
+# A second normal is better than a first normal if it reduces the unexplained fraction to less than this factor.
+AS_GOOD = 0.5
 # Fraction of the median speed below which the direction of sliding is uncertain.
 SLOW = 0.2
 MAX_FRICTION = 1.0  # largest coefficient of friction
-# Largest error of a normal, as the tangent of an angle. Such an error changes a stiffness by 1 - cos = 0.1 %.
+# Largest error of a normal that counts as known, as the tangent of an angle. Such an error changes a stiffness by
+# 1 - cos = 0.1 %.
 KNOWN_TILT = 0.05
 # Largest fraction of the sum of squared tangential forces that friction may leave unexplained.
 EXPLAINED_REST = 0.25
@@ -111,8 +114,8 @@ def normal_by_friction(log, rows, direction):
 
 
 def sliding_velocity(log, rows):
-    """Returns the velocities of the rows [m/s]. They are differences over a time in which the position moves by many
-    steps of its resolution, unless the log has velocities. Returns None if the position moves too little.
+    """Returns the velocities of the rows [m/s]. Without velocities in the log, they are position differences divided by
+    a time in which the position moves by many steps of its resolution. Returns None if the position moves too little.
     """
     if log.velocity is not None:
         return log.velocity[rows]
@@ -132,8 +135,8 @@ def sliding_velocity(log, rows):
 
 def gradient_of(log, rows, normal, space, model):
     """Returns (direction, Model), or (None, None). The direction is the unit vector of the gradient of the force
-    component along `normal`, with the sign of `normal`. `space`: Motion along the x, y and z axis. `model`: Model of
-    the fit; None searches the best Model."""
+    component along `normal`, with the sign of `normal`. `space`: three Motions, along the x, y and z axes. `model`:
+    Model of the fit; None searches the best Model."""
     keep = space[0].usable()
     force = (log.force[rows] @ normal)[keep]
     some = np.linspace(0, keep.sum() - 1, min(keep.sum(), MAX_ROWS)).astype(int)

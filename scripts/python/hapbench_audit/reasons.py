@@ -6,9 +6,9 @@ MIN_CHANGE = 0.01  # smallest significant change of the force, as a fraction of 
 
 
 def no_travel_text(travel, resolution, force, noise):
-    """Returns the reason why a contact has no stiffness if the tool rests along the force. If the force changes, the
-    text gives a lower bound of the stiffness. `travel` and `resolution` of the position [m]; `noise`: standard
-    deviation of the force [N]."""
+    """Returns the reason why a contact has no stiffness if the tool does not move along the force. If the force
+    changes, the text gives a lower bound of the stiffness. `travel` and `resolution` of the position [m]; `noise`:
+    standard deviation of the noise of the force [N]."""
     moves = f"moves by {travel:.3g} m only" if travel > 1e-12 else "does not move"
     if resolution:
         moves += f", {travel / resolution:.3g} steps of its resolution"
@@ -23,9 +23,9 @@ def no_travel_text(travel, resolution, force, noise):
 
 
 def why_unknown(best, stiffness, delays, interval):
-    """Returns the reason why fits do not determine the stiffness. `best`: Fit of the best model. `stiffness`: its
-    Estimate, or None if a stiffness of zero is possible. `delays`: possible delays [rows]. `interval`: time of a row
-    [s]."""
+    """Returns the reason why fits do not determine the stiffness. `best`: Fit of the best model. `stiffness`: Estimate
+    of the stiffness, or None if a stiffness of zero is possible. `delays`: possible delays [rows]. `interval`: time
+    between rows [s]."""
     if stiffness is None or stiffness.low <= 0.0:
         text = (
             "the log does not bound the stiffness (position and velocity explain "

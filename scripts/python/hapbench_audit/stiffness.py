@@ -19,10 +19,10 @@ from .normal import (
 from .reasons import no_travel_text, why_unknown
 
 FEWEST = 20  # smallest number of rows of a contact for which a stiffness is estimated
-# Largest ratio of rms residuals, landing to settled contact, for a landing that the model explains. An impact has a
-# larger ratio.
+# A model explains a landing if the rms residual of the landing is at most this factor times the rms residual of the
+# settled contact. An impact has a larger ratio.
 LANDING = 10.0
-# Rms residual of a landing, as a fraction of the range of the force, up to which the model always explains the landing.
+# A model also explains a landing if the rms residual of the landing is at most this fraction of the range of the force.
 EXACT = 0.01
 EXPLAINED = 0.5  # smallest fraction of the variance of the force that a spring must explain
 UNSURE = 0.05  # fraction of 95 % intervals that do not contain the true value
@@ -37,7 +37,7 @@ MAX_TRIED = 60  # largest number of models in the search for a model without neg
 CERTAIN = 20.0  # largest log-likelihood difference that one contact contributes
 # Relative difference of mean squares that does not count, because the residuals are not white noise.
 SIMILAR = 0.1
-# Largest factor above the smallest mean square that the sampling of a velocity can explain.
+# The sampling of a velocity explains a mean square residual of at most this factor times the smallest mean square.
 MAX_EXCUSED = 2.0
 NEGLIGIBLE = 1e-12  # fraction of the variance that rounding may leave unexplained
 # Largest unexplained fraction of a well explained contact, divided by the median unexplained fraction of all contacts.
@@ -53,7 +53,7 @@ class Evidence:
 
     motion: object  # Motion along the fitted direction, or None
     found: dict  # numbers of the contact for the JSON
-    # Log-likelihood of the best Model minus the log-likelihood, by Model.
+    # Dict from Model to the log-likelihood of the best Model minus the log-likelihood of this Model.
     likelihood: dict = field(default_factory=dict)
     dampings: dict = field(default_factory=dict)  # least-squares damping by Model [N s/m]
     # Fraction of the best model's squared residuals that is not white noise.
@@ -208,8 +208,8 @@ def residual_of(motion, model):
 
 def as_good(log, evidences):
     """Returns the models that explain all contacts about as well as the best model, best model first. If a contact is
-    too short for the delay of a model, its longest delay is used. Models with negative damping are omitted if other
-    models are as good."""
+    too short for the delay of a model, the longest possible delay in this contact is used. Models with negative damping
+    are omitted if other models are as good."""
     models = sorted({model for one in evidences for model in one.likelihood})
     if not models:
         return []
@@ -234,8 +234,8 @@ def as_good(log, evidences):
     non_negative = [model for model in found if not is_negative(log, evidences, model)]
     if non_negative:
         return non_negative
-    # All models in `found` have negative damping. If no model fits well, this can be wrong, so that the best model
-    # without negative damping is added.
+    # All models in `found` have negative damping. If no model fits well, the sign of the damping can be wrong. The best
+    # model without negative damping is therefore added.
     near = [m for m in order if scores[m] <= lowest + 0.5 * CERTAIN * len(evidences)]
     best = next((m for m in near[:MAX_TRIED] if not is_negative(log, evidences, m)), None)
     return found if best is None else [*found, best]
@@ -297,8 +297,8 @@ def with_shared_normal(log, evidences):
 
 @dataclass
 class Estimate:
-    """A value with its interval. The value belongs to the best model. The interval contains the 95 % intervals of all
-    models that are as good."""
+    """A value with its interval. For one contact, the value belongs to the best model, and the interval contains the
+    95 % intervals of all models of as_good(). For the whole log, combined() computes both."""
 
     value: float
     low: float
@@ -310,8 +310,8 @@ class Estimate:
 
 
 def numbers_of(log, evidence, models):
-    """Returns the estimates of one contact, with intervals over these models. If the contact has no stiffness, `why` is
-    the reason."""
+    """Returns the estimates of one contact, with intervals that cover all `models`. If the contact determines no
+    stiffness, `why` is the reason."""
     usable = [model for model in models if model in evidence.likelihood]
     unbounded = unbounded_by(evidence, usable)
     if unbounded is not None:
@@ -409,8 +409,8 @@ def widened(motion, fit, with_sign):
 
 
 def likely(fits):
-    """Returns the first fit with positive stiffness and without negative damping, or the first fit if there is none.
-    Negative damping is an effect of a delay that the model lacks."""
+    """Returns the first fit with positive stiffness and without negative damping. If no fit meets both conditions,
+    returns the first fit. Negative damping is an effect of a delay that the model lacks."""
     return next(
         (fit for fit in fits if fit.stiffness > 0.0 and fit.damping + fit.halves[1] >= 0.0), fits[0]
     )
@@ -475,9 +475,11 @@ def dry_friction(motion, best):
 
 
 def combined(estimates):
-    """Returns (Estimate, index of the estimate nearest to it). Its value is the weighted median of the estimates, with
-    the inverse squared half-widths of the intervals as weights. The half-width of its interval is the larger of two
-    values: the median half-width, and the value that follows from the scatter of the estimates."""
+    """Returns (combined Estimate, index of the estimate with the nearest value). The combined value is the weighted
+    median of the estimates, with the inverse squared half-widths of the intervals as weights. The half-width of the
+    combined interval is the larger of two values: the weighted median half-width, and the value that follows from the
+    scatter of the estimates. The combined interval is widened to contain the interval of the nearest estimate.
+    """
     values = np.array([one.value for one in estimates])
     halves = np.array([max(one.half, 1e-9 * abs(one.value), 1e-300) for one in estimates])
     weights = halves**-2.0
@@ -545,9 +547,9 @@ def values_of(log, stiffness, damping, slow, numbers):
 
 
 def springs_of(log, evidences):
-    """Returns (JSON of each contact, JSON of the log or None). `evidences`: for each contact; None for a contact with
-    too few rows. All contacts share one set of models: as_good() excludes a delay for all contacts by the sum of their
-    log-likelihoods."""
+    """Returns (JSON of each contact, JSON of the log or None). `evidences`: the Evidence of each contact, or None for a
+    contact with too few rows. All contacts share one set of models: as_good() excludes a delay for all contacts by the
+    sum of their log-likelihoods."""
     evidences = with_shared_normal(log, evidences)
     known = [one for one in evidences if one is not None and one.likelihood]
     models = as_good(log, well_explained(known))
@@ -588,7 +590,7 @@ def shows_no_spring(each):
 
 def contradicting(each):
     """Returns the number of contacts that contradict a spring: most of the force does not follow the motion, the force
-    grows along its own direction, or the tool does not move."""
+    grows when the tool moves in the direction of the force, or the tool does not move."""
     return sum(
         one.get("explained", 1.0) < EXPLAINED
         or "apparent_stiffness_N_per_m" in one

@@ -175,8 +175,8 @@ def stiffness_rows(audit):
 
 
 def few_text(known, count):
-    """Returns a text with the number of contacts that determine the stiffness, if they are less than half; otherwise an
-    empty text."""
+    """Returns a text with the number `known` of contacts that determine the stiffness, if it is positive and less than
+    half of the number `count` of all contacts. Otherwise returns an empty text."""
     return f", from {known} of {counted(count, 'contact')}" if 1 <= 2 * known < count else ""
 
 

@@ -156,7 +156,7 @@ def read(name):
 
 
 def main_results(_old=""):
-    """Returns the table of the sentences of the thesis's abstract from claims.md, with links into the ledger."""
+    """Returns the table in claims.md that lists the sentences of the thesis's abstract, with links into the ledger."""
     page = (REFERENCE / "claims.md").read_text(encoding="utf-8")
     return next(part for part in page.split("\n\n") if part.startswith("| the abstract claims |"))
 
@@ -214,9 +214,10 @@ def controls(_old=""):
 
 
 def pairs(_old=""):
-    """Returns a table with a row for each claim that several assumptions decide. It counts the pairs of these
-    assumptions by the verdict that they cause: the recorded verdict, the verdict of one of both assumptions alone, or
-    another verdict."""
+    """Returns a table with a row for each claim that several assumptions decide. The row sorts the pairs of these
+    assumptions by the verdict that both changes together cause: the recorded verdict, the verdict of one change alone,
+    or another verdict. Pairs with the verdict of one change alone are counted, all other pairs are listed.
+    """
     lines = [
         "| claim | verdict | pairs | recorded verdict | verdict of one of both | another verdict |",
         "|---|---|---|---|---|---|",
@@ -238,9 +239,10 @@ def pairs(_old=""):
 
 
 def six_dof(_old=""):
-    """Returns the table of the study six_dof, whose sweep.csv is stored as six_dof.csv. It has a row for each scene,
-    and in the scenes edge and slot for each hand, grip and pivot. A row has force and torque of the device with torque,
-    and for each law the force error and the energy that the law creates in a cycle."""
+    """Returns the table of the study six_dof, whose sweep.csv is stored as six_dof.csv. Each scene has a row with the
+    default hand, grip and pivot; the scenes edge and slot also have a row for each other hand, grip and pivot. The
+    columns are the reference force of the device with torque, the lost torque, the unresisted rotation, and for each
+    law the force error and the energy that the law creates in a cycle."""
     with open(REFERENCE / "six_dof.csv", newline="", encoding="utf-8") as lines:
         rows = list(csv.DictReader(lines))
     laws = list(dict.fromkeys(row["six_dof.law"] for row in rows))
@@ -297,7 +299,7 @@ class Program:
     def run(self, words, directory):
         """Runs the program in a directory and returns its standard output. A run with an unexpected outcome (status 3)
         is no failure."""
-        # Without additional modules, so that tables contain only the algorithms of this source tree.
+        # Removes the folders of additional modules, so that tables contain only the algorithms of this source tree.
         environment = {
             name: value for name, value in os.environ.items() if name != "HAPBENCH_MODULE_PATH"
         }
@@ -336,7 +338,7 @@ class Program:
 
 
 def same_but_for_times(a, b):
-    """Returns True if two outputs are equal except for times in microseconds, which differ between runs."""
+    """Returns True if two outputs are equal except for run times and ratios of run times."""
     return _words(a) == _words(b)
 
 

@@ -21,8 +21,8 @@ def damping_coefficient(scenario):
 
 
 def draw_forces(ax, at, direction, spring, damping, named_at):
-    """Draws the implicit plane, its name, the velocity, and the damping forces at the tip. The forces are those of the
-    original algorithm (B.2), which has one direction for all contacts. Coordinates are in millimetres.
+    """Draws the implicit plane, its name, the velocity, and the damping forces at the tip. The damping forces are
+    computed by the original algorithm (B.2), which has one direction for all contacts. Coordinates are in millimetres.
     """
     along = np.array([-direction[1], direction[0]])
     ends = np.stack([at - 2 * along, at + 2 * along])
@@ -87,7 +87,8 @@ def draw_distributed(ax, sweep):
 
 
 def wall_damping(ax, results):
-    """Draws over the tilt the damping coefficient for a motion along the normal of the wall, in units of B."""
+    """Draws the damping coefficient for a motion along the normal of the wall against the tilt. The unit is B, the
+    damping coefficient of the rendering."""
     dp, hs = scene.Sweep(results, DP), scene.Sweep(results, HS)
     pick = np.arange(1, len(dp.tilt))
     forces = np.stack([dp.rows["fspring_x_N"], dp.rows["fspring_y_N"]], 1)[pick]

@@ -105,9 +105,9 @@ def settings_of(results, beginnings, column, scale, per):
 
 
 def knee(settings):
-    """Returns the setting at the knee of the front of run time and error. The program finds the knee, as in `hapbench
-    plot` of `converge --over`. Returns None if the front is straight or has fewer than four settings.
-    """
+    """Returns the setting at the knee of the front of run time and error. The program finds the knee in the same way as
+    `hapbench plot` for a folder of `hapbench converge --over`. Returns None if the front is straight or has fewer than
+    four settings."""
     points = [f"{setting.time!r}:{setting.error!r}" for setting in settings]
     found = output_of_program("finds the knee of a front", "plot", "--knee", *points).strip()
     return settings[int(found)] if found else None

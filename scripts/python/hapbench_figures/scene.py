@@ -91,7 +91,7 @@ def peg_of(tool, rows, step):
 
 
 class Sweep:
-    """Results of a run of which the contacts were recorded."""
+    """Results of a run whose contacts were recorded."""
 
     def __init__(self, results, name, group="thesis"):
         self.scenario = results.json(f"{group}/{name}/scenario.effective.json")
@@ -161,8 +161,9 @@ def draw_peg(ax, peg, median=False, **keywords):
 
 
 def draw_segments(ax, contacts, colours):
-    """Draws a segment from each contact along its gradient, as long as the depth of the contact. By the depth model,
-    the point leaves the tool at the end of the segment."""
+    """Draws a segment from each contact point along the gradient of the contact. The length of the segment is the depth
+    of the contact: by the depth model, a point that moves along the segment leaves the tool at the end of the segment.
+    """
     ends = contacts.point + contacts.depth[:, None] * contacts.gradient
     for colour in dict.fromkeys(colours):
         same_colour = [c == colour for c in colours]

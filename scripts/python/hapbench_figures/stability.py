@@ -150,7 +150,8 @@ SCATTER = 1.3
 
 
 def hardware(results):
-    """Draws K over B of the EPFL paddle with its three velocity filters, as measured in sessions and as predicted."""
+    """Draws the largest stable stiffness K over the damping B of the EPFL paddle, measured and predicted, with a panel
+    for each of its three velocity filters."""
     predicted, (damping, stiffness) = results.records("hardware_paddle/limit.csv"), (
         "damping_N_s_per_m",
         "stiffness_N_per_m",

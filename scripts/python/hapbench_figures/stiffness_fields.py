@@ -42,8 +42,8 @@ def field(tensor):
 
 
 def draw_field(ax, name, tensor, contacts, reach, ticks):
-    """Draws k(e) in the algorithm's colour, and a mark for the ratio along each contact. Returns the ratios along the
-    contacts."""
+    """Draws the curve k(e) of field() in the algorithm's colour, and a mark for the stiffness ratio along each contact.
+    Returns the ratios along the contacts."""
     curve, colour = field(tensor), style.look(name).colour
     limit = scene.PUBLISHED["C4.ratio"]["at_most"]
     ax.fill(*curve.T, facecolor=(*to_rgb(colour), 0.22), edgecolor=colour, lw=1.1)

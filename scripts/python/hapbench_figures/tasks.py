@@ -22,8 +22,8 @@ def trajectory(results, task, density="signed_distance"):
 
 
 def ratios(results, task, iteration, density="signed_distance"):
-    """Returns the rows of ratios.csv after `iteration` iterations in which contacts were rendered. `density`: the depth
-    model in the name of the run."""
+    """Returns the rows of ratios.csv with `iteration` iterations and at least one rendered contact. `density`: the
+    depth model, which is the end of the run's name."""
     table = results.table(f"thesis/{task}_{density}/ratios.csv")
     selected = (table["iteration"] == iteration) & (table["rendered"] > 0)
     return {name: column[selected] for name, column in table.items()}
@@ -43,7 +43,8 @@ def thin(*columns, count=80):
 
 
 def published_count(ax, x, task, what):
-    """Draws the published mean and standard deviation of a number at the right end of a time axis."""
+    """Draws the published mean and standard deviation of a number of contact points at `x`, the right end of a time
+    axis. `what`: "raw" or "reduced"."""
     id_ = f"{task}.{what}"
     ax.errorbar(
         [x],
@@ -63,8 +64,8 @@ PERIOD = 1 / 2048  # period of the trainer's loop [s]
 
 
 def loop_load(ax, results, task, duration):
-    """Draws on a second y axis the fraction of the loop's period that a step takes, over time. Returns None if no times
-    were measured."""
+    """Draws the time of a step, in percent of the loop's period, over the time of the run, on a second y axis. Returns
+    None if no step times were measured."""
     path = f"step_latency/{task}_signed_distance/timing.json"
     timing = results.json(path) if results.has(path) else {}
     medians = np.array((timing.get("step_latency") or {}).get("over_time_s", []))
@@ -73,7 +74,7 @@ def loop_load(ax, results, task, duration):
     load = ax.twinx()
     time = (np.arange(len(medians)) + 0.5) * duration / len(medians)
     load.plot(*thin(time[::3], 100 * medians[::3] / PERIOD), ".", color=style.BLACK, ms=1.8)
-    # The curve is drawn above the points that share the panel.
+    # With these limits, the curve lies above the points of the first y axis.
     load.set(yscale="log", ylim=(1e-9, 400), yticks=[0.1, 1, 10, 100])
     load.set_yticklabels(["0.1", "1", "10", "100"])
     if task == "task3_spin" and results.has(scene.LEDGER):

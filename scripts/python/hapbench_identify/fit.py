@@ -13,7 +13,8 @@ SCORED, PIECE, SHORT_PIECE = (
     20.0,
     0.5,
     0.2,
-    # Duration on which starting values are scored, and lengths of the pieces whose means are subtracted [s].
+    # SCORED: duration of the first part of the log, on which starting values are scored [s]. PIECE, SHORT_PIECE:
+    # lengths of the pieces of Cost [s].
 )
 KEPT, DISTINCT, BLOCKS = 8, 3, 12
 LONGEST = 20.0  # largest delay in the search [samples]
@@ -51,8 +52,9 @@ class Fit:
 
 
 class Cost:
-    """Residual of a simulation over the first part of a log (`seconds`). The mean over each piece (`piece` [s]) is
-    subtracted, so that motion before a piece has no effect on the residuals in it."""
+    """Residual of a simulation over the first `seconds` of a log. The log is divided into pieces of the length `piece`
+    [s]. The mean residual of each piece is subtracted, so that the motion before a piece has no effect on the residuals
+    in the piece."""
 
     def __init__(self, simulate, log, seconds=np.inf, piece=np.inf):
         self.rows = int(min(len(log.time), max(100.0, seconds / log.step)))
@@ -354,11 +356,11 @@ def _degenerate(J, strokes):
 
 
 def _spreads(J, positions, encoder_step, rms):
-    """Returns two arrays of standard errors, with an entry for each row of J except the last row. `J`: result of
-    sensitivities(). Each entry is in units of the `scale` of its row. The first array treats all residuals as
-    independent samples. The second array treats a residual as the sum of noise and encoder error. The noise is
-    independent in each sample. The encoder error is constant while the handle stays within one count, so that all
-    samples of this time count as one sample."""
+    """Returns two arrays of standard errors, with an entry for each parameter. `J`: result of sensitivities(), and a
+    last row of ones for the initial position, which has no entry in the arrays. Each entry is in units of the `scale`
+    of its row. The first array treats all residuals as independent samples. The second array treats a residual as the
+    sum of noise and encoder error. The noise is independent in each sample. The encoder error is constant while the
+    handle stays within one encoder step, so that all samples of this time count as one sample."""
     H = J @ J.T
     inverse = np.linalg.pinv(H, rcond=1e-14, hermitian=True)
     of_encoder = 0.0
@@ -387,8 +389,8 @@ def _spreads(J, positions, encoder_step, rms):
 
 
 def _by_pieces(cost, found, scale):
-    """Returns (fit, half-widths of the intervals) for a log whose residual is not noise. `cost`: Cost with short
-    pieces."""
+    """Returns (fit, half-widths of the intervals) for a log with a misfit or with interpolated forces. `cost`: Cost
+    with short pieces."""
     found = least_squares(cost, found.x, scale, 60, 1e-8)
     return found, without_blocks(cost, found, scale)
 
@@ -414,9 +416,10 @@ def without_blocks(cost, found, scale):
 
 
 def slow_part(log, cost, x, residual):
-    """Returns the size of the slow part of the residual, which is its mean over windows of the lengths WINDOWS. The
-    unit is the standard deviation of the slow part that noise and encoder alone would cause. Simulated logs with the
-    measured noise give this standard deviation."""
+    """Returns by how much the mean square of the slow part of the residual exceeds the mean square that noise and
+    encoder alone would cause, in standard deviations of this mean square; at least 0. The slow part is the mean of the
+    residual over windows. The result is the largest excess over the window lengths WINDOWS. Simulated logs with the
+    measured noise give the expected mean square and its standard deviation."""
     positions = cost.simulated(x)
     positions = positions + np.mean(log.position[cost.known] - positions)
     random = np.random.default_rng(1)
@@ -534,8 +537,8 @@ def starts_of(log, position, force):
 
 
 def _regressions(bell, position, force, step, noise):
-    """Yields (mass, viscous friction, dry friction, delay [samples], offset) for the two best delays, which differ by
-    at least one sample. `bell`: kernel of the filter."""
+    """Returns a list of (mass, viscous friction, dry friction, delay [samples], offset) for the two best delays, which
+    differ by at least one sample. `bell`: kernel of the filter."""
     middle = slice(1, -1)
     slope = (position[2:] - position[:-2]) / (2.0 * step)
     speed = np.convolve(slope, bell, "valid")

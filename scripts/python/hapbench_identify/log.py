@@ -123,7 +123,7 @@ def log_of(time, force, position):
             "row of each is used"
         )
         if not np.any((np.diff(force) != 0.0) & ~held.fresh[1:]):
-            # The force is held together with the position: use the slower rate, without the repeated rows.
+            # The force changes only in rows with a new position. The repeated rows are therefore omitted.
             time, force, position, held = (
                 time[held.fresh],
                 force[held.fresh],
@@ -178,8 +178,9 @@ def missing_samples(intervals):
 
 
 def encoder_step_of(position):
-    """Returns the encoder step [m]: the length of which the spacings of positions are multiples. Returns 0 unless 98 %
-    of the spacings are within 2 % of the step of such a multiple."""
+    """Returns the encoder step [m]: the length of which the spacings between neighbouring position values are
+    multiples. A spacing fits if it differs from a multiple by less than 2 % of the step. Returns 0 if fewer than 98 %
+    of the spacings fit."""
     spacings = np.diff(np.unique(position))
     spacings = spacings[
         spacings > max(1e-10, 1e-9 * np.abs(position).max())

@@ -39,9 +39,9 @@ def is_usual(log, mass):
 
 
 def likely_units(log, found=None):
-    """Returns a list of (text, factors by quantity), at most three, the smallest change first. The factors change
-    units, and the sign of the force, so that the log describes a plausible handle. `found`: fit of the unscaled log, or
-    None."""
+    """Returns a list of at most three (text, factors by quantity), beginning with the smallest change. The factors
+    change units, and the sign of the force, so that the log describes a plausible handle. `found`: fit of the unscaled
+    log, or None."""
     times = [one for one in TIMES if _within(one * log.step, STEPS)] or [1.0]
     positions = [
         one
@@ -65,8 +65,8 @@ def likely_units(log, found=None):
 
 def _unit_mass(log, time, position, found):
     """Returns (sign of the force, mass of the handle [kg] if all numbers were in s, N and m). The mass is proportional
-    to force * time^2 / position. Without a good fit, the log is fitted with the units `time` and `position` and with
-    both signs of the force."""
+    to force * time^2 / position. If `found` is None or a misfit, the log is fitted with the units `time` and `position`
+    and with both signs of the force."""
     if found is not None and not found.misfit:
         return 1.0, found.values[MASS]
     signs = {sign: fit(_scaled(log, time, position, sign)) for sign in (1.0, -1.0)}

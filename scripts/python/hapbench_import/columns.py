@@ -242,8 +242,9 @@ def scale_of(names, quantity, columns, given, notes):
 
 
 def unclear_endings(names, columns):
-    """Returns a list with a note if a column name such as x_cm ends in a unit or in another abbreviation, such as
-    "centre of mass"; empty if there is no such name."""
+    """Returns a list with a note about the first column name with an ending that may be a unit or another abbreviation:
+    x_cm may be in centimetres, or the x of a centre of mass. The list is empty if no name has such an ending.
+    """
     for column in columns:
         ending = names.names[column].rpartition("_")[2]
         if ending in _UNCLEAR_ENDINGS and names.names[column] != ending:

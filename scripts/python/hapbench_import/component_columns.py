@@ -17,7 +17,7 @@ PARTS = list(dict.fromkeys(sum(ORIENTATIONS.values(), ())))
 
 def one_axis(group):
     """Returns the end of an error message, which explains what to do with a recording of one axis. Returns an empty
-    text for other quantities."""
+    text for quantities other than position and force."""
     if group not in ("position", "force"):
         return ""
     return (

@@ -5,8 +5,8 @@ import numpy as np
 
 FEWEST_CHANGES = 10
 MAX_ROWS = 200  # largest number of rows that repeat one sample
-# Smallest fraction of the distances between changes that are multiples of a number of rows, and smallest fraction of
-# the distances that are close to the median.
+# Samples count as held if at least the fraction ALL of the distances between changes are multiples of one number of
+# rows, or if at least the fraction NEARLY_ALL of the distances are within one row of their median.
 ALL, NEARLY_ALL = 0.98, 0.9
 
 
@@ -19,8 +19,9 @@ class Hold:
 
 
 def hold_of(values):
-    """Returns the Hold of values, one row each, or None if samples are not held. Encoder steps in a slow motion are not
-    held samples: the value then changes by one encoder step, at irregular numbers of rows."""
+    """Returns the Hold of `values`, or None if samples are not held. `values`: one number or vector for each row. A
+    slow motion measured by an encoder is not held: its values change by one encoder step, at irregular numbers of rows.
+    """
     values = np.asarray(values).reshape(len(values), -1)
     steps = np.diff(values, axis=0)
     changed = np.flatnonzero(np.any(steps != 0.0, axis=1)) + 1

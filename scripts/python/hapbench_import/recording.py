@@ -99,10 +99,11 @@ class Recording:
         return np.where(np.isfinite(values), values, math.nan)
 
     def clock(self, column, nanoseconds=None, scale=1.0):
-        """Returns (origin, numbers minus the origin) for a column of times and an optional column of nanoseconds.
-        The origin is 0, except for integers that are too large for a double, such as nanoseconds since 1970. Times of
-        day, with or without a date (ISO 8601), are converted to seconds since the first; `scale`, the seconds per unit,
-        must be 1 for them."""
+        """Returns (origin, numbers minus the origin) for a column of times. `nanoseconds`: column of nanoseconds that
+        are added to the times, or None. The origin is the first time if there are nanoseconds, or if the times are
+        integers that are too large for a double, such as nanoseconds since 1970. Otherwise the origin is 0. Times of
+        day, with or without a date (ISO 8601), are converted to seconds since the first time of day. `scale`: seconds
+        per unit of the times; must be 1 for times of day."""
         values = self.column(column)
         if nanoseconds is not None:
             finite = values[np.isfinite(values)]
@@ -183,8 +184,9 @@ _TIME_OF_DAY = re.compile(
 
 
 def _nanoseconds(cell):
-    """Returns a time of day in nanoseconds; its date and its offset from UTC may be missing. Returns None for other
-    texts."""
+    """Returns the time of day in a cell [ns], counted from midnight, or from a fixed day if the cell has a date. If the
+    cell states an offset from UTC, the time is converted to UTC. Returns None if the cell is no time of day.
+    """
     found = _TIME_OF_DAY.fullmatch(cell)
     if not found:
         return None

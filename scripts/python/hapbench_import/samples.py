@@ -223,10 +223,10 @@ def _from_down_to(axes):
 
 
 def read_samples(recording, options):
-    """Reads the samples of a recording. Bad rows have too few values, no finite number, a time that does not increase,
-    an invalid orientation, or a jump faster than max_speed. By default, bad rows are refused in one message, with the
-    first row of each kind. With the option, bad rows are omitted. Rows that repeat a held sample are always omitted.
-    """
+    """Reads the samples of a recording. Bad rows have a wrong number of values, a value that is not a finite number, a
+    time that does not increase, an invalid orientation, or a jump faster than max_speed. By default, bad rows are
+    refused in one message, with the first row of each kind of problem. With the option skip_bad_rows, bad rows are
+    omitted. Rows that repeat a held sample are also omitted, except with held_rows = "keep"."""
     columns = Columns(recording, options)
     with np.errstate(invalid="ignore", over="ignore"):
         rows = Rows(recording, columns, options)
@@ -274,8 +274,8 @@ def read_samples(recording, options):
 
 
 def _held_rows(rows, options, notes):
-    """Returns the Hold of the rows without problems, or None if samples are not held. Its `fresh` has an entry for
-    every row."""
+    """Returns the Hold of the rows without problems. Its `fresh` has an entry for every row. Returns None if samples
+    are not held, or if the option held_rows is "keep"."""
     usable = np.array([row not in rows.problems for row in range(len(rows.time))], bool)
     values = [rows.recorded] + ([rows.orientation] if rows.kind != "none" else [])
     held = hold_of(np.column_stack(values)[usable]) if usable.any() else None

@@ -89,8 +89,8 @@ def import_stroke(recording, options):
 
 
 def clock_of(time):
-    """Returns (statistics of the clock, True if the clock is regular). A regular clock has no sample that is off by
-    more than a thousandth of the mean interval."""
+    """Returns (statistics of the clock, True if the clock is regular). In a regular clock, every time differs from
+    equidistant times by at most a thousandth of the mean interval."""
     first, duration, intervals = float(time[0]), float(time[-1] - time[0]), np.diff(time)
     even = duration / len(intervals)
     off = time - first - np.arange(len(time)) * even
@@ -114,8 +114,9 @@ def usual_rate(clock, is_regular, samples):
 
 
 def gaps_in(read, median, longest):
-    """Returns (index of the sample before the gap, duration [s]) for each gap to interpolate. Refuses the recording if
-    any interval is longer than `longest` [s]."""
+    """Returns (index of the sample before the gap, duration [s]) for each gap, which is an interval of at least
+    LONG_INTERVALS times the `median` interval [s]. Refuses the recording if any interval is longer than `longest` [s].
+    """
     intervals = np.diff(read.samples.time)
     faults = [
         (
@@ -229,8 +230,8 @@ def smooth(stroke, window, order):
 
 
 def of_one_sign(quaternions):
-    """Returns the quaternions with consecutive signs made equal. q and -q are the same orientation, and interpolation
-    between quaternions of equal sign follows the shorter arc."""
+    """Returns the quaternions with signs for which no dot product of consecutive quaternions is negative. q and -q are
+    the same orientation. With these signs, interpolation follows the shorter arc."""
     same = np.einsum("ij,ij->i", quaternions[1:], quaternions[:-1]) >= 0.0
     return quaternions * np.cumprod(np.where(np.concatenate([[True], same]), 1.0, -1.0))[:, None]
 
@@ -399,8 +400,8 @@ def columns_text(columns, not_read, scales):
 def into_surface(stroke):
     """Returns the mean cosine of the angle between the measured force and the direction out of the tip, over the
     samples with more than a fifth of the largest force. A positive mean indicates a force of the opposite sign, because
-    a surface pushes against the tip. Returns 0 without forces, or unless the cosine is positive in more than 95 % of
-    these samples."""
+    a surface pushes against the tip. Returns 0 without forces, with fewer than 10 of these samples, or if the cosine is
+    positive in at most 95 % of these samples."""
     if stroke.force is None:
         return 0.0
     sizes = np.linalg.norm(stroke.force, axis=1)

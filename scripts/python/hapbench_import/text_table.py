@@ -56,8 +56,8 @@ class Table:
 def read_table(data, file, by_blanks=False, names_of=None):
     """Returns the Table of a text file: its rows and the names of its columns. The names come from a header. The header
     is the first line if none of its cells is a number, or the last comment line above the rows that has as many cells
-    as the rows. `names_of`: function that always makes the names from the words of the first line.
-    """
+    as the rows. `names_of`: function that makes the names from the words of the first line, which is then always the
+    header; None if there is no such function."""
     notes = []
     lines, comments = _lines(_utf8(data, file, notes))
     if not lines:
@@ -269,7 +269,7 @@ def _names_in_header(lines, separator, notes):
         block.append(words)
     if not block:
         return [], lines[0][0], lines
-    # If no numbers follow, the other lines are not part of the header: only the first line is.
+    # If no row of numbers follows these lines, only the first of these lines is the header.
     if len(lines) <= len(block) or not is_row(split(lines[len(block)][1], separator)):
         block = block[:1]
     numbers, below = [number for number, _ in lines[: len(block)]], lines[len(block) :]
@@ -392,10 +392,9 @@ def has_decimal_commas(rows):
 
 
 def with_points(cells, is_comma_decimal):
-    """Returns (cells of a column, with decimal commas replaced by points; index of the first cell with a decimal comma;
-    index of the first cell with an ambiguous comma, such as "1,234"). Of the two indices, the first is searched only if
-    `is_comma_decimal`, the second only otherwise; None if there is no such cell or it is not searched.
-    """
+    """If `is_comma_decimal` is true, returns (cells of a column with decimal commas replaced by points, index of the
+    first cell with a decimal comma or None, None). Otherwise returns (unchanged cells, None, index of the first cell
+    with an ambiguous comma, such as "1,234", or None)."""
     commas = [i for i, cell in enumerate(cells) if b"," in cell and _COMMA_NUMBER.fullmatch(cell)]
     if not is_comma_decimal:
         grouped = (i for i, cell in enumerate(cells) if _THOUSANDS.fullmatch(cell))

@@ -42,8 +42,8 @@ def looks_of(rows):
 
 
 def linear(rows):
-    """Returns the linear limit of each row: the limit of the contact loop, or else the theoretical limit of bilateral
-    springs. The limit is NaN if the row has none."""
+    """Returns the linear limit of each row: the limit of the contact loop, or if the row has no such limit, the
+    theoretical limit of bilateral springs. The value is NaN if the row has neither limit."""
     linear_limit, theory = numbers(rows, "linear_limit"), numbers(rows, "theoretical_limit")
     values = np.where(np.isfinite(linear_limit), linear_limit, theory)
     return np.where(np.isfinite(values) & (values > 0), values, np.nan)
@@ -155,7 +155,7 @@ def draw_devices_over(found, sheet):
 
 
 def curves_of(found, rows, colour, is_variant):
-    """Returns the linear and the simulated limit of one device as `series` of over_axes()."""
+    """Returns the linear and simulated limits of one device, in the format of the argument `series` of over_axes()."""
     x, (separated, alternating, _) = found.along(rows), simulated_kinds(rows)
     shown = {"color": colour, "mec": colour, "lw": THIN if is_variant else 1.3}
     return [
@@ -166,8 +166,8 @@ def curves_of(found, rows, colour, is_variant):
 
 
 def mark_ends(ax, found, rows, looks):
-    """Draws marks at the end of the range for devices that are stable up to this end. The marks of each device,
-    including its variants, are in a separate line."""
+    """Draws marks at the end of the range for devices that are stable up to this end. Each device has its own row of
+    marks, which includes the variants of the device; the rows lie below each other."""
     of_device = {}
     for row, x, y in zip(rows, found.along(rows), simulated_kinds(rows)[2]):
         if np.isfinite(y):

@@ -52,8 +52,9 @@ DEEPER, SHAKIER = "inside_max_m", "force_rms_above_30Hz_N"
 
 
 def pareto_section(runs):
-    """Returns the Pareto section of a comparison: depth of the tool against vibration for each law, over all scenes and
-    seeds. It is empty for at most MAX_LAWS laws."""
+    """Returns the Pareto section of a comparison: the mean vibration over the mean depth of the tool, with a mark for
+    each law. Means are over all scenes and seeds. The section is empty for at most MAX_LAWS laws.
+    """
     found = {}
     for run in runs:
         values = (run.metric(DEEPER), run.metric(SHAKIER))

@@ -82,8 +82,9 @@ def compared(folder):
 
 
 def labels(runs):
-    """Returns a name for each run that distinguishes it: scene, algorithm, fields, seed and folder, each only if it
-    differs between the runs."""
+    """Returns a distinct name for each run: the scene, the algorithm and the fields, each only if it differs between
+    the runs. If these are equal for some runs, the names also contain the seeds, or if necessary the folders.
+    """
     return named(runs)[0]
 
 

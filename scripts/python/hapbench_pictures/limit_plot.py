@@ -164,7 +164,7 @@ def draw_limits(files, sheet=SHEET, folder=""):
 
 def draw_strip(found, sheet):
     """Draws one line of marks for each algorithm: the class of every run over the searched field. Bars mark the
-    simulated limit and the theoretical limit."""
+    theoretical limit, the simulated limit and the limit to quote."""
     names = found.algorithms
     runs = [
         (

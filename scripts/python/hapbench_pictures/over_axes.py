@@ -113,8 +113,8 @@ def with_room(low, high, above=1.0):
 
 
 def pareto(points):
-    """Returns the points of the Pareto front, sorted by the first coordinate: no other point is smaller in both
-    coordinates."""
+    """Returns the points of the Pareto front, sorted by the first coordinate. For a point of the front, no other point
+    is smaller or equal in both coordinates. Of equal points, only one is returned."""
     points = points[np.all(np.isfinite(points), axis=1)]
     front, smallest = [], np.inf
     for point in points[np.lexsort((points[:, 1], points[:, 0]))]:

@@ -17,10 +17,11 @@ LIGHT = ("#1d2126", "#ffffff", "#e6e6e6", "#EFE8DC", "#8C7A58")
 DARK = ("#e7e9ea", "#1c2024", "#383e44", "#4a4438", "#b5a27c")
 THIN = 0.6  # line width of the single runs of a group of runs [points]
 SPANS = 600  # number of time spans of a curve; a page hardly shows more
-# If the ratio of the largest to the smallest peak of the runs is larger, the runs do not share a linear axis.
+# Largest ratio of the largest to the smallest peak of the runs at which the runs share a linear axis.
 LARGEST_RATIO = 30
-# A run does not influence the axis if its peak is beyond a gap of this ratio between the sorted peaks. A failed run
-# does not influence it if its peak exceeds the peaks of the other runs by the second ratio.
+# A run does not influence the axis if its peak is above a gap between two consecutive sorted peaks whose ratio exceeds
+# THROWN_RATIO. A failed run does not influence the axis if its peak exceeds FAILED_RATIO times the largest peak of the
+# runs that did not fail.
 THROWN_RATIO, FAILED_RATIO = 100, 5
 ROUNDING = (
     1e-9  # fraction of a value that an axis must span; a smaller span shows rounding errors only
@@ -33,7 +34,7 @@ SNAPSHOTS = (0.35, 0.5, 0.7, 0.95)  # opacity of the tool at four equally spaced
 PATH_MARKS = "circle: start; square: end; triangle: first touch"
 TOOL_OUTLINES = "outlines: the tool at four times"
 # The tool is drawn only in rows in which the component of its axis in the plane is at least this value. The axis is
-# then at most 30 degrees out of the plane.
+# then at most 32 degrees out of the plane.
 MIN_IN_PLANE = 0.85
 
 
@@ -96,7 +97,7 @@ def draw_over_time(ax, quantity, samples, looks):
     mark_thrown(ax, quantity, thrown)
     for (s, one, (time, low, high)), equal in zip(drawn, equal_curves([of for _, _, of in drawn])):
         line = {"color": one.colour, "ls": striped(one.line, *equal)}
-        # A solid thin line, because a peak may fall into a gap of the dashes.
+        # Also draws a solid thin line, because a peak may fall into a gap of the dashes.
         if one.dash and equal[1] == 1:
             ax.plot(*curve(time, low, high, SPANS), lw=0.4 * one.width, color=one.colour, alpha=0.7)
         if low is high:
@@ -137,9 +138,10 @@ def without_thrown(drawn):
 
 
 def largest_shown(peaks, failed):
-    """Returns the largest peak of a run that may determine the axis. It is below a gap of THROWN_RATIO if at least half
-    of the runs are below this gap. If a run failed, it is at most FAILED_RATIO times the largest peak of the other
-    runs. Returns infinity if all runs determine the axis."""
+    """Returns the limit of the peaks of the runs that determine the axis. If there is a gap of THROWN_RATIO between the
+    sorted peaks and at least half of the peaks are below the gap, the limit is the largest peak below the gap. If a run
+    failed, the limit is at most FAILED_RATIO times the largest peak of the runs that did not fail. Returns infinity if
+    neither condition holds."""
     found = sorted(peak for peak in peaks if peak > 0)
     largest = next(
         (
@@ -193,9 +195,9 @@ def share_an_axis(ax, heights):
 
 
 def cut_off_peaks(ax, quantity, drawn, is_fixed=False):
-    """Sets the axis to the range of settled contact if this range is far below the largest peak, and prints this peak
-    where it leaves the picture. Otherwise, and if `is_fixed` (curves that are not in `drawn` leave the axis), sets the
-    axis to the range of the curves in `drawn`."""
+    """If settled_range() returns a range, sets the axis to this range, and prints the largest peak where it leaves the
+    picture. Otherwise, if `is_fixed` is true because curves that are not in `drawn` leave the axis, sets the axis to
+    the range of the curves in `drawn`."""
     span = settled_range([(s.settled[quantity.file], low, high) for s, _, (_, low, high) in drawn])
     if span is None:
         if is_fixed:
@@ -259,8 +261,8 @@ def tip_of(samples, which=PATH_COLUMNS):
 
 
 def framed(samples):
-    """Returns the numbers of the rows that a picture of the scene must show: the first row and the rows in contact, or
-    all rows without contact."""
+    """Returns the numbers of the rows that a picture of the scene must show: the first row and the rows in contact. If
+    no row is in contact, returns the numbers of all rows."""
     touching = np.flatnonzero(samples.trajectory["colliding"] > 0)
     return (
         np.append(touching, 0) if touching.size else np.arange(len(samples.trajectory["colliding"]))

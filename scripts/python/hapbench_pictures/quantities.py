@@ -194,8 +194,9 @@ class Samples:
 
 def settled_range(curves):
     """Returns the range of settled contact with a margin, from the percentiles BULK. Returns None if all values must be
-    shown: there is no settled contact, no peak is above the range by CUT_OFF, or too many rows are outside of the
-    range. `curves`: (True for each settled row, lower bounds, upper bounds) of each run."""
+    shown: there is no settled contact, no peak exceeds CUT_OFF times the largest magnitude in the range, or more than
+    the fraction LARGEST_LEFT_OUT of the rows of a run is outside of the range. `curves`: (True for each settled row,
+    lower bounds, upper bounds) of each run."""
     ends = [
         (np.nanpercentile(low[settled], BULK[0]), np.nanpercentile(high[settled], BULK[1]))
         for settled, low, high in curves

@@ -189,8 +189,8 @@ def draw_bounds(ax, bounds, has_numbers, is_dark):
 
 
 def label_rows(ax, scene, metric, is_compact):
-    """Writes the rank and the name of each law at its row, and in red the number of its failed runs with their
-    outcome."""
+    """Writes the rank and the name of each law at its row. The label of a law with failed runs is red and contains the
+    number of failed runs. If `is_compact` is false, the label also contains their outcomes."""
     laws, ranks, labels = scene.sorted_laws(metric), scene.ranks(metric), []
     for law in laws:
         rank = ranks[law.label]

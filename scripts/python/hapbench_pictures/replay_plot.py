@@ -22,8 +22,8 @@ MODES = {  # columns, title and factor of the quantity that the loop sends to th
 
 
 def given_logs(words):
-    """Returns the files of the logs among the arguments, which are log files or folders of `run --replay`. Returns None
-    if no argument is one. Fails if only some arguments are logs, or for more than two logs."""
+    """Returns the log file of each argument, which is a log file or a folder of `hapbench run --replay`. Returns None
+    if no argument has a log. Fails if only some arguments have a log, or for more than two logs."""
     files = [log_of(Path(word)) for word in words]
     if not any(files):
         return None

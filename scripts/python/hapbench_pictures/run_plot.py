@@ -33,8 +33,8 @@ LONGEST_NAME = 90  # largest number of letters of a run's name in the title
 
 
 def draw_runs(runs, quantities, with_path, window, sheet=SHEET):
-    """Returns the figure of runs: a title with their names, with `with_path` a cross-section of each scene with the
-    paths, and the quantities over time."""
+    """Returns the figure of runs: a title with their names, and the quantities over time. If `with_path` is true, the
+    figure also contains a cross-section of each scene with the paths of the tips."""
     further = (*PATH_COLUMNS, *AXIS_COLUMNS) if with_path else ()
     samples = [Samples(run, quantities, further, window) for run in runs]
     shown = looks(runs, *named(runs))
@@ -167,8 +167,8 @@ def explain_scenes(figure, axes, texts, sheet, rows):
 
 
 def scene_groups(runs, samples):
-    """Returns the groups of runs that share a section, as lists of run numbers. Runs of one scene share a section
-    unless the gap between them is larger than their size."""
+    """Returns the groups of runs that share a section, as lists of run numbers. A run joins a group of runs of the same
+    scene if its bounding box is near the bounding box of the group, by are_near()."""
     groups = []
     for i, (run, of) in enumerate(zip(runs, samples)):
         box = box_of(of)
@@ -183,8 +183,8 @@ def scene_groups(runs, samples):
 
 
 def box_of(samples):
-    """Returns the corners of the bounding box of the tip's path. Rows in which the tool has been thrown away are
-    excluded."""
+    """Returns the corners of the bounding box of the tip's path in the rows framed(). The path of a tool that is thrown
+    away after a contact is thereby excluded."""
     tips = tip_of(samples)[framed(samples)]
     return np.array([tips.min(axis=0), tips.max(axis=0)])
 

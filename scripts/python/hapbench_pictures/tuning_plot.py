@@ -25,8 +25,8 @@ QUANTITIES = {
 
 
 class Trials:
-    """Trials of one law. `values`: the QUANTITIES of each trial. `feasible`, `chosen`: for each trial, True if it is
-    feasible, and True for the recommended trial."""
+    """Trials of one law. `values`: the QUANTITIES of each trial. `feasible`: for each trial, True if the trial is
+    feasible. `chosen`: for each trial, True if the trial is the recommended trial."""
 
     def __init__(self, law, trials):
         self.name = law["algorithm"]
@@ -48,9 +48,9 @@ class Trials:
 
 
 def draw_tune(files, sheet=SHEET):
-    """Draws stiffness against depth, stiffness against vibration, and depth against vibration with the Pareto front of
-    the feasible trials. Filled marks are feasible trials, hollow marks are other trials. A ring marks the recommended
-    trial of each law."""
+    """Draws three panels: depth over stiffness, vibration over stiffness, and vibration over depth. The third panel
+    also shows the Pareto front of the feasible trials. Filled marks are feasible trials, hollow marks are other trials.
+    A ring marks the recommended trial of each law."""
     trials, laws = files.records(TRIALS), files.records(LAWS)
     drawn = [Trials(law, trials) for law in laws]
     distinguish(of.name for of in drawn)
@@ -106,8 +106,8 @@ def draw_panel(ax, x, y, drawn, shown, bounds):
 
 
 def axis_of(title, values):
-    """Returns an Axis for these values. It is logarithmic unless a value, such as a vibration of 0, cannot be drawn on
-    a logarithmic axis."""
+    """Returns an Axis without values. The axis is logarithmic if spread_logarithmically(values) is true. A value that a
+    logarithmic axis cannot show, such as a vibration of 0, makes the axis linear."""
     return Axis(title, np.array([]), log=spread_logarithmically(values))
 
 

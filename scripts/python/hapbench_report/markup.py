@@ -37,7 +37,7 @@ def named(value):
     return re.sub(r"([_/])(?=\w)", r"\1<wbr>", text(value))
 
 
-# Matches a number's exponent, or the minus sign before a number at the beginning of a word.
+# EXPONENT matches the exponent of a number. MINUS matches the minus sign of a number at the beginning of a word.
 EXPONENT = re.compile(r"(?<=\d)e([+-]?)0*(\d+)\b")
 MINUS = re.compile(r"(?<![\w.)])-(?=\d)")
 SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
@@ -53,7 +53,8 @@ def typeset(value):
 
 
 def number(value, digits=4):
-    """Formats a number with `digits` significant digits, or as a dash if there is no number."""
+    """Formats a number with `digits` significant digits, an integer below 10 million with all digits, and a missing
+    number as a dash."""
     value = number_or_none(value)
     if value is None:
         return ABSENT

@@ -56,8 +56,8 @@ MIN_SETTLED_S = (
 def tool_profile(scenario, summary):
     """Returns the tool as a solid of revolution: pairs (s, r) [m] of the position s along the axis, relative to the tip
     centre, and the radius r there, from the far end to the tip. The profile of a cylinder follows from the scenario;
-    the profile of another tool is in the run's summary. For a mesh it is the silhouette. Returns None if there is
-    neither."""
+    the profile of another tool is in the run's summary. For a mesh it is the silhouette. Returns None if neither the
+    summary nor the scenario determines the profile."""
     outline = at(summary, "/tool/outline_m")
     if outline is not None:
         pairs = (
@@ -178,8 +178,8 @@ class Recording:
         )  # for every shown row, with their normals
 
     def rows_of(self, table, columns):
-        """Returns for each shown row the list of its rows in another table, in the order of the file. Returns None if
-        the table was not recorded."""
+        """Returns for each shown row the list of its rows in another table, in the order of the file. All lists are
+        empty if the table was not recorded."""
         steps = self.columns["step"][self.shown]
         rows = {step: [] for step in steps.tolist()}
         if table in self.run.tables:

@@ -1,5 +1,6 @@
-"""Interactive replay of recorded runs: its data and its markup. The replay shows at most as many rows and points as a
-browser can draw in a frame. Contacts have 16 bits, rows have single precision, and both are encoded as base64."""
+"""Interactive replay of recorded runs: its data and its markup. The replay shows at most as many recorded rows and
+surface points as a browser can draw in a frame. The numbers are encoded as base64: the numbers of contacts as 16-bit
+integers, the numbers of rows in single precision."""
 import json
 import subprocess
 import tempfile
@@ -34,7 +35,7 @@ MARGIN = 1.8
 SHELL_COLUMNS = ("x_m", "y_m", "z_m", *NORMAL_COLUMNS)
 # Largest number of drawn shell points near the contacts, and of all drawn shell points.
 NEAR, ALL = 5000, 8000
-# Factors of the replay's speed; equal to the player's menu.
+# Speeds of the replay relative to real time; the player's menu offers the same speeds.
 SPEEDS = (0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 10)
 WATCHED_S = 10.0  # the initial speed shows the longest recording in about this time [s]
 PATIENCE_S = 120
@@ -86,13 +87,13 @@ def scene(i, runs, labels):
     try:
         return about | packed_scene(recordings, shell, labels)
     except (ValueError, OverflowError) as error:
-        # Numbers that hapbench never writes, such as empty steps or normals far from unit length.
+        # Numbers that hapbench never writes, such as empty cells or normals far from unit length.
         raise InputError(f"{runs[0].folder}: not what hapbench records: {error}") from error
 
 
 def packed_scene(recordings, shell, labels):
-    """Returns the packed scene of these recordings. `shell`: points with their normals, which are all drawn. `labels`:
-    name of each recording."""
+    """Returns the packed scene of these recordings. `shell`: surface points with their normals; all of these points are
+    drawn. `labels`: name of each recording."""
     scale = float(np.abs(shell[:, :3]).max(initial=0.0)) / 32767 or 1.0
     scenario = recordings[0].run.scenario
     orientation = at(scenario, "/motion/orientation") or {}
@@ -180,8 +181,9 @@ def points_of(run, recordings):
 
 
 def touched_box(recordings):
-    """Returns the corners of the bounding box of the contacts and of the tips of rows in contact; if nothing touches,
-    of all tips."""
+    """Returns the corners of the bounding box of all contact points and of all tip positions in shown rows with
+    contact. If there are neither, returns the corners of the bounding box of all shown tip positions.
+    """
     positions = [contact[:3] for r in recordings for of_row in r.contacts for contact in of_row]
     positions += [tip for r in recordings for tip in r.tips(touching=True)]
     positions = positions or [tip for r in recordings for tip in r.tips(touching=False)]

@@ -34,7 +34,8 @@ class Run(results.Run):
         return number_or_none(self.metrics.get(key))
 
     def tolerance(self, section, key):
-        """Returns the largest error of a metric, in the unit of the metric. Returns None if the error is unknown."""
+        """Returns by how much a metric may be wrong at most, in the unit of the metric. Returns None if this is not
+        known."""
         return number_or_none(
             self.summary.get("tolerances", {}).get(
                 key if section == "metrics" else f"{section}.{key}"
@@ -85,7 +86,7 @@ def provenance_of(runs):
     """Returns (provenance, number of runs) for each distinct combination of build and machine."""
     found = {}
     for run in runs:
-        # The hash of the scenario and the plugin do not belong to the build.
+        # The plugin and the hash of the scenario do not belong to the build.
         build = {
             k: v
             for k, v in (run.summary.get("provenance") or {}).items()

@@ -35,8 +35,8 @@ double leapfrog_margin(const SpringDamper& s) {
 ///
 /// Stability on one spring-damper, with k = K dt^2 / M, b = B dt / M and c = 1 - b/2: b < 4 and k (1 + c) < 4 (1 +
 /// c^2). For B = 0 the condition is k < 4, as for leapfrog. For K = 0 the condition is b < 4, twice the limit of
-/// leapfrog. Symplectic on undamped springs: the energy oscillates about its value by up to the fraction k/4 and does
-/// not drift. Needs two forces in each step, because the next step needs the force at the final velocity.
+/// leapfrog. Symplectic on undamped springs: the energy oscillates by up to the fraction k/4 and does not drift.
+/// Needs two forces in each step, because the next step needs the force at the final velocity.
 void velocity_verlet(ToolState& tool, const Vec3& force, double mass, double dt, ForceField& field, double) noexcept {
   const Vec3 half = tool.velocity + force / mass * (0.5 * dt);
   tool.pose.position += half * dt;

@@ -115,7 +115,7 @@ void print_integrators(const AlgorithmEntry& algorithm) {
   }
 }
 
-/// Prints hashes of all results of a mesh tool, among points in and around a cup.
+/// Prints a hash of all results of a mesh tool in the shape of a cup, with points in and around the cup.
 void print_mesh_tool() {
   const MeshTool tool(grid_of(cup(20), 0.1));
   Random random(4);
@@ -143,8 +143,8 @@ void print_mesh_tool() {
   print("mesh tool", hash.value());
 }
 
-/// Prints hashes for a kind of tool, with points inside, on and around it: search, depths, constraints and support
-/// points.
+/// Prints hashes of the results of a kind of tool: search, depths, constraints and support points. The points lie
+/// inside, on and around the tool.
 void print_tools(const ToolKind& kind) {
   Random random(4);
   Hash hash;

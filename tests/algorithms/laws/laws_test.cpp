@@ -249,8 +249,8 @@ TEST(StaticCoupling, BalancesACopyBetweenTheCouplingAndTheContactsItIsStillIn) {
   });
 }
 
-/// Returns the rounding error of x relative to the sum of depths: sums of n <= 300 terms, amplified by the condition
-/// number of eps I + S_sum, at most 1 + n / eps, and by the inverse, at most 1 / eps.
+/// Returns the rounding error of S, and of the force relative to K times the sum of depths: sums of n <= 300 terms,
+/// amplified by the condition number of eps I + S_sum, at most 1 + n / eps, and by the inverse, at most 1 / eps.
 double rounding_of(const test::Dense& dense, double regularisation) {
   const double n = static_cast<double>(dense.n());
   return 4 * n * kEps * (1 + n / regularisation) * (1 + 1 / regularisation);

@@ -20,10 +20,10 @@
 namespace hapbench::shaping_test {
 namespace {
 
-// Without iterations, 20 roundings of a tensor with a norm below n = 100 give 2e-13, in ratios of at least 1. With
-// iterations, the norm of the tensor is about 1, and a ratio has an error of some 1e-15. An update of the weights does
-// not amplify relative errors: in logarithms it is I minus a matrix with eigenvalues in [0, 1]. After 20 updates, the
-// errors have at most added up.
+// Without iterations, 20 roundings of a tensor with a norm below n = 100 give an error of 2e-13 in the ratios, which
+// are at least 1. With iterations, the norm of the tensor is about 1, and a ratio has an error of some 1e-15. An update
+// of the weights does not amplify relative errors: in logarithms it is I minus a matrix with eigenvalues in [0, 1].
+// After 20 updates, the errors have at most added up.
 constexpr double kTolerance = 1e-12;
 
 ContactBuffer random_contacts(const test::GradientDistribution& family, Random& random) {
@@ -98,13 +98,13 @@ TEST_P(NormalProjectionLaw, IsStiffnessShapingOnItsDepthModelWithTheSameIteratio
   }
 }
 
-// Tests exact_shaping by its optimality conditions, which have a unique solution, and merged_shaping.
+// Tests merged_shaping, and exact_shaping by its optimality condition, which has a unique solution.
 
 constexpr std::size_t kSetsOfAFamily = 25000;
 constexpr std::size_t kLargestSet = 1000;
 
-// A violation r of the condition changes tr S - |S|^2 by at most r tr S, where tr S <= 3/2 + sqrt(3)/2 < 2.4. It
-// changes the bound on lambda_max that follows from the condition by less.
+// A violation r of the optimality condition changes tr S - |S|^2 by at most r tr S, where tr S <= 3/2 + sqrt(3)/2 <
+// 2.4. The violation changes the bound on lambda_max that follows from the condition by less.
 constexpr double kTraceRounding = 2.4 * test::kShapingRounding;
 
 /// Checks all properties of the optimum, with the tolerance of rounding in double precision.
@@ -149,7 +149,7 @@ const std::pair<const char*, std::vector<std::uint64_t>> kHardSets[] = {
     // stops at a distance of 1e-9 from the optimum.
     {"nearly_parallel", {10976, 534807, 863432}},
     {"clusters", {2020649}},
-    // For these sets, the rounding of a_i . w is small because |w| is small. A tolerance for |w| = 1/eps ignores
+    // For these sets, the rounding of a_i . w is small because |w| is small. A tolerance chosen for |w| = 1/eps ignores
     // gradients and stops at a distance of 0.1 from the optimum.
     {"mixture", {1943, 3501, 90246, 118655, 184124, 189569}},
     // For these sets, contacts become inactive one by one.
@@ -182,7 +182,8 @@ TEST(ExactShaping, AZeroGradientGetsNoWeight) {
 TEST(ExactShaping, ANonFiniteGradientDoesNotHang) {
   for (const double bad : {std::nan(""), std::numeric_limits<double>::infinity()}) {
     ContactBuffer contacts = test::contacts_of({{1, 0, 0}, {bad, 0, 0}, {0, 1, 0}});
-    // The result has no meaning, and the next check of bounds ends the run. Only the number of steps must be bounded.
+    // The result has no meaning, and in a run the check of the bounds ends the run after this step. Only the number of
+    // Newton steps must be bounded.
     EXPECT_LE(solve_exact_shaping(contacts), 1000);
   }
 }
@@ -216,7 +217,7 @@ TEST(ExactShaping, ForceIsThatOfItsWeightsAndNewtonStepsAreCounted) {
 constexpr double kK = 20'000.0;
 constexpr double kEps = 2.3e-16;
 
-/// Returns the second result of a law, which must not depend on the first call.
+/// Returns the result of merged_shaping at its second call, which must not depend on the first call.
 LawForce evaluate(ContactBuffer& contacts) {
   RenderingConfig config;
   config.stiffness = kK;
@@ -253,7 +254,8 @@ TEST(MergedShaping, IsOptimalForTheTensorsOfItsGroups) {
         members += 1.0;
       }
       // Contacts with equal weight > 0 belong to one group, or to groups that happen to have the same weight. In both
-      // cases the mean of the ratios of these contacts is 1 up to epsilon C <= 3e-6.
+      // cases the mean of the ratios of these contacts is 1 up to epsilon C <= 3e-6, where C is the sum of the weights
+      // of a group.
       ASSERT_TRUE(c[i] == 0.0 || std::abs(ratios / members - 1.0) <= 3.1e-6) << family << ' ' << ratios / members;
     }
     ASSERT_TRUE(same_weight) << family;

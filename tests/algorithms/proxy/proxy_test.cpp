@@ -17,7 +17,7 @@
 namespace hapbench::proxy_test {
 namespace {
 
-/// Sum of lambda_i u_i and its rounding error.
+/// Sum of lambda_i u_i, and sum of the lambda_i, to which the rounding error of the first sum is proportional.
 struct Held {
   Vec3 sum = Vec3::Zero();
   double lambdas = 0.0;
@@ -35,8 +35,8 @@ double violation(const ContactBuffer& contacts, std::size_t i, const Vec3& x) {
   return contacts.depth[i] + contacts.gradient(i).dot(x);
 }
 
-/// Random contacts and a wanted move. At least one move satisfies all contacts; it satisfies about 30 % of them
-/// exactly.
+/// Random contacts and a wanted move. At least one move satisfies all contacts. About 30 % of the contacts hold with
+/// equality for this move.
 struct Problem {
   ContactBuffer contacts;
   Vec3 wanted;
@@ -113,8 +113,8 @@ TEST(NearestAllowed, SharesWhatOppositeWallsLackInEqualSquares) {
     EXPECT_NEAR(allowed.move.x(), x, 1e-4 * 1e-16 * (N + M) / kCompromiseEpsilon);
     EXPECT_NEAR(allowed.move.y(), wanted.y(), 1e-12);
     EXPECT_NEAR(allowed.move.z(), wanted.z(), 1e-12);
-    // Every wall has its violation, and the remainder is divided among all N + M contacts: the identity holds up to
-    // epsilon.
+    // The weight of each contact is its violation. `share` divides the remainder of t - x among all N + M contacts, so
+    // that the sum below is t - x up to epsilon.
     Vec3 sum = Vec3::Zero();
     for (std::size_t i = 0; i < contacts.size(); ++i) {
       EXPECT_NEAR(contacts.weight[i], i < n ? a + x : b - x, 1e-10);
@@ -154,7 +154,7 @@ TEST(NearestAllowed, FindsTheLeastSquaresOfContradictingContacts) {
 }
 
 /// Checks that the multipliers of a compromise are the derivatives of the stored energy 1/2 |x - t|^2 + 1/2 sum w^2
-/// with respect to the depths, and that t - x is its derivative with respect to t.
+/// with respect to the depths. Also checks that t - x is the derivative of this energy with respect to t.
 TEST(NearestAllowed, StoresInACompromiseWhatItsMultipliersTakeIn) {
   const std::vector<Vec3> gradients = {Vec3::UnitX(),  Vec3(0.6, 0.8, 0.0),  Vec3(0.6, -0.8, 0.0),
                                        -Vec3::UnitX(), Vec3(-0.8, 0.0, 0.6), Vec3(0.0, 0.6, -0.8)};
@@ -280,8 +280,8 @@ struct Rig {
   }
 };
 
-/// Returns a tilted flat tool whose lowest point, on the edge of its tip, is `depth` below the plane z = 0, at a random
-/// position between the points of the plane.
+/// Returns a tilted flat tool that is pressed into a plane of points. The lowest point of the tool, on the edge of its
+/// tip, is `depth` below the plane z = 0. The position of the tool relative to the points of the plane is random.
 test::Setting tilted_on_plane(double tilt, double depth, Random& random) {
   test::Setting setting;
   setting.points = surface_points(Plane{0.004, 0.0001});
@@ -325,7 +325,8 @@ TEST(ProxyRendering, SlidesOverAFlatWithoutBumpingIntoThePointsAhead) {
     for (int step = 0; step <= 200; ++step) {
       const Vec3 p = 5e-6 * step * direction + Vec3(0, 0, step == 0 ? 1e-4 : -5e-5);
       const Vec3 force = probe.force_at({p, -Vec3::UnitZ()}).spring;
-      // The planes of the patches are tilted by up to 0.1 rad and extend 0.75 spacings from their points.
+      // The flat patches of surface around the points are tilted by up to 0.1 rad and extend 0.75 spacings from their
+      // points.
       if (step > 0) {
         EXPECT_LE((force - Vec3(0, 0, kK * 5e-5)).norm(), 0.2 * kK * 5e-5) << "step " << step;
       }
@@ -379,8 +380,8 @@ TEST(ProxyRendering, HoldsAToolThatIsPulledThroughAPlane) {
 constexpr double kHalfWidth = 0.0005;
 /// Largest motion [m] in one step of a proxy that starts inside: 40 half widths per second.
 const double kRecovery = 40.0 * kHalfWidth * Scene{}.dt;
-/// Factor by which a move may exceed proportionality to the depths. Proportionality is only approximate, because points
-/// that the proxy has not entered keep their positions.
+/// Factor by which a move of the proxy may exceed kRecovery. The limit is exact only for moves in proportion to the
+/// depths; points that the proxy has not entered make the proportion approximate.
 constexpr double kNearly = 1.1;
 
 TEST(ProxyRendering, LeavesAPlaneItStartsInSlowlyAndThenForGood) {
@@ -434,9 +435,9 @@ TEST(ProxyRendering, DampsTheTurnOfTheEdgeThatTouches) {
   EXPECT_LE((rig.force.rendered - rig.force.spring - Vec3(0, 0, -B * along)).norm(), 1e-12);
 }
 
-/// Checks two planes, of which the tool touches the second plane later. In each step, the damping along the normal of
-/// the second plane increases by a fraction of the missing damping, even if an integrator evaluates several forces in
-/// the step.
+/// Checks two planes. The tool touches the second plane later than the first plane. In each step, the damping along the
+/// normal of the second plane increases by a fraction of the missing damping, even if an integrator evaluates several
+/// forces in the step.
 TEST(ProxyRendering, DampsANewDirectionWithItsTimeConstant) {
   const SpringSet planes{{Vec3::UnitX(), Vec3::UnitZ()}, false};
   RenderingConfig config = proxy_config();

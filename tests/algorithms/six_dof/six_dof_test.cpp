@@ -17,9 +17,10 @@
 
 // Tests predictions about the force of a 6-DOF device, which is the reference for the force of a 3-DOF device, each
 // with its closed form. Symbols as in algorithms/six_dof: F is the force of the 6-DOF device and f the force of the
-// 3-DOF device. K_t and K_r are the translational and rotational stiffness of the coupling, K_h and K_phi those of the
-// hand, K' and K_r' the stiffness of coupling and hand in series. c is the distance from the force point to the grip, l
-// the distance from the force point to the contact, both positive towards the tip.
+// 3-DOF device. K_t and K_r are the translational and rotational stiffness of the coupling, and K_h and K_phi are the
+// translational and rotational stiffness of the hand. K' and K_r' are the translational and rotational stiffness of
+// coupling and hand in series. c is the distance from the force point to the grip, l the distance from the force point
+// to the contact, both positive towards the tip.
 namespace hapbench::six_dof {
 namespace {
 
@@ -51,8 +52,9 @@ Intent intent_of(const HandAndCoupling& springs, const Vec3& tip, double tilt, d
 }
 
 /// A contact that touches the side of an upright drill from -x, at the distance `lever` from the force point towards
-/// the tip, and the displacement by which both devices press against it. The contact consists of two points at +-45
-/// degrees. On a single point, the drill would slide off sideways when the force exceeds K r = 1 N.
+/// the tip. The 6-DOF and the 3-DOF device press against the contact by the same displacement (pressed()). The contact
+/// consists of two points at +-45 degrees. On a single point, the drill of the 6-DOF device would slide off sideways
+/// when the force exceeds K' r = 0.2 N.
 struct OneContact {
   explicit OneContact(const HandAndCoupling& s, double lever)
       : springs(s), tool(kRadius, kLength, Tip::flat), shell(notch(s.force_point - lever), 0.0) {}
@@ -345,8 +347,8 @@ TEST(TightPeg, HasNoForceButATorqueAndPenaltyLawsRenderAGhost) {
     EXPECT_NEAR(torque.norm(), rotation * alpha, 0.02 * rotation * alpha + 1e-6);
     if (pivot == a) {
       EXPECT_LE(force.norm(), free) << "F = 0 while T does not vanish";
-      // The law f = 0 has the smaller error |F| = 0, because the shaping law renders a force that the 6-DOF device does
-      // not have.
+      // The shaping law renders a force that the 6-DOF device does not have. A law that renders f = 0 would have a
+      // smaller error, |F| = 0.
       EXPECT_GT(shaping.handle().force.norm(), 100 * free);
     } else {
       EXPECT_NEAR(std::hypot(force.x(), force.y()), series * a * std::sin(alpha), free);
@@ -378,9 +380,10 @@ TEST(OneContact, CreatesEnergyUnderEveryStiffness) {
       last_force = handle.force;
       last_position = handle.position;
     }
-    // The rotation increases the depth of 1 mm by l sin(0.1), and the release returns this depth over 1 mm. The closed
-    // form uses lever and normal of the upright drill. Its errors are: 1 - cos 0.1 = 0.5 %, sin 0.1 of the radius over
-    // l = 0.2 %, and 1 % for the work along the normal, which rotates by 0.1 rad.
+    // At the depth of 1 mm, the rotation adds l sin(0.1) to the depth. The release then moves back over 1 mm with a
+    // force that is larger by the stiffness times l sin(0.1). The closed form uses lever and normal of the upright
+    // drill. Its errors are: 1 - cos 0.1 = 0.5 %, sin 0.1 of the radius over l = 0.2 %, and 1 % for the work along the
+    // normal, which rotates by 0.1 rad.
     const double stiffness = 1.0 / (1.0 / 2000.0 + l * l / k);
     EXPECT_NEAR(1e3 * work, 1e3 * stiffness * press * l * std::sin(angle), 0.03 * millijoules);
     EXPECT_NEAR(1e3 * work, millijoules, 0.05 * millijoules) << "as published, with two digits";
@@ -511,8 +514,8 @@ Vec3 pressed_against(const std::vector<SurfacePoint>& points) {
 }
 
 // Checks that the drill leaves a saddle of the energy. Against one point, the drill slides off sideways when the force
-// exceeds K' r, and the pose straight above the point is then a saddle. The drill moves around the point to its other
-// side, where the point no longer holds the press.
+// exceeds K' r, and the pose without a sideways displacement is then a saddle. The drill moves around the point to the
+// other side of the point, where the point no longer blocks the drill.
 TEST(SixDofDevice, LeavesASaddle) {
   const Vec3 position = pressed_against({{{-kRadius, 0.0, 0.005}, {1.0, 0.0, 0.0}}});
   EXPECT_LE((position - Vec3(-2 * kRadius, 0.0, 0.005)).norm(), 1e-9);

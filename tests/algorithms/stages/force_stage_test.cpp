@@ -177,8 +177,8 @@ TEST(StagedRendering, AnIdleStageMovesNoBitUnderAnyIntegrator) {
   }
 }
 
-/// Checks the work along the path of the run, computed with the mean velocity of two steps, which is exact under
-/// leapfrog.
+/// Checks the energies that the stage counts against the work of the forces along the path of the run. The displacement
+/// of a step is computed with the mean velocity of two steps, which is exact under leapfrog.
 TEST(StagedRendering, CountsWhatTheStageTakesAndWhatItAbsorbs) {
   std::vector<double> energies;
   const auto weaker = [&energies](const StageStep& s) -> Vec3 {
@@ -373,7 +373,8 @@ TEST(HuntCrossley, BouncesAsItsClosedFormSays) {
       v += dt / 6.0 * (a1 + 2.0 * a2 + 2.0 * a3 + a4);
     }
     const double u1 = -v, left = chi * u0 - std::log1p(chi * u0), right = -chi * u1 - std::log1p(-chi * u1);
-    // The last step ends outside by less than dt u1, where the force K dt u1 is still small: an error of 1e-6 of u1.
+    // The last step crosses the surface at a depth below dt u1, where the force is below K dt u1. The error of this
+    // step is 1e-6 of u1.
     EXPECT_NEAR(left, right, 1e-5 * left) << chi;
     EXPECT_LT(u1, u0);
   }

@@ -15,7 +15,8 @@ namespace {
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
-/// Keeps the observed energy of every step, and the largest energy that the controller could return in one step.
+/// Keeps the smallest observed energy [J] and the largest rendered force [N] of a run. `turnover` is the largest sum of
+/// observed and kinetic energy in a step [J], which is the scale of rounding errors.
 class Watch final : public Observer {
  public:
   Watch(double dt, double mass) : observed_(dt), dt_(dt), mass_(mass) {}
@@ -199,7 +200,7 @@ TEST(PassivityController, WithNothingToGiveItStopsTheToolAtMost) {
   const Vec3 before = simulation.tool().velocity;
   simulation.step();
   const Vec3 after = simulation.tool().velocity;
-  // The force may not return energy along the velocity, so the speed is unchanged: s^2 |u|^2 = |w|^2 up to a few
+  // The controller may not return any energy. It therefore scales the new velocity to the previous speed, up to a few
   // roundings.
   EXPECT_NEAR(after.norm(), before.norm(), 10 * kEpsilon * before.norm());
   EXPECT_GT(after.dot(before), 0.0);

@@ -47,16 +47,16 @@ Panel integrators(const Scenario& springs);
 /// Returns the panel of all algorithms, some of them also with angular damping or with the passivity controller.
 /// Errors: the deviation from the ideal trajectory of a drill in a hole.
 Panel algorithms(const Scenario& drill);
-/// Returns the panel of the spacing of the block's points, with both densities. Errors: the deviation from the ideal
-/// trajectory.
+/// Returns the panel of the spacing of the block's points, for the densities `signed_distance` and `binary` of the
+/// block. Errors: the deviation from the ideal trajectory.
 Panel spacing(const Scenario& drill);
 /// Returns the panel of the number of shaping iterations. Errors: the deviation from the exact optimum on the contacts
 /// of a drill in a hole.
 Panel shaping(const Scenario& drill);
 /// Returns the panel of the thresholds of the reduction. Errors: the deviation from exact shaping of all contacts.
 Panel reduction(const Scenario& drill);
-/// Returns the panel of laws on reduced, merged and all contacts (from dozens to hundreds). Errors: the deviation from
-/// exact shaping of all contacts.
+/// Returns the panel of laws on reduced, merged and all contacts, for spacings with dozens to hundreds of contacts.
+/// Errors: the deviation from exact shaping of all contacts.
 Panel merging(const Scenario& drill);
 /// Returns the panel of all algorithms with contacts that are found in every n-th step, and held or extrapolated
 /// linearly between these steps. Errors: the deviation from a run whose contacts are found in every step.

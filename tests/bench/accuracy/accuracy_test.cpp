@@ -45,7 +45,8 @@ TEST(Integrators, ConvergeWithTheirOrdersToTheExactSolution) {
       error = errors["error_rms_m"];
     }
     // The deviation from the formal order decreases with the step: 0.2 to 0.7 at 1 ms, so less than 0.7 / 500 at 2 us.
-    // For rk4 it decreases with the fourth power, but rounding is a hundredth at this step.
+    // For rk4 the deviation decreases with the fourth power of the step, but at the last step used here the rounding
+    // error is a hundredth of the error.
     EXPECT_NEAR(order, integrator->damped_order, 0.01) << integrator->info.name;
   }
 }

@@ -134,8 +134,9 @@ constexpr const char* kAngularlyDamped[] = {"original_averaging", "shaped_stiffn
 constexpr const char* kCreateEnergy[] = {"original_averaging", "summation", "tandpasta", "normal_projection",
                                          "mcneely"};
 
-/// Returns the deviation from the ideal trajectory over the steps with a gentle hand force, if there are such steps,
-/// and the largest change of the force in a step.
+/// Returns the deviation from the ideal trajectory and the largest change of the force in a step. The deviation is
+/// computed over the steps with a gentle hand force, or over the steps with a firm hand force if no step has a gentle
+/// hand force.
 Errors off_the_ideal(const Scenario& scenario, std::shared_ptr<const PointShell> shell) {
   IdealTrajectoryObserver ideal(std::get<BlockEnvironment>(scenario.environment).block, make_cylinder(scenario.tool));
   MetricsObserver motion(scenario.time.step);

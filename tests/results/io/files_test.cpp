@@ -65,8 +65,7 @@ TEST(AtomicFile, WhereNoFileCanBeThrowsAndLeavesNoTemporary) {
 }
 
 TEST(AtomicFile, ThatRunsOutOfSpaceThrowsAtCommitAndLeavesTheOldTarget) {
-  for (const std::size_t bytes : {1'000'000u, 20u}) {  // many times the buffer size, and a final part that only fills
-                                                       // the buffer
+  for (const std::size_t bytes : {1'000'000u, 20u}) {  // many times the buffer size, and less than the buffer size
     const TemporaryDirectory dir;
     write_plainly(dir / "a.csv", "old");
     AtomicFile file(dir / "a.csv");

@@ -54,7 +54,8 @@ TriangleSoup box(const Vec3& low, const Vec3& high) {
   return soup;
 }
 
-/// Returns points on the faces of a box across z and x near y = 0, with a spacing of a fifth of the tool's radius.
+/// Returns points near y = 0 on the faces of a box that are perpendicular to x or z, with a spacing of a fifth of the
+/// tool's radius.
 std::vector<Vec3> points_of(const Vec3& low, const Vec3& high) {
   std::vector<Vec3> points;
   const double spacing = 0.2 * kRadius;
@@ -142,7 +143,7 @@ TEST_P(ThroughAPlate, OnEveryPath) {
 INSTANTIATE_TEST_SUITE_P(Tools, ThroughAPlate, testing::Range<std::size_t>(0, 6));
 
 /// Checks a wall that stands on the ground. The tool enters by one face and leaves by the opposite face, but at no time
-/// does its core reach from face to face.
+/// does its core (the part of the tool's axis within the body) reach from face to face.
 TEST(ThroughAWall, FromOneFaceToTheOther) {
   for (const double share : {0.05, 0.3, 1.0, 1.8}) {
     const Vec3 low(0.0, -0.003, -0.02), high(share * kRadius, 0.003, 0.0);

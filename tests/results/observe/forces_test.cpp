@@ -103,7 +103,7 @@ TEST(SettlingRule, RoundsTimesToRows) {
 }
 
 TEST(ContactForces, HaveNoValueBelowAPeriodOfTheHighPass) {
-  // Three steps are 0.03 s, four steps 0.04 s.
+  // The period of the high-pass at 30 Hz is 0.033 s. Three settled steps are 0.03 s, four are 0.04 s.
   std::vector<Row> rows = {{9}, {9}, {9}, {1}, {1}, {1}};
   EXPECT_EQ(settled_metrics(forces_of(rows, kThreeRows)), 0);
   rows.push_back({1});

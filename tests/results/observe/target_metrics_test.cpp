@@ -62,7 +62,7 @@ double depth_at(const ToolPose& pose, double angle, double height) {
 /// height by ternary search.
 double deepest_at(const ToolPose& pose, double angle) {
   constexpr int kHeights = 400;
-  constexpr double kSpacing = 0.006 / kHeights;  // distance at which the rest of the tool is in free air [m]
+  constexpr double kSpacing = 0.006 / kHeights;  // [m]; from 6 mm above the tip on, the tool is in free air
   double best = 0.0;
   for (int h = 0; h < kHeights; ++h) {
     if (depth_at(pose, angle, h * kSpacing) > depth_at(pose, angle, best)) best = h * kSpacing;

@@ -137,7 +137,7 @@ TEST(Summary, WritesADivergenceThatIsNotFiniteAsNullAndText) {
   EXPECT_EQ(summary_json(run)["divergence"]["magnitude_text"], "nan");
 }
 
-/// Returns the suffix of a name that ends with its unit, as units are written in names.
+/// Returns the suffix that a name with this unit must have, such as "_m2_per_s2" for "m2/s2".
 std::string unit_in_name(std::string unit) {
   if (unit == "1" || unit.empty()) return "";
   if (unit == "m2/s2") return "_m2_per_s2";

@@ -23,7 +23,8 @@ TEST(ForEachJob, BeginsEachOnceInOrderAndNoMoreThanItsThreads) {
 }
 
 TEST(ForEachJob, ThrowsWhatTheLowestFailingJobThrew) {
-  // All jobs fail. The reported error is that of the job with the lowest number, which begins before any other job.
+  // All jobs fail. The reported error is the error of the job with the lowest number, which begins before any other
+  // job.
   for (const unsigned threads : {1u, 4u})
     EXPECT_THROW(for_each_job(50, {threads, ""},
                               [](std::size_t i) {

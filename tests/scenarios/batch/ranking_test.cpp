@@ -12,7 +12,7 @@ namespace {
 using Values = std::vector<std::optional<double>>;
 
 /// Ranks one scene and one metric, with a value for each algorithm and seed. A negative value stands for a run that
-/// diverged. The error of each number is `error`, unless `estimated` returns one.
+/// diverged. The error of each number is `error`, unless `estimated` returns an error for the number.
 Ranking rank_comparison(const Values& values, Better better = Better::less, std::size_t seeds = 1, double error = 0.0,
                         const EstimatedError& estimated = {}) {
   Ranking ranking{{"scene"}, {}, {"force_max_N"}, {better}, seeds, {}, {}};
@@ -110,7 +110,8 @@ TEST(Ranking, RanksByMeansThenThoseWithoutOneThenByFailedSeeds) {
   EXPECT_EQ(without_common.at(0, 2, 0).mean, 5.0);
 }
 
-/// Checks ranks that errors make indistinct. The page of tests/scripts/ranking_test.py has the same ranks.
+/// Checks ranks of laws whose values cannot be told apart, because the errors are too large. The page of
+/// tests/scripts/ranking_test.py has the same ranks.
 TEST(Ranking, LeavesOutWhatTheErrorsDoNotAllow) {
   const auto with_error = [](const Values& values, double error) {
     return ranks(rank_comparison(values, Better::less, 1, error));

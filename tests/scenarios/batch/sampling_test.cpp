@@ -37,8 +37,8 @@ TEST(Sampling, HasItsPointsInTheUnitCubeAndMeansWhatItsSeedSays) {
   }
 }
 
-/// Returns a text of the axes of a file of --points with this content, or the message of the error from the file's name
-/// on.
+/// Reads a file of --points with this content. Returns the axes as text, or the part of the error message that begins
+/// with the file's name.
 std::string points_of(const std::string& text) {
   const test::TemporaryDirectory directory;
   test::write_plainly(directory / "p.csv", text);

@@ -396,8 +396,9 @@ TEST_F(MeshFile, KeepsOneOfSeveralEqualFaces) {
             ": faces left out, which repeat an earlier face with opposite winding: 1");
 }
 
-/// Checks both sides of a plane quadrilateral, which the readers divide along different diagonals. Its corners are
-/// rounded to six digits, so that the sides enclose a small volume. Each side has its own vertices.
+/// Checks a double-sided sheet: the two sides of a plane quadrilateral. The readers divide the two sides along
+/// different diagonals. The corners are rounded to six digits, so that the sides enclose a small volume. Each side has
+/// its own vertices.
 TEST_F(MeshFile, NamesASheetWhoseSidesAreDividedDifferently) {
   const std::string corners = "0.123456 0 0\n1.123456 0.3 0.7\n0.423456 1.3 0.912346\n-0.576544 1 0.212346\n";
   std::string vertices = "v " + corners;

@@ -52,8 +52,8 @@ TEST(ShellFile, AsPlyReadsBackToSinglePrecision) {
   const std::vector<SurfacePoint> points = random_points(1000);
   const auto again = parse_point_shell(format_point_shell(points, "s.ply"), "s.ply");
   ASSERT_EQ(again.size(), points.size());
-  // Half a unit in the last of 24 bits, for positions up to 0.1 m and normals up to 1. Normalisation also changes
-  // normals.
+  // The tolerance is half a unit in the last of 24 bits, for positions up to 0.1 m and normals up to 1. It is larger
+  // for normals, because normalisation also changes them.
   const double position_tolerance = 0.1 * 0x1p-24, normal_tolerance = 4 * 0x1p-24;
   for (std::size_t i = 0; i < points.size(); ++i) {
     EXPECT_LE((again[i].position - points[i].position).cwiseAbs().maxCoeff(), position_tolerance) << i;

@@ -24,7 +24,7 @@ TEST(ReadTextFile, ReadsUpToItsLimitAndNoFurther) {
   const auto refusal = test::input_error_of([&] { read_text_file(directory / "file", contents.size() - 1); });
   ASSERT_TRUE(refusal);
   EXPECT_NE(refusal->problem().find("is larger than"), std::string::npos);
-  // A device file without an end is also read only up to the limit.
+  // An endless file, such as /dev/zero, is also read only up to the limit.
   EXPECT_TRUE(test::input_error_of([] { read_text_file("/dev/zero", 1 << 20); }));
 }
 

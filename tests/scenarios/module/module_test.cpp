@@ -202,7 +202,8 @@ TEST_F(AModuleLaw, OfAForceAnswersThatForce) {
   EXPECT_EQ(force.spring, Vec3(0, -1, 0));
   EXPECT_EQ(force.S, Mat3(0.5 * Mat3::Identity()));
   EXPECT_EQ(contacts.weight[1], 0.5) << "it wrote none";
-  // The force is that of one spring of stiffness K at the mean of the contacts, which lie at the origin.
+  // The law renders the force of one spring of stiffness K at the mean position of the contacts, which all lie at the
+  // origin.
   const SpringState state = law.spring_state(contacts, force.spring, kTip);
   EXPECT_DOUBLE_EQ(state.energy, 1.0 / (2.0 * kK));
   EXPECT_TRUE(state.moment.isApprox((-kTip).cross(force.spring)));

@@ -171,7 +171,8 @@ TEST_F(TuneCommand, KeepsLowVibrationBesideABound) {
   EXPECT_GE(any["algorithms"][0]["stiffness_N_per_m"], bound["algorithms"][0]["stiffness_N_per_m"]);
 }
 
-/// Checks that without limits, the run of the recommended setting has low vibration by the rules of the diagnosis.
+/// Checks that without bounds of the user, the run of the recommended setting has low vibration by the rules of the
+/// diagnosis.
 TEST_F(TuneCommand, RecommendsAQuietRunInTheSameBytesHoweverManyJobs) {
   tune({"--jobs", "1", "--quiet"}, "a");
   tune({"--jobs", "3", "--quiet"}, "b");
@@ -201,7 +202,8 @@ TEST_F(ConvergeCommand, WritesTheSameBytesHoweverManyJobs) {
     EXPECT_EQ(read_file(directory_ / "one" / name), read_file(directory_ / "three" / name)) << name;
 }
 
-/// Checks the printed level. The error of an extreme includes its spread over the choices of the first counted step.
+/// Checks which time step converge prints as the coarsest with a sufficiently small error. The error of a largest value
+/// includes its spread over the choices of the first counted step (Metric::sampling_spread).
 TEST_F(ConvergeCommand, NamesTheCoarsestLevelThatIsEnough) {
   for (const auto& [to, expected] :
        {std::pair{"0.03", "\nerror below 3 %: time.step_s = 0.00025 ("},

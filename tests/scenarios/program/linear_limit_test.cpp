@@ -1,5 +1,6 @@
-// `run`, `limit` and `tune` must compute the same linear limit of K, also if the slope of the contact is not K times
-// the stiffness ratio: for laws without weights, and with a hand that is sampled with the device.
+// `run`, `limit` and `tune` must compute the same linear limit of K, also if the slope of the contact force over the
+// displacement is not K times the stiffness ratio: for laws without weights, and with a hand that is sampled with the
+// device.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -165,8 +165,8 @@ constexpr double kMaxSeconds = 10.0;
 #else
 constexpr double kMaxSeconds = 100.0;
 #endif
-/// Maximum address space of the program [bytes]. The largest file that it reads has 64 MiB, and 16 bytes for each value
-/// of this file are a gigabyte.
+/// Maximum address space of the program [bytes]. The largest file that the program reads has 64 MiB. Such a file has at
+/// most 64 Mi values, and 16 bytes for each value are a gigabyte.
 constexpr std::size_t kMaxMemory = HAPBENCH_TEST_SANITIZED ? 0 : std::size_t{3} << 30;
 
 struct BadInput {

@@ -48,7 +48,7 @@ std::vector<std::string> words_of(const std::string& line) {
   return words;
 }
 
-/// Returns each line of the text after a mark, without blanks at its end.
+/// Returns the text with `mark` written before each line, and without blanks at the ends of the lines.
 std::string marked(const std::string& text, const std::string& mark) {
   std::string result;
   for (const std::string& line : test::lines_of(text)) {

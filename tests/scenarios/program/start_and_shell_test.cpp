@@ -149,7 +149,8 @@ class NewOnASheet : public NewCommand {
     test::write_plainly(directory_ / "up.obj", test::obj_text(up));
     test::write_plainly(directory_ / "down.obj", test::obj_text(test::reversed(up)));
   }
-  /// Runs `hapbench new` and returns the written scenario. Checks that it runs and touches its environment.
+  /// Runs `hapbench new` and returns the written scenario. Checks that the scenario runs and that its tool touches the
+  /// environment.
   Json made(std::vector<std::string> words, std::string* output = nullptr) const {
     words.insert(words.begin(), "new");
     words.insert(words.end(), {"--out", path("made.json")});
@@ -175,7 +176,8 @@ TEST_F(NewOnASheet, TurnsNormalsThatPointAwayFromTheTool) {
   const std::string behind = hapbench({"validate", path("made.json"), "--set", "environment.flip_normals=false"}).err;
   EXPECT_NE(behind.find("1.5 mm behind the surface"), std::string::npos) << behind;
   EXPECT_EQ(hapbench({"validate", path("made.json")}).err.find("behind"), std::string::npos);
-  // The same holds for a tool whose shank passes through the surface and whose tip is 0.2 mm behind the surface.
+  // Without reversed normals, a tool whose tip is 0.2 mm behind the surface also starts behind the surface, although
+  // its shank passes through the surface.
   const auto at = turned["initial"]["position_m"].get<std::array<double, 3>>();
   Vec3 touching(at[0], at[1], at[2]);
   touching.z() -= 0.0013;
@@ -186,7 +188,7 @@ TEST_F(NewOnASheet, TurnsNormalsThatPointAwayFromTheTool) {
                                      .err;
     EXPECT_EQ(warnings.find("behind the surface") != std::string::npos, !flip) << warnings;
   }
-  // Commands that run the scene print the same question if the tool begins inside the environment.
+  // Commands that run the scene ask whether the normals are inverted if the tool begins inside the environment.
   for (const char* command : {"run", "compare"}) {
     const std::string err = hapbench({command, path("made.json"), "--set", "environment.flip_normals=false", "--set",
                                       "time.steps=10", "--set", "expect={}", "--out", path("out")})

@@ -29,7 +29,7 @@ using Words = std::vector<std::string>;
 
 class SweepCommand : public testing::Test {
  protected:
-  /// Returns the arguments of 24 runs in four environments, some of which end early.
+  /// Returns the arguments of a sweep of 24 runs in four environments. Some of the runs end early.
   Words words(const std::string& out) const {
     const std::string line =
         "peg_in_hole_2d_shaped_stiffness --set expect.metrics={} "
@@ -126,7 +126,7 @@ TEST_F(SweepCommand, HasTheRunsThatThePrintedCommandRepeats) {
 
   const ProgramRun printed = sweep("a", {"--row", "14", "--print"});
   EXPECT_EQ(lines_of(printed.out).size(), 1u);
-  // The text as a shell splits it: the quotes around the list of outcomes belong to the text.
+  // The printed command is quoted for a shell. The double quotes in the list of outcomes belong to the argument.
   EXPECT_NE(printed.out.find(" --set 'expect.outcome=[\"completes\","), std::string::npos) << printed.out;
   Words words = sweep("a", {"--row", "14", "--print", "--json"}).json()["command"].get<Words>();
   EXPECT_EQ(words[0], fs::canonical(test::hapbench_program()));
@@ -260,8 +260,8 @@ TEST_F(CompareCommand, EqualsARunOfEachAlgorithmAlone) {
   const std::string scene = "peg_in_hole_2d_shaped_stiffness";
   hapbench({"compare", scene, "--algorithms", "mean", "--out", at("out")});
   hapbench({"run", scene, "--set", "rendering.algorithm=mean", "--out", at("run")});
-  // Only summary.json differs: the run misses the expectations of another algorithm, which compare does not check. The
-  // numbers are the same.
+  // Only summary.json differs. `run` checks the scenario's expectations, which are for another algorithm; compare does
+  // not check them. The numbers are the same.
   test::expect_same_files(directory_ / "out/mean", directory_ / "run", {"summary.json"});
 }
 

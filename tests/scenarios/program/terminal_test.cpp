@@ -379,7 +379,8 @@ bool is_described(const std::string& name) {
   return test::hapbench_in_process({"describe", name}).status == 0;
 }
 
-/// A title of two lines is one name, or the name of a scene above the name of an algorithm.
+/// Returns true if `describe` explains the title of a column. A title of two lines is one name, or the name of a scene
+/// above the name of an algorithm. A title of one line may hold two names, separated by " \ ".
 bool is_described(const std::string& upper, const std::string& lower) {
   if (upper.empty()) {
     const std::size_t slash = lower.find(" \\ ");

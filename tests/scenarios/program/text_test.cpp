@@ -11,7 +11,8 @@
 #include "scenarios/program/text.hpp"
 #include "scenarios/scene/scenario_schema.hpp"
 
-/// Tests tables, digits and the names of fields. tests/data/golden has the printed texts.
+/// Tests tables, digits and the names of fields. The files in tests/data/golden contain the texts that the program
+/// prints.
 namespace hapbench::text_test {
 namespace {
 
@@ -54,7 +55,7 @@ TEST(Fitted, BreaksWideLinesAtBlanksAndKeepsTheirIndent) {
   EXPECT_EQ(fitted("a  b\n\n", 80), "a  b\n\n");
 }
 
-/// Checks that only equal texts are merged: here the text of each law has another number.
+/// Checks that only equal warnings are merged into one line. The warnings of `proxy` contain other numbers.
 TEST(RunWarnings, QuoteEachLawsOwnNumber) {
   const auto run = [](const char* law, const char* text) {
     Result result;
@@ -88,7 +89,7 @@ TEST(Deserved, HasItsUsualDigitsWithoutATolerance) {
 }
 
 /// Checks the cases of test_a_number_below_its_error_is_a_bound in tests/scripts/ranking_test.py, which tests the same
-/// text on the page.
+/// text on the HTML page.
 TEST(Deserved, IsABoundIfTheToleranceIsNotSmaller) {
   EXPECT_EQ(deserved(0.0730, 0.37), "<= 0.5");
   EXPECT_EQ(deserved(0.0730, 0.93), "<= 2");

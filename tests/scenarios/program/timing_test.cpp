@@ -16,7 +16,7 @@ using test::hapbench;
 using test::ProgramRun;
 using test::read_file;
 
-// Tests run times of laws and of settings: compare --time and converge --over.
+// Tests the measured run times of laws (compare --time) and of settings (converge --over).
 
 TEST(Timing, OfLawsIsInATableOfItsOwn) {
   const test::TemporaryDirectory directory;

@@ -1,5 +1,5 @@
-// Tests calls of hapbench_renderer.h (allocations, threads, floating-point mode, wrong use, layout), the log of a loop,
-// and the wrapper for C++.
+// Tests the functions of hapbench_renderer.h (allocations, threads, floating-point mode, invalid arguments, layout of
+// the structures), the log of a haptic loop, and the wrapper for C++.
 
 #include <gtest/gtest.h>
 
@@ -151,7 +151,7 @@ TEST(LoopLog, IsReplayedBitForBit) {
   const std::vector<HapbenchOutput> again = replayed(*renderer, log);
   const ReplayComparison compared = compare_outputs(again, log.outputs);
   EXPECT_EQ(compared.equal, inputs.size()) << "first other: " << compared.first_other;
-  // A change of a recorded digit is detected.
+  // A recorded force that differs in its last bit is detected.
   LoopLog changed = log;
   changed.outputs[100].force[2] = std::nextafter(changed.outputs[100].force[2], 1.0);
   EXPECT_EQ(compare_outputs(again, changed.outputs).first_other, 100u);

@@ -49,7 +49,8 @@ TEST(Renderer, StartsInsideTheObjectWithoutForce) {
     ASSERT_EQ(norm(output.force), 0.0);
     ASSERT_GT(output.contacts, 0u);
   }
-  // Three calls in free air are not enough; contact then restarts the count.
+  // The force begins to rise after four successive calls in free air. Three such calls are not enough: the contact
+  // after them restarts the count.
   for (int i = 0; i < 3; ++i) loop.at(0.002);
   EXPECT_EQ(loop.at(-0.001).status, static_cast<unsigned>(HAPBENCH_WAITING));
   for (int i = 0; i < 4; ++i) EXPECT_EQ(loop.at(0.002).status, static_cast<unsigned>(HAPBENCH_WAITING));
@@ -81,7 +82,7 @@ TEST(Renderer, LetsTheForceFallAfterAGap) {
   const HapbenchOutput late = loop.at(-0.003, 2.0);
   EXPECT_EQ(late.status, static_cast<unsigned>(HAPBENCH_STALE));
   EXPECT_EQ(norm(late.force), 0.0);
-  // 10 ms, the longest allowed time, is not a gap.
+  // 10 ms is the longest allowed time between two calls, so it is not a gap.
   loop.engage();
   EXPECT_EQ(loop.at(0.002, 0.01).status, static_cast<unsigned>(HAPBENCH_ON));
 }
@@ -107,7 +108,8 @@ TEST(Renderer, LatchesAFaultUntilItIsRearmed) {
     EXPECT_EQ(output.status, static_cast<unsigned>(HAPBENCH_FAULT)) << words;
     EXPECT_EQ(output.reason, reason);
     EXPECT_EQ(norm(output.force), 0.0);
-    // A fault ends at the call in which the bit is set; a bit that stays set does not end a later fault.
+    // Setting the bit HAPBENCH_REARM ends a fault in the same call. If the bit stays set, it does not end a later
+    // fault.
     loop.input.has |= HAPBENCH_REARM;
     EXPECT_EQ(loop.at(0.002).status, static_cast<unsigned>(HAPBENCH_WAITING)) << words;
     loop.input.handle.position[0] = kNaN;
@@ -167,12 +169,14 @@ TEST(Renderer, KeepsTheToolWhileTheClutchIsPressed) {
   for (int i = 0; i < 110; ++i) output = loop.at(0.0103);
   EXPECT_EQ(output.status, static_cast<unsigned>(HAPBENCH_WAITING));
   EXPECT_EQ(norm(output.force), 0.0);
-  // After the release 10 mm higher, the tool is at its previous position: in contact, so the renderer waits.
+  // The clutch is released 10 mm higher. The tool is still where it was when the clutch was pressed: in contact, so the
+  // renderer waits.
   loop.input.has = 0;
   output = loop.at(0.01 + kInside);
   EXPECT_EQ(output.status, static_cast<unsigned>(HAPBENCH_WAITING));
   EXPECT_GT(output.contacts, 0u);
-  // A move to 2 mm above the plane in the moved frame, and back, gives the same force.
+  // The clutch has shifted the device's frame by 10 mm. After the tool moves to 2 mm above the plane and back, the
+  // force is the same as before the clutch.
   for (int i = 0; i < 200; ++i) output = loop.at(0.012);
   EXPECT_EQ(output.status, static_cast<unsigned>(HAPBENCH_ON));
   EXPECT_NEAR(loop.at(0.01 + kInside).force[2], before, 1e-6 * before);
@@ -290,7 +294,7 @@ TEST(Renderer, MovesTheHandleOfAClutchedMassWithoutContact) {
   EXPECT_EQ(output.status, static_cast<unsigned>(HAPBENCH_WAITING));
   EXPECT_EQ(output.contacts, 0u);
   EXPECT_LT(output.set_position[2], touching - 0.005);
-  // After the release, the set-point does not jump, and the tool is at the plane again.
+  // When the clutch is released, the set-point does not jump, and the tool is again in contact with the plane.
   const HapbenchOutput clutched = output;
   loop.input.has = HAPBENCH_HAND_FORCE;
   output = loop.pushed(0.0, 0.0);

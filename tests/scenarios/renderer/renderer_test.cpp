@@ -1,4 +1,5 @@
-// Tests hapbench_renderer.h: errors of opening, and bitwise equality of the forces with the engine.
+// Tests hapbench_renderer.h: the errors of opening a renderer, and that its forces are bitwise equal to the forces of
+// the engine.
 
 #include <gtest/gtest.h>
 

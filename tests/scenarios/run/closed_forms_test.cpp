@@ -42,10 +42,10 @@ TEST(OneSpringDamper, FollowsEquationA2ToRounding) {
   const auto rows = rows_of(bundled("single_spring", {"time.steps=2000", "initial.velocity_m_per_s=[0.5,0,0]"}));
   ASSERT_EQ(rows.size(), 2000u);
   State expected{1e-3, 0.5};
-  // In each step, both sides make a few rounding errors relative to the current state. The eigenvalues have the modulus
-  // rho = sqrt(1 - B dt / M) = 0.83. After k steps, an error has grown by a factor of k rho^k, which is at most 2. A
-  // factor of 4 allows for powers of A that are larger than the powers of its eigenvalues. In total, the error is 8 * 2
-  // * 4 units in the last place of the largest state.
+  // In each step, the simulation and the recurrence together make about 8 rounding errors relative to the current
+  // state. The eigenvalues of A have the modulus rho = sqrt(1 - B dt / M) = 0.83. After k steps, an error has grown by
+  // a factor of k rho^k, which is at most 2. A factor of 4 allows for powers of A that are larger than the powers of
+  // its eigenvalues. In total, the error is 8 * 2 * 4 units in the last place of the largest state.
   const double x_tolerance = 64 * kEpsilon * 1e-3, v_tolerance = 64 * kEpsilon * 1e-3 / dt;
   for (std::size_t k = 0; k < rows.size(); ++k) {
     ASSERT_NEAR(rows[k].tool.pose.position.x(), expected.x, x_tolerance) << k;
@@ -77,13 +77,15 @@ TEST(TenMinutesInContact, EndWhereTheClosedFormSaysAndMakeNoEnergy) {
   const double B = 2.0 * scenario.rendering.damping_ratio * std::sqrt(K * M);
   const auto& force = std::get<Profile::Sine>(std::get<ForceHandFields>(scenario.hand).force[2].shape());
   const double expected = steady_response(K, B, M, scenario.time.step, force, 1'199'999.0);
-  // The transient has decayed, e^(-100 000). Rounding of position and force, 1e-16 of 0.3 mm each, decays within a
-  // hundred steps. The phase of the sine, 5386 rad, is known to 1e-12, which changes the position by 1e-12 of 0.05 mm.
+  // The transient has decayed to e^(-100 000) of its start. Rounding of position and force, 1e-16 of 0.3 mm each,
+  // decays within a hundred steps. The phase of the sine, 5386 rad, has a rounding error of 1e-12 rad, which changes
+  // the position by 1e-12 of 0.05 mm.
   EXPECT_NEAR(number_of(report.metrics, "final_position_m.z").value(), expected, 1e-15);
   const auto& bound = scenario.expect.metrics.at("final_position_m.z");
   EXPECT_NEAR(0.5 * (*bound.min + *bound.max), expected, 1e-14) << "the file's bounds are about the closed form";
 
-  // The energy created in a step is rounding of the ledger's sums, with terms up to 3 mJ: 1e-18 J, 1.2 million times.
+  // The only energy created in a step is the rounding error of the sums of the energy balance, which have terms up to 3
+  // mJ: 1e-18 J in each of 1.2 million steps.
   EXPECT_LE(number_of(report.metrics, "energy.created_sum_J").value(), 1.2e-12);
 }
 
@@ -93,9 +95,9 @@ std::string number(const char* field, double value) {
   return std::string(field) + "=" + std::to_string(value);
 }
 
-/// Checks the load at which a jammed peg slips. The points of the wall lie at y = 0, +-0.1, ... mm. Their depth in the
-/// peg is the radius minus their distance from the peg's axis. `mean` gives each point the weight 1/n, so the loads add
-/// up to K times the mean depth.
+/// Checks the load at which a jammed peg slips. The points of each wall lie at y = 0, +-0.1 mm, +-0.2 mm and so on.
+/// Their depth in the peg is the radius minus their distance from the peg's axis. `mean` gives each point the weight
+/// 1/n, so the loads add up to K times the mean depth.
 TEST(PegThatJams, SlipsAtMuTimesTheLoadsOfBothWalls) {
   for (const double gap : {0.00085, 0.0009, 0.00096}) {
     double sum = 0.0, n = 0.0;
@@ -113,10 +115,11 @@ TEST(PegThatJams, SlipsAtMuTimesTheLoadsOfBothWalls) {
       for (const StepRecord& row : rows) {
         if (row.force.friction == Friction::slides && slipped == 0.0) slipped = row.time;
       }
-      // The bristle's damper bears 0.6 N/s B_t / K_t, less than 1 mN, which delays the slip by less than 2 ms. The
-      // tolerance is this time plus a step of the ramp.
+      // While the push grows by 0.6 N/s, the bristle's damper bears 0.6 N/s B_t / K_t, which is less than 1 mN. This
+      // delays the slip by less than 2 ms. The tolerance is this delay plus a margin of 1 ms.
       EXPECT_NEAR(slipped, slips_at, 0.003);
-      // Before the slip, the peg creeps by the deflection of the bristle, mu N / K_t; afterwards it moves.
+      // Before the slip, the peg creeps by at most the deflection of the bristle, mu N / K_t. After the slip, it moves
+      // further.
       const double until = slips_at - 0.005;
       for (const StepRecord& row : rows) {
         if (row.time < until) {
@@ -129,9 +132,10 @@ TEST(PegThatJams, SlipsAtMuTimesTheLoadsOfBothWalls) {
 }
 
 /// Checks that a peg that is pushed into a taper of half angle w and then released stays if and only if mu > sin w /
-/// cos^2 w. The loads N push it out with N sin w. Friction holds mu N cos^2 w, because its projector P has cos^2 w
-/// along the exit direction. Coulomb friction on each face would hold from tan w on: the bristle of the whole tool
-/// never holds more.
+/// cos^2 w. The sum N of the loads on both faces pushes the peg out with the force N sin w. Friction holds it with at
+/// most mu N cos^2 w, because the component of the projector P along the exit direction is cos^2 w. Coulomb friction on
+/// each face would already hold the peg if mu > tan w, so the bristle of the whole tool never holds more than friction
+/// on each face.
 TEST(PegInATaper, LocksItselfFromTheClosedFormOn) {
   for (const double w : {0.1, 0.2, 0.4}) {
     const double locks = std::sin(w) / (std::cos(w) * std::cos(w));
@@ -152,9 +156,9 @@ TEST(PegInATaper, LocksItselfFromTheClosedFormOn) {
 }
 
 /// Checks the period of stick-slip. A spring whose end moves at the speed V pulls the block. The block slips when the
-/// spring force is mu N, moves with the velocity V (1 - cos w t), and therefore comes to rest every 2 pi sqrt(M/k).
-/// While it sticks, only the bristle damps it, so it slips again at once: with a single friction coefficient it does
-/// not stay at rest.
+/// spring force is mu N, moves with the velocity V (1 - cos w t), and therefore comes to rest every 2 pi sqrt(M/k). At
+/// rest, the spring force is mu N again and grows. With a single friction coefficient, the block therefore slips again
+/// at once.
 TEST(StickSlip, HasThePeriodOfSpringAndMass) {
   for (const double k : {100.0, 200.0, 400.0}) {
     for (const double mass : {0.05, 0.1}) {
@@ -173,8 +177,8 @@ TEST(StickSlip, HasThePeriodOfSpringAndMass) {
         ASSERT_LE(v, 2.05 * V);
       }
       ASSERT_GT(stands.size(), 5u);
-      // Each time is known to a step. The deflection of the bristle, mu N / K_t, is a fraction of the spring's stretch
-      // mu N / k and shifts the first time.
+      // Each time of rest is known to within one time step. Before the first slip, the bristle deflects by mu N / K_t,
+      // a small fraction of the spring's stretch mu N / k. This shifts the first time of rest.
       EXPECT_NEAR(stands.front(), slips_at + period, 0.02 * slips_at + 0.001);
       EXPECT_NEAR((stands.back() - stands.front()) / static_cast<double>(stands.size() - 1), period,
                   0.001 / static_cast<double>(stands.size() - 1) + 1e-4 * period);
@@ -194,13 +198,15 @@ LoadedScenario with_algorithm(const char* scenario, const char* algorithm) {
   return load_scenario(find_scenario(scenario), overrides);
 }
 
-/// Largest depth of a point in a proxy that is outside [m]: rounding of the proxy's position, plus the violation
-/// (kViolationTolerance) that a move of at most a millimetre allows.
+/// Largest depth [m] of a shell point in a proxy that counts as outside the shell: rounding of the proxy's position,
+/// plus the violation (kViolationTolerance) that a move of at most a millimetre allows.
 constexpr double kOutside = 1e-9;
-/// Depth above which the drill's proxy leaves slowly [m]: the motion in a step at kRecoverySpeed.
+/// Depth [m] of a shell point in the drill's proxy above which the proxy leaves the shell at a limited speed: the
+/// distance that the proxy moves in one step at kProxyRecoverySpeed.
 constexpr double kRecovery = 1e-5;
 
-/// Finds points in the proxy by brute force. The position of the proxy follows from the spring force: p + f_spring / K.
+/// Finds shell points in the proxy by brute force. The position of the proxy follows from the position p of the tool
+/// and the spring force: p + f_spring / K.
 class PointsInProxy final : public Observer {
  public:
   PointsInProxy(const PointShell& shell, const SimulationParts& parts, double K)
@@ -263,8 +269,9 @@ struct Run {
   std::int64_t steps;
   double allowed = kOutside;  ///< allowed depth of a point in the proxy [m]
 };
-/// Allowed depth [m] in a corner, where patches may leave no room although the points do. The depth of the patches is
-/// at most a tenth of the spacing, and is shared with the points.
+/// Allowed depth [m] of a point in the proxy in a corner. There, the flat patches about the points may leave no room
+/// for the proxy although the points do. The proxy then distributes the depth of the patches, at most a tenth of the
+/// spacing, over patches and points.
 constexpr double kShared = 1e-5;
 class ProxyOverAWholeRun : public testing::TestWithParam<Run> {};
 INSTANTIATE_TEST_SUITE_P(Scenes, ProxyOverAWholeRun,
@@ -286,11 +293,12 @@ TEST_P(ProxyOverAWholeRun, NeitherEntersTheShellNorGetsStifferThanOneSpringNorTa
   EXPECT_LE(points.most_passes, 10u);
 }
 
-/// Checks a peg that at the start penetrates both walls of a hole of the same width by 0.4 mm. A tilted peg does not
-/// fit into this hole.
+/// Checks a peg that is as wide as its hole. At the start, the peg is tilted by 0.1 rad, its tip touches both walls,
+/// and at the mouth one wall is 0.4 mm deep in the peg. While the peg is tilted, it does not fit into the hole.
 TEST(ProxyInATightHole, LeavesSlowly) {
   const PointsInProxy points = watch("peg_in_hole_2d_shaped_stiffness", 2'000);
-  // A move is only nearly proportional to the depths, so the speed may exceed 0.02 m/s by a tenth.
+  // The move of the proxy is only approximately proportional to the depths, so its speed may exceed 0.02 m/s by a
+  // tenth.
   EXPECT_LE(points.fastest, 1.1 * 0.02);
   EXPECT_LE(points.largest_force, 2.0);
 }

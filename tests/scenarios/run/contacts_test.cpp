@@ -40,7 +40,8 @@ std::vector<std::string> late(std::int64_t every, std::int64_t delay, const char
           std::string("rendering.contacts.between=") + between};
 }
 
-// Checks that linear contacts of a plane equal contacts that are found in every step.
+// Checks contacts of a plane with `between` "linear", whose depths follow the motion of the tool between two queries.
+// They equal contacts that are found in every step.
 
 TEST(LinearContacts, OfAPlaneAreFreshForEveryAlgorithm) {
   // The tool is in contact from step 6 on, and the contacts found in step 7 are used from step 11 on.
@@ -58,8 +59,8 @@ TEST(LinearContacts, OfAPlaneAreFreshForEveryAlgorithm) {
     overrides.insert(overrides.end(), pressed.begin(), pressed.end());
     const auto fresh = rows_of(bundled("poke_plane", pressed)), linear = rows_of(bundled("poke_plane", overrides));
     ASSERT_EQ(fresh.size(), linear.size());
-    // True if depths are measured along the normal. False for depth models with a memory and for models that measure to
-    // the nearest side.
+    // True if depths are measured along the normal. False for depth models with a memory and for depth models that
+    // measure the distance to the nearest side of the object.
     const bool depths_are_the_normals =
         algorithm.fixed_depth_model.empty() || algorithm.fixed_depth_model == "normal_projection";
     for (std::size_t k = 0; k < fresh.size(); ++k) {
@@ -74,8 +75,8 @@ TEST(LinearContacts, OfAPlaneAreFreshForEveryAlgorithm) {
   }
 }
 
-/// Checks multi-rate contacts that are found in every step. With a dropout probability of 1e-300, the contacts are
-/// held, but no query is lost.
+/// Checks multi-rate contacts that are found in every step. A dropout probability of 1e-300 makes the run hold its
+/// contacts, although no query is ever lost.
 TEST(MultiRateContacts, OfEveryRowChangeNoBitForAnyAlgorithm) {
   for (const AlgorithmEntry& algorithm : algorithms()) {
     SCOPED_TRACE(algorithm.info->name);

@@ -41,7 +41,8 @@ void compare(const CheckedScenario& scene, std::map<Outcome, int>& early) {
 /// Checks every bundled scenario with its own gains, and with gains and forces that make the tool sink in, fly off and
 /// diverge.
 TEST(EarlyEnd, HasTheOutcomeOfTheFullRun) {
-  // Runs that are cut off before their failure must also have the same outcome.
+  // At most this many steps, so some runs end before the failure that their full length would have. Their outcome must
+  // be the same as well.
   constexpr std::int64_t kMaxSteps = 1500;
   std::map<Outcome, int> early;
   for (const auto& [name, group, file] : bundled_scenarios()) {
@@ -90,7 +91,7 @@ TEST(EarlyEnd, LeavesOnlyIfNoHandBringsTheToolBack) {
                 Outcome::no_contact},
                // The tool flies off and falls back, because the force points towards the plane.
                {R"({"initial": {"position_m": [0, 0, 0.003], "velocity_m_per_s": [0, 0, 0.6]}})", {}},
-               // The hand's force changes its sign, or the hand's spring pulls.
+               // The hand's force changes its sign, or the hand's spring pulls the tool back.
                {R"({"hand": {"z_N": {"type": "waypoints", "points": [[0, 1], [0.5, -4]]}}})", {}},
                {R"({"hand": {"type": "impedance", "z_N": null, "stiffness_N_per_m": 100, "damping_N_s_per_m": 1,
                     "target": {"x_m": 0, "y_m": 0, "z_m": 0.05}}})",
@@ -113,8 +114,8 @@ TEST(EarlyEnd, LeavesOnlyIfNoHandBringsTheToolBack) {
   }
 }
 
-/// Checks a tool that is pushed through the plane and moves on to a bound. The early outcome is the outcome of the full
-/// run.
+/// Checks a tool that is pushed through the plane and moves on to the bound of divergence. A run that ends early has
+/// the outcome of the full run.
 TEST(EarlyEnd, ToolThatWentThroughMayStillDiverge) {
   const char* const shot = R"({"hand": {"z_N": -1e6}, "time": {"steps": 20000}})";
   const Result run = ended(shot), full = run_scenario(above_plane(shot), {}, false);

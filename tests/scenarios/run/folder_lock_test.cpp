@@ -101,8 +101,8 @@ int status_of(pid_t process) {
   return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
-/// Checks that one process gets the lock when all processes try to lock a new folder. The processes start when the
-/// first pipe closes, and each ends when the last pipe closes.
+/// Checks that one process gets the lock when all processes try to lock a new folder. The processes start when the pipe
+/// `begin` is closed. Each process ends when the pipe `end` is closed.
 TEST(FolderLock, IsHeldByOneOfManyProcesses) {
   constexpr int kProcesses = 4, kRounds = 50;
   const test::TemporaryDirectory directory;

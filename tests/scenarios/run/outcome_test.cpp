@@ -32,7 +32,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Tests the outcomes of runs that miss or lose their object, whether these outcomes were expected, and their warnings.
+// Tests the outcomes of runs whose tool never touches its environment or loses contact with it, whether these outcomes
+// were expected, and the warnings of the runs.
 
 /// Returns the scenario of a tool of 1 mm that a hand pushes towards a plane of 10 mm from 3 mm above it.
 Json above_plane() {
@@ -171,8 +172,8 @@ std::string warnings_of(const Result& report) {
 }
 
 /// Checks paths of two to four legs that turn back on themselves or to one side. A tool that lags behind the moving
-/// point by a fraction of its width follows all of these paths, whatever its displacement is. Under strong dry friction
-/// it follows none of them.
+/// point by a fraction of its width follows all of these paths, however far it is from its start at the end. Under
+/// strong dry friction the tool follows none of the paths.
 TEST(Drag, IsJudgedAlongItsPathAlsoWhereThePathReturns) {
   const std::vector<Json> paths = {
       {{-0.002, 0, 0}, {0.002, 0, 0}, {-0.002, 0, 0}},
@@ -226,7 +227,7 @@ TEST(Drag, WithoutAPathIsNotDraggedAndIsWarnedOfBeforeItRuns) {
 }
 
 /// Checks a drill that rotates about its resting tip into the wall of its hole. At the end, the axis of its shank is in
-/// the wall, but the tip centre and the core behind it have always been in the hole.
+/// the wall. The tip centre and the part of the axis just behind it have always been in the hole.
 TEST(Outcome, OfAShankThatIsInside) {
   const LoadedScenario loaded = load_scenario(find_scenario("pure_rotation"), {});
   const Result report = run_scenario(checked(loaded), std::nullopt, false);
@@ -249,7 +250,7 @@ struct Scene {
 };
 
 /// Returns the diagnosed run of a scene with its overrides. The expectations of the file are replaced by the default
-/// outcomes.
+/// expectation.
 Result run(const Scene& scene) {
   Words overrides = {"expect={}", "record.trajectory=false"};
   overrides.insert(overrides.end(), scene.overrides.begin(), scene.overrides.end());
@@ -334,7 +335,7 @@ TEST(Diagnosis, EachRuleFindsItsFaultAndIsSilentWithout) {
   all.push_back({"force_sign",
                  {"recorded_wipe", {"motion.position.file=" + fs::absolute(directory / "reversed.csv").string()}},
                  {"recorded_wipe"}});
-  // Load a law that returns the mean or, if HOSTILE is "nan", NaN.
+  // Load a law that gives the force of `mean` or, if HOSTILE is "nan", NaN.
   load_module(fs::canonical(HAPBENCH_TEST_MODULES) / "hostile.so");
   std::set<std::string> tested = {"fault"};
   const Scene hostile = {"single_spring", {"rendering.algorithm=hostile"}};
@@ -375,7 +376,7 @@ TEST(Diagnosis, NamesNoOutcomeThatTheSceneExpects) {
 }
 
 /// Checks the reported frequency. An undamped spring of 20 000 N/m and 0.1 kg oscillates at 71.2 Hz. The last quarter
-/// takes half a second, so an error of half an oscillation is 1 Hz.
+/// of the run takes half a second, so an error of half an oscillation is 1 Hz.
 TEST(Diagnosis, ReportsTheFrequencyOfABuzz) {
   const Result result = run({"single_spring", {"rendering.damping_ratio=0.0005", "time.steps=4000"}});
   const Diagnosed* buzz = finding(result, "buzz");
@@ -464,7 +465,8 @@ std::vector<Trap> traps() {
       {"lost", kLed, {}, "motion.position", "hand's direction", Outcome::no_contact},
       {"stuck", {"impedance_at_wall"}, {}, "device.coulomb_N", "rendering.friction", Outcome::stuck},
       {"stuck", {"drag_molar_dry"}, {}, "rendering.friction", "device.coulomb_N", Outcome::stuck},
-      // A tool that is thrown away makes long steps. A slower hand does not help a tool that a script moves.
+      // A tool that diverges makes long steps, so the rule finds nothing. A slower hand does not help a tool that a
+      // script moves.
       {"step", kMolar, {}, "", "", Outcome::diverges, "", long_step()},
       {"step", kLed, {}, "motion.position", "slower hand", Outcome::completes, "", long_step()},
       // A script makes the same contacts at any K, so a smaller K does not help.
@@ -493,7 +495,7 @@ std::vector<Trap> traps() {
        Outcome::completes,
        "",
        contact(50)},
-      // In equilibrium, the force balances the hand's force.
+      // In equilibrium, the rendered force balances the hand's force, so a smaller K does not reduce it.
       {"saturated", kOmegaMolar, {}, "smaller hand force", "smaller K", Outcome::completes, "", contact(50)},
       {"damping",
        {"drag_molar", {"rendering.damping_N_s_per_m=1e4"}},
@@ -574,7 +576,7 @@ TEST(Diagnosis, BlamesTheStepWhereThatIsTooLong) {
   EXPECT_EQ(far.warnings[0].text.find("time.step_s"), std::string::npos) << far.warnings[0].text;
 }
 
-/// Checks a run without a diagnosis, which is computed only on request. The run has a warning if its numbers do not
+/// Checks runs without a diagnosis, which is computed only on request. A run still has a warning if its numbers do not
 /// characterise the law.
 TEST(Diagnosis, OfARunThatNobodyDiagnosesIsAWarning) {
   for (const auto& [override, rule] : {std::pair("rendering.friction.mu_f_s_per_m=1000", "friction"),

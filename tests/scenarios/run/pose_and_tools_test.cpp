@@ -153,8 +153,8 @@ TEST(LostTorque, IsTheSumOverTheContactsOfArmTimesShareForEveryAlgorithm) {
   }
 }
 
-/// Returns all bytes of the recorded tables except the columns of the quaternion, which are the last four columns, and
-/// the name of the scenario.
+/// Returns the content of all files of a run without the pose: trajectory.csv without its last four columns, which are
+/// the quaternion, and summary.json without its provenance.
 std::map<std::string, std::string> bytes_without_pose(const std::filesystem::path& directory) {
   std::map<std::string, std::string> files;
   for (const char* name : {"contacts.csv", "energy.csv"}) files[name] = read_file(directory / name);
@@ -239,7 +239,7 @@ TEST(ScenarioTool, WithoutATypeIsTheCylinderOfThatType) {
 }
 
 /// Checks that the tool's frame has its origin at the tip, whichever face of the cube has the tip. In this frame the
-/// box lies behind the tip centre.
+/// cube lies behind the tip centre.
 TEST(ScenarioTool, OfAMeshHasItsTipWhereItsFieldsSay) {
   for (const auto& [surface, axis] : {std::pair{"[0.0005, 0, 0]", "[2, 0, 0]"},
                                       {"[0, -0.0005, 0]", "[0, -1, 0]"},
@@ -253,7 +253,7 @@ TEST(ScenarioTool, OfAMeshHasItsTipWhereItsFieldsSay) {
       low = low.cwiseMin(vertex);
       high = high.cwiseMax(vertex);
     }
-    // Allow the rounding of positions of 1 mm by a rotation: some units in the last place, 2e-19.
+    // Allow for rounding: a rotation changes a coordinate of 1 mm by some units in the last place, 2e-19 each.
     EXPECT_LT((low - Vec3(-0.0005, -0.0005, 0.0)).norm(), 1e-18) << axis << ": " << low.transpose();
     EXPECT_LT((high - Vec3(0.0005, 0.0005, 0.001)).norm(), 1e-18) << axis << ": " << high.transpose();
   }

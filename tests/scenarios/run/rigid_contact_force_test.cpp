@@ -81,8 +81,8 @@ TEST(RigidContactForce, IsComparedWithTheRenderedForce) {
   const Metric* error = find_metric(run.metrics, "fidelity.force_error_rms_N");
   ASSERT_NE(error, nullptr);
   // Half the diagonal of a square of points 0.1 mm apart is 0.0707 mm. A point at this distance from the axis of a ball
-  // of 0.5 mm rotates a force of 2 N by 0.142 rad, which is 0.28 N sideways. It also reduces the depth by 5 um, which
-  // is 0.1 N.
+  // of 0.5 mm radius rotates a force of 2 N by 0.142 rad, which is 0.28 N sideways. It also reduces the depth by 5 um,
+  // which is 0.1 N.
   EXPECT_LT(*number_of(error->value), 0.3);
   const Json summary = summary_json(run);
   const double reference_error = summary["fidelity"]["reference_error_N"].get<double>();
@@ -131,8 +131,9 @@ TEST(RigidContactForce, InAHandComparesForceAndDisplacement) {
   const double displacement = *number_of(run.metrics, "fidelity.displacement_rms_m");
   const double force = *number_of(run.metrics, "fidelity.force_error_rms_N");
   // A point of the grid of 0.1 mm lies on the tool's axis. The tool starts at the free position and is overdamped: its
-  // slow time constant is below (B + b) / (K + k) = (32 + 6) / 5300 s = 7.1 ms. The mean of the square over 2 s is
-  // smaller by at most 2 * 7.1 ms / 2 s, the root by half of that.
+  // slow time constant is below (B + b) / (K + k) = (32 + 6) / 5300 s = 7.1 ms. Therefore the mean squared displacement
+  // over 2 s is smaller than the square of `depth` by a fraction of at most 2 * 7.1 ms / 2 s, and its root is smaller
+  // than `depth` by half of this fraction.
   EXPECT_NEAR(displacement, depth, 0.004 * depth);
   // The rendered force rises from 0 with this time constant tau. The mean of its squared error over 2 s is larger by at
   // most (0.15 N)^2 (tau / 2) / 2 s.

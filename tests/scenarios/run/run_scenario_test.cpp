@@ -117,8 +117,8 @@ TEST(Divergence, OfTheHandleEndsTheRun) {
   EXPECT_GT(run.end.divergence.magnitude, run.end.divergence.bound);
 }
 
-/// Fixture that gives SIGINT its default action, as in the foreground of a shell. After "&" it is ignored and stays
-/// ignored.
+/// Fixture that gives SIGINT its default action, as in a process that a shell starts in the foreground. A process that
+/// a shell starts with "&" ignores SIGINT.
 class StopSignals : public testing::Test {
  protected:
   StopSignals() : before_(std::signal(SIGINT, SIG_DFL)) {}

@@ -26,7 +26,7 @@
 #include "tests/support/scale.hpp"
 
 /// Tests difficult scenes: soft, thin, inverted, open, tiny, huge, stuck or too fast. The true result of each scene
-/// follows from its geometry. Outcome, motion class and depth must agree with the true result.
+/// follows from its geometry. Outcome, depth and the verdict on stability must agree with the true result.
 namespace hapbench::truth_test {
 namespace {
 
@@ -376,7 +376,8 @@ TEST_F(ScenesMadeToFool, GetTheirTrueOutcomeAndDepthAlsoWithoutARecord) {
   }
 }
 
-/// Checks scenes in which no step is deeper than half the wall's thickness, and a drag that ends deep beside its path.
+/// Checks scenes in which the tool is in no step deeper than half the wall's thickness, and a drag that ends deep in a
+/// gap, away from its path.
 TEST_F(ScenesMadeToFool, WithThinWallsOrAGapGetTheirTrueOutcome) {
   const Case cases[] = {
       {"led sideways through a plate, its tip below",

@@ -13,7 +13,7 @@
 namespace hapbench::describe_scenario_test {
 namespace {
 
-// Tests the default values of a scenario, which are the values of the thesis for the kind of scene (Tables A.1, A.2,
+// Tests the default values of a scenario. For each kind of scene, they are the values of the thesis (Tables A.1, A.2,
 // B.1).
 
 struct Expected {

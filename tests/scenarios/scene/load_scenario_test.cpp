@@ -131,7 +131,7 @@ class Override : public testing::Test {
   Json with(const std::vector<std::string>& overrides) const {
     return effective_scenario(load_scenario(file_, overrides).scenario, directory_.path());
   }
-  /// Returns the message of the error for an override, without the file before it.
+  /// Returns the message of the error for an override, without the file name at its beginning.
   std::string refusal(const std::string& override) const {
     SCOPED_TRACE(override);
     const auto error = test::input_error_of([&] { with({override}); });
@@ -177,7 +177,7 @@ TEST_F(Override, SetsWhatItsPathLeadsTo) {
       // A later override takes precedence.
       {{"time.steps=7", "time.steps=8"}, "/time/steps", "8"},
       {{R"(rendering={"iterations":9})", "rendering.damping_ratio=0"}, "/rendering/iterations", "9"},
-      // A field removes another field with the same meaning.
+      // A field removes an earlier field with the same meaning.
       {{"time.duration_s=1"}, "/time/steps", "2000"},
       {{"time.duration_s=1", "time.steps=8"}, "/time/steps", "8"},
   };
@@ -195,7 +195,7 @@ TEST_F(Override, DelayInSecondsIsTheSceneSamples) {
   const double step = with({}).at("time").at("step_s").get<double>();
   EXPECT_EQ(delays({}), std::pair(0.0023, 0.0023 / step));
   EXPECT_EQ(delays({"time.step_s=0.001"}), std::pair(0.0023, 0.0023 / 0.001));
-  // Each of the two fields replaces the other field.
+  // Of delay_s and delay_samples, the later override replaces the other field.
   EXPECT_EQ(delays({"device.delay_samples=3"}), std::pair(-1.0, 3.0));
   EXPECT_EQ(delays({"device.delay_samples=3", "device.delay_s=0.001"}), std::pair(0.001, 0.001 / step));
   // The effective scenario has both fields and can be read again, also with another time step.

@@ -51,7 +51,8 @@ TEST_F(NamedFilesOfAScenario, AreThoseItNames) {
   for (const auto& file : both.all()) EXPECT_EQ(file->hash(), hash_text(hash_of(test::read_file(file->path()))));
 }
 
-// Checks that a change of a file during a run changes neither the run nor the provenance that it reports.
+// Checks that a loaded scenario does not read its files again: if a file is missing later, a run and the provenance
+// that it reports are the same.
 TEST_F(NamedFilesOfAScenario, AreReadOnce) {
   for (const char* environment : {"mesh", "point_shell"}) {
     const CheckedScenario scene = checked(load(environment, kStroke));

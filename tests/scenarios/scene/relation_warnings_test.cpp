@@ -12,7 +12,7 @@
 namespace hapbench::relation_warnings_test {
 namespace {
 
-/// Returns the warnings about the scenario poke_plane with these overrides, without the file before them.
+/// Returns the warnings about the scenario poke_plane with these overrides, without the file name at their beginning.
 std::vector<std::string> warnings_with(std::vector<std::string> overrides) {
   std::vector<std::string> warnings;
   for (const Warning& warning : load_scenario(find_scenario("poke_plane"), overrides).warnings)

@@ -121,8 +121,8 @@ void expect_agreement(const test::Mutation& mutant, const std::optional<InputErr
   const std::string message = objection->what();
   EXPECT_EQ(message.find_first_of("\n\r"), std::string::npos) << name << " " << mutant.change;
   EXPECT_NE(message.find("allowed"), std::string::npos) << name << " " << mutant.change << ": " << message;
-  // The pointer exists in the document, unless it refers to a field with its default value that contradicts given
-  // fields.
+  // The location that the error names exists in the document, unless the error is about a field that has its default
+  // value and contradicts given fields.
   EXPECT_TRUE(!wrong_shape || mutant.document.contains(Json::json_pointer(objection->location_text()))) << message;
 }
 
@@ -146,8 +146,9 @@ TEST(ScenarioSchema, RejectsExactlyTheMutantsWhoseShapeTheReaderRefuses) {
 }
 
 TEST(ScenarioSchema, RejectsNothingThatTheReaderAcceptsAfterManyChanges) {
-  // With several faults, the reader may find a contradiction first. Reader and schema must still agree whether the
-  // document is accepted.
+  // In a document with several faults, the reader may find a contradiction between fields before a wrong shape. The
+  // schema must still accept every document that the reader accepts, and reject every document whose shape the reader
+  // refuses.
   Random random(7);
   const std::size_t per_scenario = test::cases(150);
   for (const NamedScenario& scenario : valid_scenarios()) {

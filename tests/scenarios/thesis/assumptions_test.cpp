@@ -89,7 +89,8 @@ TEST(AssumptionsOnRecord, AreAsTheSchemaSays) {
     EXPECT_NE(schema.complaints(Json::parse(other)), "") << other;
 }
 
-/// Checks what the schema cannot express: an assumption set is one value for each assumption, in a cell without quotes.
+/// Checks conditions that the schema cannot express. For example, texts must fit into one cell of a table without
+/// quotes, and each value must be in its range or among its options.
 TEST(AssumptionsOnRecord, AreInTheirRangesAndFitIntoTables) {
   const Assumptions assumptions(kReference / "assumptions.json");
   std::set<std::string> ids;

@@ -210,7 +210,8 @@ TEST(Claims, AreJudgedByTheirThresholds) {
         {"1.reduced_mean=7", qualitatively},
         {"reduced_deviation=3.1", qualitatively},
         {"reduced_mean=7", not_replicated},
-        // The raw counts are an input of the claim.
+        // The raw counts are an input of the claim: if they match the published counts in no recording, the claim is
+        // not judged.
         {"raw_mean=42", not_judged},
         {"raw_deviation=22", not_judged},
         {"1.raw_mean=42", qualitatively},
@@ -289,7 +290,8 @@ TEST(Claims, AreJudgedByTheirThresholds) {
         // The vibration power is much larger, but the velocity variation is not.
         {"0.velocity_variation=0.4 0.vibration_power=1e-3 2.velocity_variation=0.5 2.vibration_power=2.5e-4",
          qualitatively},
-        // The number of force reversals increases by the same factor.
+        // If there are five times as many force reversals, small increases of velocity variation and vibration power
+        // are enough.
         {"0.velocity_variation=0.11 0.vibration_power=1.1e-5 0.force_reversals=30", replicated},
         {"0.force_reversals=30", not_replicated},
         {"0.velocity_variation=0.5 0.vibration_power=1 1.velocity_variation=nan 1.vibration_power=nan", not_replicated},
@@ -412,7 +414,8 @@ TEST(Claims, AreJudgedByTheirThresholds) {
         {"2.original=0.2", not_consistent},
         {"1.original=0.2", not_consistent},
         {"0.shaped=0.2", consistent}}},
-      // Check a threshold beyond the published threshold.
+      // The success rate at 0.6 mm is too high for the claim. A position farther out with the rate 0 does not change
+      // this.
       {"D6",
        "offset: value=0.4e-3 original=0.9 shaped=1 | value=0.6e-3 original=0.5 | height: value=2e-3 | "
        "value=4e-3 original=0.9 | offset: value=0.7e-3 original=0",

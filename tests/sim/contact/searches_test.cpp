@@ -92,7 +92,7 @@ INSTANTIATE_TEST_SUITE_P(BothTips, ShellQueryForTip, testing::Values(Tip::flat, 
                          [](const auto& tip) { return tip.param == Tip::flat ? "flat" : "round"; });
 
 // Poses along the coordinate axes and sizes that are multiples of powers of two: all coordinates below are exact, so it
-// is exactly known which points belong to the closed set.
+// is exactly known which points are in the tool, including its surface.
 constexpr double kRadius = 0x5p-13;  // 0.61 mm, a multiple of 5 for the point (3, 4) on the circle
 constexpr double kLength = 0x1p-7;
 // One unit in the last place of coordinates below 1/2; the radius is far larger than this unit.

@@ -228,7 +228,8 @@ TEST(Math, ZerosInfinitiesAndOtherDomainsAreAsInTheStandard) {
   };
   for (const double y : special) {
     for (const double x : special) {
-      // At the ends of the range, where the quotient is 0 or 1, both functions round equally.
+      // The arguments include the ends of the range of double, where the quotient is 0, 1 or infinite. Both functions
+      // round equally.
       EXPECT_TRUE(same(math::atan2(y, x), std::atan2(y, x))) << y << " " << x;
       if (!std::isnan(x) && !std::isnan(y)) {
         EXPECT_TRUE(same(math::hypot(y, x), std::hypot(y, x)) || std::abs(y) == 1e308) << y << " " << x;

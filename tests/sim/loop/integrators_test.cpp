@@ -178,7 +178,8 @@ class HeldJacobian final : public ForceField {
 TEST(LinearlyImplicit, CopesWithDampingThatDrives) {
   Random random(1);
   for (int i = 0; i < 1000; ++i) {
-    // Use friction on a law whose S exceeds 1: D = B S + f (I - S) with both signs and arbitrary size.
+    // Friction f on a law whose S exceeds 1 gives the damping D = B S + f (I - S), with eigenvalues of both signs and
+    // of any size.
     Mat3 S = Mat3::Zero();
     for (int j = 0; j < 3; ++j) {
       const Vec3 u = random.direction();

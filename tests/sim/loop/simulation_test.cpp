@@ -477,8 +477,8 @@ TEST(ObservedEnergy, AMomentThatAppearsOrGoesCountsForHalfATurn) {
   EXPECT_NEAR(observed.energy(), 0.4, 1e-15);
 }
 
-/// Checks that after steps of rest, the work of a moment uses the rotation since the previous step, as without the
-/// short cut.
+/// Checks the shortcut rest() for steps without force and moment against the full computation. After such steps, the
+/// work of a moment must use the rotation since the previous step.
 TEST(ObservedEnergy, ARowOfRestIsARowWithoutForceAndMoment) {
   ObservedEnergy resting(kStep), asked(kStep);
   for (int k = 0; k < 30; ++k) {

@@ -27,7 +27,7 @@ IsoSurface surface_of(const DensityField& field) {
 }
 
 /// Checks that each edge of the surface is used once in each direction, so that the surface is closed and consistently
-/// wound. If the triangles around each vertex also form one fan, the surface is a manifold.
+/// wound. Also checks that the triangles around each vertex form one fan, so that the surface is a manifold.
 void expect_closed_manifold(const IsoSurface& surface) {
   std::map<Edge, std::uint32_t> opposite;  // for each directed edge, the corner opposite to the edge
   std::vector<std::size_t> triangles(surface.vertices.size());
@@ -77,8 +77,9 @@ TEST_P(MarchingCubesOfDensity, BlockIsClosedHasNoHandlesAndTheRightVolume) {
   const IsoSurface surface = surface_of(density_field(block, 0.0001, GetParam()));
   expect_closed_manifold(surface);
   EXPECT_EQ(euler_characteristic_of(surface), 2);  // a blind hole does not change the topology
-  // Edges of the block and of the hole, 65 mm in total, are bevelled by g^2/8 = 1.25e-3 mm^2: 0.08 of 74 mm^3, 0.1 %.
-  // The binary wall deviates by less than a cell in either direction.
+  // Edges of the block and of the hole, 65 mm in total, are bevelled. With the grid spacing g = 0.1 mm, the missing
+  // cross-section is g^2/8 = 1.25e-3 mm^2: 0.08 of 74 mm^3, 0.1 %. The binary wall deviates by less than a cell in
+  // either direction.
   EXPECT_NEAR(enclosed_volume(test::half_edge_mesh(surface)) / exact_volume(block), 1.0, 0.005);
 }
 

@@ -245,7 +245,7 @@ TEST_P(MeshToolOf, IsWithinItsBoundOfTheExactDistance) {
     // computed by other operations.
     ASSERT_TRUE(!tool_.convex() || error >= -1e-12) << error;
   }
-  // The bound is not too large: at edges and in the middle of walls, the error is within a factor of three of the
+  // The bound is not too large: the largest error, at edges and in the middle of walls, is more than a sixth of the
   // bound.
   EXPECT_GT(worst, grid_.error_bound() / 6.0);
 }
@@ -380,7 +380,7 @@ TEST_P(MeshToolOf, LeavesItsBodyAtTheExitDistance) {
     for (double t = 0.0; t < exit - GetParam().spacing / 8.0; t += GetParam().spacing / 4.0) {
       ASSERT_LE(field(tool_, pose, x + t * u), 0.0) << t << " of " << exit;
     }
-    // At the exit, the surface is close: the next exit distance is finite and at most twice the reach of the tool.
+    // From the exit, along the gradient, the next exit distance is finite and at most twice the reach of the tool.
     ContactBuffer there = contacts_at({x + exit * u});
     there.set_gradient(0, gradient(tool_, pose, x + exit * u));
     tool_.exit_distances(pose, there, &exit);

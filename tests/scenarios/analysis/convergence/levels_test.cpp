@@ -76,9 +76,10 @@ TEST(Converge, FindsSecondOrderInTheAmplitudeOfAnUndampedSpring) {
   EXPECT_NEAR(*c.extrapolated, kStiffness * kStart, *c.errors.back());
 }
 
-/// Checks the spread of the largest speed over the choices of counted steps. The largest speed occurs in the last step
-/// before the landing. At some time step the landing moves to another counted step, and the largest speed changes by
-/// the speed gained in one step.
+/// Checks the spread of the largest speed over the choices of the first counted step. Levels with smaller time steps
+/// count only the steps at the times of the coarsest level. The largest speed occurs in the last counted step before
+/// the landing. If another choice moves this step, the largest speed changes by the speed that is gained between two
+/// counted steps.
 TEST(Converge, EstimatesTheSpreadOfExtremesOverTheChoiceOfRows) {
   Json scene = {{"time", {{"step_s", 1e-3}, {"steps", 200}}},
                 {"environment", {{"type", "springs"}, {"bilateral", false}}},
@@ -94,8 +95,8 @@ TEST(Converge, EstimatesTheSpreadOfExtremesOverTheChoiceOfRows) {
   const Study study = convergence_study(scene, 4);
   const auto levels = study.levels_of("speed_max_m_per_s");
   EXPECT_EQ(levels.front().spread, 0.0) << "every row counts";
-  // Speed that is gained in a step of 1 ms at 1 m/s^2 [m/s]. The last counted step before the landing is up to one step
-  // before it.
+  // Speed that is gained in a step of 1 ms at 1 m/s^2 [m/s]. The last counted step before the landing is up to one such
+  // step before the landing.
   const double gain = 1e-3;
   for (std::size_t i = 1; i < levels.size(); ++i) {
     EXPECT_GT(levels[i].spread, 0.5 * gain) << i;
@@ -120,7 +121,7 @@ TEST(Converge, MeasuresAtTheTimesOfTheCoarsestRows) {
   for (const char* metric : {"force_max_N", "force_step_max_N", "force_reversals"}) {
     const auto levels = study.levels_of(metric);
     const double first = *levels.front().result;
-    // Times are products with two roundings each, over a period of 2 pi 1e-3 m.
+    // The times of the levels are products with two roundings each. The largest speed is 2 pi 1e-3 m per period.
     for (const LevelResult& level : levels) EXPECT_NEAR(*level.result, first, 1e-12 * first) << metric;
     EXPECT_NE(study.of(metric).reason.find("rounding"), std::string::npos) << study.of(metric).reason;
   }

@@ -129,8 +129,8 @@ TEST(ObservedOrder, OfExtremesNeedsFiveLevelsAndCountsTheirScatter) {
     levels.back().spread = 0.5;
     const Convergence c = convergence_of({{}, 2.0, 1.0}, levels, kExtreme);
     expect_no_order(c, "needs five levels");
-    // The errors include the difference that levels beyond the finest level would add at first order, and the spread;
-    // here the limit is 1.
+    // The errors include the spread, and the difference that levels beyond the finest level would add at first order.
+    // Here the limit of the results is 1.
     EXPECT_NEAR(*c.errors.front(), halving.front() - 1.0 + 0.5, 1e-12) << count;
     EXPECT_NEAR(c.band->first, halving[count - 1] - 0.5, 1e-12);
     EXPECT_NEAR(c.band->second, halving[count - 3] + 0.5, 1e-12);

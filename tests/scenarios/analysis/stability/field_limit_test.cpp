@@ -97,7 +97,7 @@ TEST(FieldLimit, DoesNotBlameDryFrictionForVibration) {
 }
 
 /// Checks a wall that holds the handle from both sides. Dry friction and an encoder are not part of its linear loop, so
-/// they do not change the linear limit. The handle may rest where no spring is deflected.
+/// they do not change the linear limit. The handle may come to rest at a position where no spring is deflected.
 TEST(FieldLimit, OfAHandleWithFrictionHasTheLinearLimitWithoutFriction) {
   const std::string smooth = R"("type":"impedance","handle_mass_kg":0.35,"viscous_N_s_per_m":0.5,"delay_samples":1)";
   const auto limit_of = [](const std::string& device) {

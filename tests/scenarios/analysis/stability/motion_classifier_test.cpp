@@ -49,8 +49,8 @@ TEST(MotionClassifier, OfAHandleThatMovesTheToolTakesItsOwnVelocity) {
 }
 
 /// Returns the class of an oscillation whose amplitude changes by the factor `per_step` in every step. The amplitude of
-/// the fourth quarter is the amplitude of the first quarter times per_step^(3/4 kSteps). The phase at the beginning of
-/// a quarter, with a period of 10 steps, changes this by up to 1 %.
+/// the fourth quarter is the amplitude of the first quarter times per_step^(3/4 kSteps). The oscillation has a period
+/// of 10 steps. Its phase at the beginning of a quarter changes the amplitude of the quarter by up to 1 %.
 MotionClass class_of_oscillation(double per_step) {
   return class_of([&](double k) { return std::pow(per_step, k) * std::cos(0.2 * std::numbers::pi * k); });
 }

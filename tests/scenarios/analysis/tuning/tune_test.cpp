@@ -108,8 +108,9 @@ TEST(Tune, KeepsLimitsAndNamesTheBindingConstraint) {
   for (const auto& [name, value] : quiet.choice->metrics) EXPECT_EQ(number_of(run.metrics, name), value) << name;
 }
 
-/// Checks that the search passes stiffnesses at which a hand is too soft. In the run at 2 K, a hand of 100 N/m cannot
-/// pull the tool on from K = 33,000 N/m on. Only stiffer settings keep both bounds.
+/// Checks that the search passes stiffnesses at which a hand is too soft. A trial with the stiffness K also runs with 2
+/// K. If K is at least 33,000 N/m, a hand of 100 N/m cannot pull the tool on in this run. Only settings with such a K
+/// keep both bounds.
 TEST(Tune, IsNotBoundByAHandThatIsTooSoftToPullTheToolOn) {
   TuneQuestion asked = question("drag_molar", {});
   asked.threads = 2;

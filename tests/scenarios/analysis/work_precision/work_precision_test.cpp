@@ -90,7 +90,7 @@ TEST(WorkPrecision, TreatsEveryLawAsAProblem) {
 }
 
 TEST(WorkPrecision, StatesNoErrorOfATrajectoryThatCannotBePredicted) {
-  // Request an error so small that any growth of the shift exceeds it.
+  // Request an error so small that the distance between runs that start kInitialShift apart exceeds it.
   const auto problems = study({"integrator.type=leapfrog"}, 1e-12);
   EXPECT_FALSE(problems[0].is_predictable);
   EXPECT_GT(problems[0].grown_shift, 0.1 * kInitialShift);
