@@ -51,8 +51,9 @@ struct ForceSensorConfig {
 /// The force sensor under the handle: f_meas = f_hand + weight + noise. One instance holds the state of one run.
 ///
 /// With `compensated = true` (default) the weight is subtracted before the limiter: the thesis logs f_meas with the
-/// weight included, and its limit of 2 N acts at a logged force of 2.7 N (3.5, Fig. 6). With `compensated = false`,
-/// the literal meaning of thesis 2.7, the weight pulls the virtual tool down and the limit acts at f_meas = 2 N.
+/// weight included, and its limit of 2 N acts at a logged force of 2.7 N (section 3.5, Fig. 6). With
+/// `compensated = false`, the literal meaning of section 2.7 of the thesis, the weight pulls the virtual tool down and
+/// the limit acts at f_meas = 2 N.
 class ForceSensor {
  public:
   explicit ForceSensor(const ForceSensorConfig& config) : config_(config), random_(config.seed) {}

@@ -197,7 +197,7 @@ int solve(const Tensors& tensors) noexcept {
     w = identity6() / eps;
     sums = evaluate_at(tensors, w);
     for (const double next : kPath) {
-      // Keep the product eps w at the next epsilon: w and the weights scale by eps / next, and the active set stays.
+      // Keep the product eps w at the next epsilon: w and the sums S scale by eps / next, and the active set stays.
       w *= eps / next;
       sums.S *= eps / next;
       eps = next;

@@ -206,8 +206,9 @@ ToolEquilibrium::SecondOrder ToolEquilibrium::second_order(const PoseSprings& sp
   if (is_positive(second.hessian)) return second;
   // With y = L^T z, the second derivatives of the springs are K times the identity. Along motions that keep the holding
   // points in contact, use the second derivatives of energy and constraints; in all other directions, use K. A negative
-  // eigenvalue of the result is then a descent of the energy along the constraints. A finite stiffness in the other
-  // directions could not decide this: in a shallow notch, the normals of the holding points differ by only 1e-3 rad.
+  // eigenvalue of the result is then a descent of the energy along the constraints. A penalty of finite stiffness on
+  // the motions that leave contact would not show such a descent in a shallow notch, where the normals of the holding
+  // points differ by only 1e-3 rad.
   const double K = springs.stiffness;
   const Mat6 L = Eigen::LLT<Mat6>(model.hessian / K).matrixL();
   const Mat6 inverse = L.inverse();

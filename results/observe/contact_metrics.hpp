@@ -12,8 +12,9 @@
 /// Metrics of contacts and of the processing steps between contacts and the force on the tool.
 namespace hapbench {
 
-/// Measures the age of the contacts that a run uses: the time from a contact query to the steps that use its
-/// result. Counts the steps of each age. `begin` allocates a counter for each step of the trial, at most a million.
+/// Measures the age of the contacts that a run uses. The age in a step is the time since the contact query whose result
+/// the step uses. Counts the steps of each age. `begin` allocates a counter for each step of the trial, at most a
+/// million.
 class ContactAgeObserver final : public MetricObserver {
  public:
   /// Precondition: the source of the trial's contacts has a schedule.
@@ -59,8 +60,8 @@ class ContactAgeObserver final : public MetricObserver {
   }
 
  private:
-  /// Returns the age [s] that the fraction `share` of the steps does not exceed, by nearest rank; nothing without
-  /// steps.
+  /// Returns the age [s] that the fraction `share` of the steps does not exceed, by nearest rank; empty if no
+  /// step used contacts.
   std::optional<double> age_of_rank(double share) const noexcept {
     if (rows_ == 0) return std::nullopt;
     auto left = static_cast<std::uint64_t>(std::ceil(share * static_cast<double>(rows_)));

@@ -101,7 +101,8 @@ void EnergyLedger::add_step(const StepRecord& now) noexcept {
   if (created > events_.back().created) add_event(now, created);
 }
 
-/// Returns the created energy of a step [J]. Adds the works of translation and rotation to the balance.
+/// Returns the created energy of a step [J]. Adds to the balance the work of rotation, and the difference between the
+/// work `spring_work` of the integrator and the work of translation by the trapezoidal rule.
 double EnergyLedger::created_in_step(const StepRecord& now, double spring_work) noexcept {
   const Vec3 moved = now.tool.pose.position - last_.tool.pose.position;
   const Vec3 turned = turn(last_.tool.pose, now.tool.pose);

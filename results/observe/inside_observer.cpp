@@ -13,7 +13,8 @@ namespace hapbench {
 namespace {
 
 /// kMinStep: smallest distance between two checked positions on the path of the front point (struct Passage), in half
-/// widths of the tool. kDepthWithin: relative error of the tip centre's depth.
+/// widths of the tool. kDepthWithin: largest relative error allowed for the depth of the tip
+/// centre.
 constexpr double kMinStep = 2e-3, kDepthWithin = 0.02;
 /// kMaxBlocks: largest number of blocks into which a run is divided; one pose of each block is kept for the search
 /// after the run. kSettledSamples: number of poses in settled contact that are searched.

@@ -118,9 +118,9 @@ inline void append_item(std::string& list, std::string_view item, std::string_vi
 }
 
 /// An entry of rules.json, with the functions of its rule. Texts contain ids of published numbers, such as <T2.raw>,
-/// which PublishedNumbers::fill replaces by the numbers. A threshold of this project is an assumption without
-/// fields, such as rule.easily. The rule's text names it as <rule.easily>, from which Assumptions::reach finds that it
-/// influences the claim.
+/// which PublishedNumbers::fill replaces by the numbers. A threshold that this project chose is an
+/// assumption that sets no scenario fields, such as rule.easily. The text of a rule names the threshold as
+/// <rule.easily>. Assumptions::reach reads from this text that the threshold influences the claim.
 struct Claim {
   std::string id = {};
   std::string location = {};   ///< section of the thesis

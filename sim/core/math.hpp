@@ -35,7 +35,7 @@ double exp(double x) noexcept;
 double expm1(double x) noexcept;
 
 /// Natural logarithm, decimal logarithm and inverse hyperbolic tangent. Errors: 1 ulp for log, 2.5 ulp for atanh,
-/// 0.51 ulp for log10. The log10 of a power of ten is therefore exact.
+/// 0.51 ulp for log10. The log10 of a power of ten is exact.
 double log(double x) noexcept;
 double log10(double x) noexcept;
 double atanh(double x) noexcept;

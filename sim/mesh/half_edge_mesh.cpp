@@ -495,7 +495,7 @@ double refined_face_count(const HalfEdgeMesh& mesh, double longest_edge, double 
 
 std::vector<SurfacePoint> subsampled(const std::vector<SurfacePoint>& points, double spacing) {
   using Nearest = std::pair<double, std::size_t>;  // distance from the cube's centre [m], and index of the point
-  // Find the point closest to the centre for each cube and direction.
+  // For each cube and each direction of the normal (key_of), find the point closest to the centre of the cube.
   std::unordered_map<CubeKey, Nearest, CubeKeyHash> nearest;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Vec3 cube = (points[i].position / spacing + Vec3::Constant(0.5)).array().floor();

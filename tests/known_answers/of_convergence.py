@@ -1,5 +1,5 @@
-"""Known answers for the tables of converge and for the errors of compare: recurrences of one spring and their
-limits."""
+"""Known answers for the tables of `converge` and for the errors of `compare`: recurrences for the steps of a mass on
+one spring, and their limits for small time steps."""
 import math
 
 import numpy as np

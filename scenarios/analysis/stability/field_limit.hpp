@@ -84,12 +84,13 @@ struct FieldLimit {
   std::optional<double> quoted_tolerance() const { return quoted.value == end.value ? end.tolerance() : std::nullopt; }
 };
 
-/// Finds a stability limit. Evaluates 17 equidistant parameters, the scenario's value and the middles of intervals that
-/// are stable in theory, then searches the interval: with find_verified_interval if LimitQuestion::between is set,
-/// otherwise with find_stable_interval (`beside` true). Makes 35 to 120 runs; each failed verification costs up to 56
-/// more. Bounds on metrics hold with the metrics' errors at the limit added, as in `tune`; if a metric with its error
-/// violates a bound, searches again with bounds that are tighter by these errors. Throws InputError, with the file, if
-/// the rule limits vibration and the sampling rate is 60 Hz or less.
+/// Finds a stability limit. First runs 17 values of the field, the scenario's value, and the middle of each interval
+/// that is stable in theory. The 17 values divide the range, or the range of their logarithms, into equal parts. Then
+/// searches the ends of the interval of stable values: with find_verified_interval() if LimitQuestion::between is set,
+/// otherwise with find_stable_interval(), with its argument `beside` true. Makes 35 to 120 runs; each failed
+/// verification costs up to 56 more. Bounds on metrics hold with the metrics' errors at the limit added, as in `tune`;
+/// if a metric with its error violates a bound, searches again with bounds that are tighter by these errors. Throws
+/// InputError, with the file, if the rule limits vibration and the sampling rate is 60 Hz or less.
 FieldLimit field_limit(const LimitQuestion& question);
 
 }  // namespace hapbench

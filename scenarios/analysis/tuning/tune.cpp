@@ -13,8 +13,8 @@
 namespace hapbench {
 namespace {
 
-/// Evaluates the choice's setting at 17 stiffnesses from 1/30 to 30 times the choice's K, so that TunedLaw::trials has
-/// these points for plots.
+/// Evaluates the choice's setting at up to 17 stiffnesses from 1/30 to 30 times the choice's K, so that
+/// TunedLaw::trials has these points for plots. Stiffnesses outside of the searched range are left out.
 void evaluate_along_stiffness(Trials& trials, const TuneTrial& choice) {
   const Range around{choice.stiffness / 30.0, choice.stiffness * 30.0, true}, whole = trials.ranges().stiffness;
   for (int i = 0; i <= kScanIntervals; ++i) {

@@ -118,8 +118,8 @@ class Motions {
     }
   }
 
-  /// Checks the coarsest and the finest run of each curve and each reference, so that invalid input is found before the
-  /// first run. Throws InputError.
+  /// Loads the run of level 0 of each curve and the runs of the reference level, so that invalid input is found before
+  /// the first run. Throws InputError.
   void check() const {
     for (const auto& [run, motion] : motions_)
       if (run.level == 0 || run.level == study_.reference_level()) study_.load(run);

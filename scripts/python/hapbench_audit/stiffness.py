@@ -272,9 +272,10 @@ def well_explained(evidences):
 
 
 def with_shared_normal(log, evidences):
-    """Returns the evidences. A contact uses a normal shared by all contacts if this normal explains it better. The
-    shared normal is the normal of the contact that a spring explains best, or the normal by the friction in all
-    contacts. Most logs have one flat surface."""
+    """Returns the evidences. Two normals are candidates for all contacts, because most logs have one flat surface: the
+    normal of the contact whose force a spring explains best, and the normal that follows from the friction in all
+    contacts. A contact uses a candidate if it leaves less of the contact's force unexplained than the contact's own
+    normal does."""
     known = [one for one in evidences if one is not None and one.likelihood]
     if log.axes == 1 or len(known) < 2:
         return evidences

@@ -136,8 +136,9 @@ class Names:
         return None
 
     def find(self, quantity, words, endings=("_x", ".x")):
-        """Returns (column, True if the word is a number) for the first of `words` that names a column. A word may omit
-        one of `endings` from a column's name. Returns (None, False) if no word names a column."""
+        """Returns (column, whether it was found by its number) for the first of `words` that names a column. A word is
+        the name of a column, which may lack one of `endings`, or otherwise the number of a column. Returns
+        (None, False) if no word names a column."""
         for word in words:
             bare = word.lstrip("%# ")  # a header in a comment begins with a comment character
             for name in (word, bare, *(bare + ending for ending in endings)):

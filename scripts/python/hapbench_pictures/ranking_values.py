@@ -59,7 +59,7 @@ class Entry:
     def shown_error(self):
         """Error that determines the number of digits of the mean, as in the ranking that `compare` prints. It is the
         largest of three values: the error of the mean, the standard error over seeds, and a tenth of RESOLUTION times
-        the mean."""
+        the mean. Without seeds, it is the tolerance."""
         if self.spread is None or self.mean is None:
             return self.tolerance
         of_seeds = self.spread / np.sqrt(max(len(self.values), 1))

@@ -113,7 +113,8 @@ def axes_of(figure, rows):
 
 
 def name_times(axes, beside, sheet):
-    """Writes the title of the time axis below the panels that show it. The other panels have no tick labels."""
+    """Writes the title of the time axis below the panels that show it. The other panels have no tick labels on
+    their time axis."""
     if not axes:
         return
     marks = "   (triangles and dotted lines: first touch)"

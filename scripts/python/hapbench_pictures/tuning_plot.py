@@ -25,7 +25,8 @@ QUANTITIES = {
 
 
 class Trials:
-    """Trials of one law. `values`: the QUANTITIES of each trial. `feasible`: for each trial, True if the trial is
+    """Trials of one law for which the vibration was computed. `values`: the QUANTITIES of each trial, in the units of
+    the plot. `feasible`: for each trial, True if the trial is
     feasible. `chosen`: for each trial, True if the trial is the recommended trial."""
 
     def __init__(self, law, trials):

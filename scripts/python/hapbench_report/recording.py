@@ -221,7 +221,8 @@ def base64_of(code, values):
 
 
 def sound(columns):
-    """Returns the samples of a sound for the page, or None if the recording rate is too low. The samples are the force
+    """Returns the samples of a sound for the page, or None if the rate of the samples is too low or their times do not
+    increase. The samples are the force
     above 30 Hz, projected on the direction in which this force is strongest. The magnitude of the force would hide a
     change of sign."""
     times = columns["time_s"][:LONGEST]

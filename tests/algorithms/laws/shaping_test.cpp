@@ -263,7 +263,8 @@ TEST(MergedShaping, IsOptimalForTheTensorsOfItsGroups) {
 }
 
 TEST(MergedShaping, TurnsWithTheSceneByTheTurnsOfTheCube) {
-  // Use gradients away from borders of cells, because a rotation may move a gradient on a border to another cell.
+  // A random gradient does not lie on the border of two direction cells of the law. On a border, a rotation could move
+  // the gradient to the other cell.
   Random random(3);
   for (int i = 0; i < 200; ++i) {
     std::vector<Vec3> gradients;

@@ -347,8 +347,8 @@ TEST(TightPeg, HasNoForceButATorqueAndPenaltyLawsRenderAGhost) {
     EXPECT_NEAR(torque.norm(), rotation * alpha, 0.02 * rotation * alpha + 1e-6);
     if (pivot == a) {
       EXPECT_LE(force.norm(), free) << "F = 0 while T does not vanish";
-      // The shaping law renders a force that the 6-DOF device does not have. A law that renders f = 0 would have a
-      // smaller error, |F| = 0.
+      // The force F of the 6-DOF device is zero here, but the shaping law renders a force f. Its error is |F - f|. A
+      // law that renders f = 0 would have the error 0.
       EXPECT_GT(shaping.handle().force.norm(), 100 * free);
     } else {
       EXPECT_NEAR(std::hypot(force.x(), force.y()), series * a * std::sin(alpha), free);

@@ -94,7 +94,7 @@ TEST(MeshPolygons, MayHaveCornersOnALine) {
       EXPECT_NEAR(volume_of(mesh), 90.0, 1e-12);
     }
   }
-  // The warning reports a corner that is listed twice, or again at the end.
+  // The warning counts the polygons in which a corner is listed twice in succession, or again at the end.
   for (const std::string corners : {"0 2 2 3 1", "0 2 3 1 0"}) {
     std::vector<std::string> faces = kQuadrilaterals;
     faces[0] = corners;

@@ -76,7 +76,7 @@ TEST(Renderer, LetsTheForceFallAfterAGap) {
   for (int i = 0; i < 10; ++i) output = loop.at(-0.003);
   EXPECT_EQ(output.status, static_cast<unsigned>(HAPBENCH_WAITING));
   EXPECT_EQ(norm(output.force), 0.0);
-  // A gap longer than the ramp leaves no force at all.
+  // If the time between two calls is longer than the ramp that fades the force out, no force is left.
   loop.engage();
   loop.at(kInside);
   const HapbenchOutput late = loop.at(-0.003, 2.0);

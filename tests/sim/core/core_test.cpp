@@ -92,7 +92,7 @@ TEST(Profile, CosineWaypointsFollowHalfACosineOnEachLeg) {
   const Profile profile = Profile::Shape(Waypoints{{{2.0, 1.0}, {4.0, 5.0}}, kCosine});
   for (int k = 0; k <= 20; ++k) {
     const double s = k / 20.0;
-    // The tolerance covers a segment of length 4, evaluated in a few operations on numbers below 8.
+    // The tolerance covers the rounding errors of a few operations on numbers below 8.
     EXPECT_NEAR(profile(2.0 + 2.0 * s), 3.0 - 2.0 * std::cos(std::numbers::pi * s), 1e-14) << s;
   }
 }
