@@ -65,7 +65,7 @@ def make_results(directory):
         ("compare", "stiffness_peg"),
         ("limit", "spring_stiffness"),
         ("limit", "spring_damping"),
-        ("sweep", "six_dof", "--jobs=2", "--set=time.step_s=0.2", "--set=time.steps=11"),
+        ("sweep", "six_dof", "--jobs=2", "--set=time.step_s=0.1", "--set=time.steps=21"),
         ("limit", "hardware_paddle", "--resolution=0.5"),
         ("limit", "device_limits", "--device=touch,omega.3", "--resolution=0.5"),
         (
