@@ -22,8 +22,8 @@ void report_assumption_sets(const std::vector<Claim>& claims, const std::filesys
 
 /// Judges each claim of `claims` with one assumption at a time at another plausible value (sensitivity.hpp). Adds the
 /// verdicts to the record in a file after each case, so that a repeated command continues an interrupted command.
-/// Reports the robustness of each verdict. Of the other entries in the record, keeps only the entries of claims in
-/// `all`, the list of all claims.
+/// Reports the robustness of each verdict. Removes entries from the record whose claim is not in `all`, the list of all
+/// claims.
 void record_sensitivity(const std::vector<Claim>& claims, const std::vector<Claim>& all,
                         const std::filesystem::path& file, const std::filesystem::path& scratch,
                         const CommonOptions& options, Report& report, ProgramContext& context);

@@ -17,13 +17,13 @@ namespace {
 constexpr const char *kPresets = "impedance", *kFile = ".json";  ///< kPresets: text that selects all presets;
                                                                  ///< kFile: ending of a device file's name
 
-/// Returns true if the text is the path of a device file. A pipe, such as /dev/fd/63, has no extension.
+/// Returns true if the text is the path of a device file: it ends with ".json", contains "/", or is a pipe.
 bool is_file(const std::string& name) {
   std::error_code error;
   return name.ends_with(kFile) || name.find('/') != std::string::npos || std::filesystem::is_fifo(name, error);
 }
 
-/// Returns the devices that a name, a type or a file selects; empty for an unknown name.
+/// Returns the devices that an entry of --device selects, as defined at chosen_devices(); empty for an unknown entry.
 std::vector<ComparedDevice> devices_named(const std::string& name) {
   if (is_file(name)) return {device_of_file(name)};
   std::vector<ComparedDevice> found;

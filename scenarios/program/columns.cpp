@@ -29,7 +29,8 @@ std::string varied_text(double value, int digits) {
   return rounded_text(value, exact ? kAllDigits : digits);
 }
 
-/// Returns the cells of a varied field, with as few digits as keep different numbers different.
+/// Returns the cells of a varied field as texts, with the smallest number of digits with which different numbers have
+/// different texts.
 std::vector<std::string> varied_cells(std::span<const Cell> cells, const Shown& shown) {
   constexpr int kMinDigits = 4;
   std::set<double> numbers;

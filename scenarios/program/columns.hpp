@@ -47,8 +47,9 @@ Cell axis_cell(const std::string& value);
 
 /// Returns the cells of a column as text. A number has the digits that are significant at its tolerance, or
 /// `shown.digits` digits without a tolerance. An empty cell is "-". In the column of a varied field, whole numbers and
-/// numbers of at most six digits are printed exactly. The other numbers in this column have four to six digits, as few
-/// as keep different numbers different. `tolerances` has an entry for each cell.
+/// numbers of at most six digits are printed exactly. The other numbers in this column have four to six digits: the
+/// smallest number of digits with which different numbers have different texts. `tolerances` has an entry for each
+/// cell.
 std::vector<std::string> printed(std::span<const Cell> cells, const Shown& shown,
                                  std::span<const std::optional<double>> tolerances);
 

@@ -16,7 +16,7 @@
 
 namespace hapbench {
 
-/// The parser of the program's command line. Every command adds itself to it; run() parses the arguments and
+/// The parser of the program's command line. Every command adds itself to the parser; run() parses the arguments and
 /// runs the selected command.
 class CommandLine {
  public:
@@ -52,9 +52,9 @@ class CommandLine {
   Command add(const std::string& name, const std::string& summary, OutputOptions& output, std::function<int()> action,
               const std::string& when_stopped);
   void add_module_option(CLI::App& app);
-  /// Returns the indices of the positional arguments in `arguments`, which begins with the command's name. Positional
-  /// arguments are neither options nor values of options. An argument that follows an unknown option may be its value
-  /// and is left out. Returns no indices if `arguments` begins with no command's name.
+  /// Returns the indices of the positional arguments in `arguments`, whose first element is the name of a command.
+  /// Positional arguments are neither options nor values of options. An argument that follows an unknown option may be
+  /// its value and is left out. If the first element is not the name of a command, returns no indices.
   std::vector<std::size_t> argument_indices(const ProgramArguments& arguments) const;
   int parse_and_run(ProgramArguments arguments);
 

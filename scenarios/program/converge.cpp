@@ -207,12 +207,13 @@ std::string verdict_text(const ConvergeStudy& study) {
   const bool has_spread = std::ranges::none_of(
       study.levels, [low = low](const LevelRow& level) { return level.result && *level.result <= low; });
   return fmt::format("no order: {}; the last levels{} give {} ... {}", study.reason,
-                     has_spread ? ", with the sampling error of this metric," : "", number_text(low, high - low),
-                     number_text(high, high - low));
+                     has_spread ? ", widened by the error of counting only the times of the coarsest level," : "",
+                     number_text(low, high - low), number_text(high, high - low));
 }
 
 /// Returns a sentence that names the coarsest level from which on all levels have relative errors below `max_error`,
-/// and the cost of this level. If the finest level has a larger error, names an extrapolated value of the field.
+/// and the cost of this level. If the error of the finest level is not below `max_error`, names the value of the field
+/// at which an extrapolation reaches `max_error`. If the order is not asymptotic, says that no value is known.
 std::string sufficient_level_text(const ConvergeStudy& study, double max_error) {
   // Find the first level from which on all errors are below the bound.
   const std::vector<LevelRow>& levels = study.levels;
@@ -236,8 +237,8 @@ std::string sufficient_level_text(const ConvergeStudy& study, double max_error) 
                              *finite_number(finest.value) / finer);
 }
 
-/// Returns the relative error of a text such as "1%" or "0.01". Throws InputError unless it lies between 0 and
-/// 1.
+/// Converts the value of --to, such as "1%" or "0.01", to a relative error. Throws InputError unless the error lies
+/// between 0 and 1.
 double parse_relative_error(const std::string& text) {
   const bool percent = text.ends_with('%');
   const auto number = finite_number(std::string_view(text).substr(0, text.size() - (percent ? 1 : 0)));
@@ -257,7 +258,7 @@ LevelRun run_of(const CheckedScenario& scene) {
 
 /// Returns the levels for refining the field. Throws InputError if the scene has no such numeric field.
 LevelSweep levels_of(const ConvergeOptions& options, const ScenarioText& scenario) {
-  // Warnings of this scenario are returned by plan_sweep().
+  // Ignore the warnings about this scenario here, because plan_sweep() returns them.
   const CheckedScenario scene = checked(load_scenario(scenario, options.overrides));
   const LoadedScenario& loaded = scene.loaded();
   if (current_value(loaded.scenario, options.field).is_null()) {
@@ -357,6 +358,9 @@ int converge(const ConvergeOptions& options, ProgramContext& context) {
   report.write(kOrders, order_columns(), studies);
   report.write(kLevels, level_columns({}), rows);
   report.write(kTimes, time_columns(), studies.front().levels);
+  report.add_text(layout.wrapped("error %: estimated error (\"hapbench describe error_estimate\"), divided by the result "
+                                 "of the finest level",
+                                 0));
   report.add_text(fmt::format("results in {}\n\"hapbench plot {}\" draws them\n", report.folder().string(),
                               shell_file(report.folder())));
   return report.finish();

@@ -9,7 +9,7 @@
 namespace hapbench {
 
 void add_converge(CommandLine& line);
-/// Returns the tables that this command writes and prints, for `describe`.
+/// Returns the tables that `converge` writes and prints, for `describe`.
 std::vector<DescribedTable> converge_tables();
 
 }  // namespace hapbench

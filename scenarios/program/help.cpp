@@ -28,7 +28,7 @@ std::string kind_of_value(const CLI::Option& option) {
   return kind;
 }
 
-/// Returns the name of an argument in the help: its placeholder.
+/// Returns the name of a positional argument in the help: its placeholder if it has one, otherwise its own name.
 std::string argument_name(const CLI::Option& option) {
   std::string kind = kind_of_value(option);
   if (kind.starts_with('<')) return kind;

@@ -9,8 +9,8 @@
 /// Parses ranges, bounds and numbers from values of options.
 namespace hapbench {
 
-/// Returns the range of a text "a:b" with numbers a < b; empty for an empty text. Throws InputError with the
-/// option's name.
+/// Converts the value of an option, "a:b" with numbers a < b, to a range. Returns empty for an empty text. Throws
+/// InputError with the option's name.
 std::optional<Range> parse_range(const char* option, const std::string& text);
 /// Adds the bound of a --bound value, "metric=max" or "metric=min:max", to `bounds`. Throws InputError.
 void add_bound(const std::string& text, std::map<std::string, MetricBound>& bounds);

@@ -22,7 +22,8 @@ std::string error_head() {
   return bold(stderr, "hapbench: error:");
 }
 
-/// Prints a line on standard error, or appends the text to the captured list `kind` of a host.
+/// If a host captures the output, appends `text` to the list `kind` of the captured output. Otherwise prints `head` and
+/// `text` as a line on standard error.
 void report(const ProgramContext& context, std::vector<std::string> CapturedOutput::*kind, std::string_view head,
             std::string_view text) {
   if (context.captured != nullptr) {
@@ -32,7 +33,7 @@ void report(const ProgramContext& context, std::vector<std::string> CapturedOutp
   write_line(head, text);
 }
 
-/// Prints text on standard output, or appends it to the captured text of a host.
+/// If a host captures the output, appends `output` to the captured text. Otherwise prints `output` on standard output.
 void print_as_is(const ProgramContext& context, const std::string& output) {
   if (context.captured != nullptr) {
     context.captured->text += output;

@@ -20,7 +20,7 @@ namespace hapbench {
 /// --quiet.
 void print(const ProgramContext& context, const OutputOptions& options, const std::string& text, const Json& json);
 /// Prints the tables in the format of --table, and nothing else, on standard output. Prints a note if there are several
-/// CSV tables, because readers of CSV files expect one. Throws InputError if there is no table.
+/// CSV tables, because readers of CSV files expect a single table. Throws InputError if there is no table.
 /// Precondition: options.table is not empty.
 void print_tables(const ProgramContext& context, const OutputOptions& options, std::span<const Table> tables);
 /// Prints warnings, one line each, on standard error.

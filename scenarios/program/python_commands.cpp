@@ -97,8 +97,8 @@ int run_captured(CapturedOutput& host, const std::string& line) {
 /// Internal argument of "hapbench import device". The Python package starts one process with this argument and requests
 /// thousands of simulations of a device log from it. Standard input and standard output carry binary doubles. The input
 /// is, in this order: the number of rows, the times of the rows, the forces of the rows, and the requests. A request is
-/// a number of rows (0 ends the requests) and the fields of a LoggedHandle. The answer to a request is the positions at
-/// the first rows, as many as the request gives.
+/// a number of rows (0 ends the requests) and the fields of a LoggedHandle. The answer to a request with n rows is the
+/// positions at the first n rows.
 constexpr const char* kSimulateLog = "--simulate-log";
 
 int simulate_log_for_pipe() {
@@ -128,8 +128,8 @@ constexpr const char* kRunsWhere = "--runs-where";
 
 constexpr const char* kKnee = "--knee";
 
-/// Prints the index of the knee of the front of points, for a picture; an empty line if there is none. `given`: the
-/// option, then a text COST:ERROR for each point.
+/// Prints the index of the point that is the knee of the Pareto front of the given points (pareto_front.hpp); an empty
+/// line if the front has no knee. Used for a picture. `given`: the option, then a text COST:ERROR for each point.
 int print_knee(const ProgramArguments& given, ProgramContext& context) {
   std::vector<CostAndError> points;
   for (std::size_t i = 1; i < given.size(); ++i) {

@@ -68,7 +68,7 @@ Columns<ReplayRow> replay_columns() {
           {"clamped_calls", "1", "calls with the status CLAMPED", &ReplayRow::clamped, under("CLAMPED")}};
 }
 
-/// Returns the outputs of a checked scenario along the log, and the header of its log.
+/// Renders the calls of `log` with a checked scenario. Returns the new outputs, and the header for a log of them.
 std::pair<std::vector<HapbenchOutput>, std::string> rendered(const CheckedScenario& scenario, const LoopLog& log) {
   const std::unique_ptr<HapbenchRenderer> renderer(
       with_file(scenario.loaded(), [&] { return new_renderer(scenario, log.setup); }));

@@ -9,7 +9,7 @@
 namespace hapbench {
 
 void add_reproduce(CommandLine& line);
-/// Returns the tables that this command writes and prints, for `describe`.
+/// Returns the tables that `reproduce` writes and prints, for `describe`.
 std::vector<DescribedTable> claim_tables();
 
 }  // namespace hapbench

@@ -9,7 +9,7 @@
 namespace hapbench {
 
 void add_run(CommandLine& line);
-/// Returns the tables that this command writes and prints, for `describe`.
+/// Returns the tables that `run` writes and prints, for `describe`.
 std::vector<DescribedTable> single_run_tables();
 
 }  // namespace hapbench

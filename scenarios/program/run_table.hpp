@@ -59,7 +59,7 @@ inline constexpr const char* kToolVibrationPower = "vibration_power_above_30Hz_m
 
 /// Returns a sentence with the 99th percentile of the time of a step in the slowest run. Returns an empty text if all
 /// runs are too short for this percentile. After --latency, whose table has the percentiles, returns the sentence only
-/// if a step is too slow. Precondition: there is at least one run.
+/// if this percentile is longer than the time step. Precondition: there is at least one run.
 std::string step_time_text(std::span<const Result> reports, const Layout& layout);
 
 /// Reports a table that compares the rendered force with the reference force, for the runs with a reference force.
@@ -71,8 +71,8 @@ void report_fidelity(std::span<const Result> reports, const Layout& layout, Repo
 /// runs of one algorithm differ only in their numbers, one line quotes the first warning and counts the others.
 std::vector<std::string> run_warnings(std::span<const Result> reports);
 
-/// Returns a diagnosis rule whose threshold is exceeded, with its value, its threshold and their unit: "buzz (0.289 >
-/// 0.1)".
+/// Returns a text with the name of a diagnosis rule whose threshold is exceeded, its value, its threshold and their
+/// unit, such as "buzz (0.289 > 0.1)".
 std::string finding_text(const Diagnosed& found);
 
 /// Returns a number for a text that also states its error. The digits are significant at the error: one digit if the

@@ -9,7 +9,7 @@
 namespace hapbench {
 
 void add_stress(CommandLine& line);
-/// Returns the tables that this command writes and prints, for `describe`.
+/// Returns the tables that `stress` writes and prints, for `describe`.
 std::vector<DescribedTable> stress_tables();
 
 }  // namespace hapbench

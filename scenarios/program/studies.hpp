@@ -21,8 +21,8 @@
 /// A number or a text is the value of its option. True gives an option that has no value, and false omits the option.
 /// A list of two numbers for "between" is a range. Other lists are values separated by commas; each entry of "bound"
 /// becomes a separate option. The objects "set", "over" and "vary" map paths of fields to a value, a list, or a range
-/// with "from", "to", "count" and "log". A scenario file is searched next to the study first. "alone" is for
-/// scripts/reproduce: the script runs nothing else at the same time as a study that measures time.
+/// with "from", "to", "count" and "log". A scenario file is searched next to the study first. "alone": true
+/// marks a study that measures times: scripts/reproduce runs nothing else at the same time as this study.
 namespace hapbench {
 
 /// A study in the folder scenarios/library/studies; `ask` is the command.

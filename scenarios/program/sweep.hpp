@@ -9,7 +9,7 @@
 namespace hapbench {
 
 void add_sweep(CommandLine& line);
-/// Returns the tables that this command writes and prints, for `describe`.
+/// Returns the tables that `sweep` writes and prints, for `describe`.
 std::vector<DescribedTable> sweep_tables();
 
 }  // namespace hapbench

@@ -18,7 +18,8 @@ struct Table {
 
     /// Returns the upper and the lower line of the title. A title of one line is the lower line.
     std::array<std::string, 2> lines() const;
-    /// Returns lines() with the unit in brackets at the end, unless a word of the title is the unit or in brackets.
+    /// Returns lines() with the unit in brackets at the end. Adds no unit if the title already has the unit as a word,
+    /// or contains a bracket.
     std::array<std::string, 2> head_lines() const;
     /// Returns head_lines() as one line.
     std::string head() const;

@@ -94,7 +94,7 @@ std::string in_one_line(std::string_view text) {
 // --- Markdown ---
 
 /// Returns text with a backslash before each character that has a meaning in Markdown. An underscore within a word has
-/// none.
+/// no meaning and gets no backslash.
 std::string markdown_text(std::string_view given) {
   const std::string text = in_one_line(given);
   constexpr std::string_view kSpecial = "\\`*[]<>|&$~#";
@@ -110,7 +110,7 @@ std::string markdown_text(std::string_view given) {
   return result;
 }
 
-/// Returns the text of a cell in Markdown. An error has the sign ±.
+/// Returns the text of a cell in Markdown. "+-" becomes ±, and "<=" becomes ≤.
 std::string markdown_cell(const std::string& cell) {
   constexpr std::array<std::pair<std::string_view, std::string_view>, 2> kSigns = {{{" +- ", " ± "}, {"\\<= ", "≤ "}}};
   return replaced(markdown_text(cell), kSigns);

@@ -29,15 +29,16 @@ std::optional<double> position_error(const Setting& s) {
 std::optional<double> force_error(const Setting& s) {
   return s.error ? std::optional(s.error->force) : std::nullopt;
 }
-/// Returns an error in multiples of `unit`, or the error of the reference solution if it is larger. "<" marks an error
-/// that the reference solution does not resolve. Returns "-" for a setting without an error.
+/// Returns the larger of two errors as text, in multiples of `unit`: the error of the setting and the error of the
+/// reference solution. "<" marks an error of the setting that the reference solution does not resolve. Returns "-" for
+/// a setting without an error.
 std::string error_text(const Setting& s, double error, double of_reference, double unit) {
   if (!s.error) return "-";
   const double shown = std::max(error, of_reference) / unit;
   return fmt::format("{}{}", error < kResolvedError * of_reference ? "< " : "", significant(shown, 2));
 }
 
-/// Returns the columns of convergence.csv, which are the same in every run of the command. `max_error` [m]: the
+/// Returns the columns of convergence.csv. Their values are the same if the command is repeated. `max_error` [m]: the
 /// requested error.
 Columns<Setting> error_columns(double max_error) {
   const auto reference_position = [](const Setting& s) { return s.reference_error.position; };
@@ -83,7 +84,7 @@ Columns<Setting> error_columns(double max_error) {
        only_printed()}};
 }
 
-/// Returns the columns of convergence_timing.csv, which differ from run to run.
+/// Returns the columns of convergence_timing.csv. Their values are times, which differ if the command is repeated.
 Columns<Setting> timing_columns() {
   const auto simulated = [](const Setting& s) { return s.cost.per_simulated_second(); };
   const auto step = [](const Setting& s) { return s.cost.step_s; };

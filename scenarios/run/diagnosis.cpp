@@ -69,7 +69,8 @@ constexpr Rule kRules[] = {
      kMaxBuzz, "the force vibrates: its rms above 30 Hz is {} times the mean force", buzz, against_buzz, buzz_frequency,
      true},
     {"pop", "largest force step in settled contact, divided by the mean force of a pressed tool", "1", 0.5,
-     "the force jumps: in settled contact one force step is {} times the mean force", pop, against_pops, no_more, true},
+     "the force jumps: the largest force step in settled contact is {} times the mean force", pop, against_pops,
+     no_more, true},
     {"shake",
      "rms of the tool's velocity above 30 Hz over the run, if the rule buzz has no number: without settled contact, or "
      "for a tool that nothing presses",

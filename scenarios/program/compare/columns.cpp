@@ -28,9 +28,9 @@ constexpr std::string_view kComparedMetrics =
     "inside_settled_m centre_inside_share vibration_last_quarter_m_per_s fidelity.force_error_relative "
     "fidelity.force_direction_error_rad fidelity.force_artefact_share";
 
-/// Returns the error of the mean: the largest of the error of the single values, the standard error over seeds, and a
-/// tenth of the difference up to which two means share a rank. Without a spread, returns the error of the single
-/// values.
+/// Returns the error of the mean: the largest of the tolerance of the entry, the standard error over seeds, and a tenth
+/// of the difference up to which two means share a rank. If the entry has no spread over seeds, returns the tolerance
+/// of the entry.
 std::optional<double> error_of_mean(const RankingEntry& entry) {
   if (!entry.spread) return entry.tolerance;
   const double of_seeds = *entry.spread / std::sqrt(static_cast<double>(entry.common_seeds));

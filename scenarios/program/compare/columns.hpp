@@ -24,7 +24,7 @@ Columns<ComparedRun> comparison_columns(bool seeds);
 Columns<RankingEntry> ranking_columns(bool seeds);
 /// Returns the columns of the table that ranks the algorithms over all scenarios and metrics.
 Columns<LawRankingEntry> law_ranking_columns();
-/// Returns the tables that this command writes and prints, for `describe`.
+/// Returns the tables that `compare` writes and prints, for `describe`.
 std::vector<DescribedTable> ranking_tables();
 
 }  // namespace hapbench

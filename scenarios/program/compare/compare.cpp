@@ -118,8 +118,8 @@ void report_ranking(const Ranking& ranking, const Layout& layout, Report& report
   for (std::size_t i = 0; i < laws.size(); ++i) laws[i]["fails"] = ranking.laws[i].fails;
 }
 
-/// Reports the table of the runs of one scene. `errors`: true if errors are reported too; the sentence on vibration is
-/// then omitted.
+/// Reports the table of the runs of one scene. `errors`: true if report_errors() is called afterwards; the sentence on
+/// vibration is then omitted.
 void report_runs(const std::vector<Result>& reports, const Ranking& ranking, bool errors, const Layout& layout,
                  Report& report) {
   report.add_text(reports.front().name + "\n\n");

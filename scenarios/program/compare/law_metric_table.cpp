@@ -14,8 +14,8 @@
 namespace hapbench {
 namespace {
 
-/// Returns the heading of a metric in the table of runs. If the table lacks the metric, the heading is the metric's
-/// name with a factor of 1.
+/// Returns the heading of a metric in the table of runs. If this table lacks the metric, returns a heading with the
+/// name of the metric and the unit of the metric (factor 1).
 RunHeading heading_of(const std::string& metric) {
   const auto* known = std::ranges::find(kRunHeadings, metric, &RunHeading::metric);
   return known == std::end(kRunHeadings) ? RunHeading{metric.c_str(), metric.c_str()} : *known;

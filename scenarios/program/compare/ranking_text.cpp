@@ -40,7 +40,7 @@ std::vector<RankingEntry> ranked(const Ranking& ranking) {
   return all;
 }
 
-/// Returns the number of pairs of scenario and metric in which a law has a rank.
+/// Returns the number of pairs of scenario and metric in which at least one law has a rank.
 std::size_t ranking_count(const Ranking& ranking) {
   std::set<std::pair<std::string, std::string>> rankings;
   for (const RankingEntry& entry : ranking.entries)
@@ -66,7 +66,7 @@ const char* no_ranks_reason(const Ranking& ranking) {
   if (std::ranges::none_of(ranking.better, has_direction)) return "none of these metrics has a better direction";
   const auto has_mean = [](const RankingEntry& entry) { return entry.mean.has_value(); };
   if (std::ranges::none_of(ranking.entries, has_mean)) return "no successful run has a value of these metrics";
-  return "the differences are within the errors or 0.1 %";
+  return "each difference is below 0.1 %, or within the tolerance or the error of its metric";
 }
 
 std::string first_ranks_text(const Ranking& ranking) {
@@ -101,7 +101,7 @@ bool seeds_agree(const Ranking& ranking, std::size_t scenario) {
   return true;
 }
 
-/// Summarizes which algorithms are first, and whether the seeds give a spread.
+/// Returns sentences that say which algorithms are first, and whether the results of the runs depend on the seed.
 std::string verdict(const Ranking& ranking, const std::string& folder, const Layout& layout) {
   std::string text = layout.wrapped(first_ranks_text(ranking), 0);
   if (ranking.seeds < 2)

@@ -52,7 +52,7 @@ std::string entry_text(const Json& item, const Layout& layout, std::size_t inden
   std::string name = item.value("name", "");
   std::replace(name.begin(), name.end(), '\n', ' ');
   const std::string kind = item.value("kind", ""), unit = item.value("unit", "");
-  // Sort the members: prose, values of one line, lists of entries.
+  // Divide the members into prose, values of one line, and lists of entries.
   std::string prose, facts, lists;
   for (const auto& [key, value] : item.items()) {
     if (key == "kind" || key == "name" || key == "unit") continue;

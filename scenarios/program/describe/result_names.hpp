@@ -19,8 +19,8 @@ Description describe_tables(const Layout& layout);
 Description describe_printed_names(const Layout& layout);
 /// Adds the metrics of summary.json, each with the files of `tables` that have a column with its name and meaning.
 void add_metric_terms(Index& index, const std::vector<DescribedTable>& tables, const Layout& layout);
-/// Adds the columns of all files that add_metric_terms() does not add. Columns with equal names and meanings share an
-/// entry, which lists their files.
+/// Adds the columns of all files, except the columns of metrics, which add_metric_terms() adds. Columns with equal
+/// names and meanings share an entry, which lists their files.
 void add_columns(Index& index, const std::vector<DescribedTable>& tables, const Layout& layout);
 /// Adds the words that the program prints.
 void add_printed_names(Index& index, const Layout& layout);

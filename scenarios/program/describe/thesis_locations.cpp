@@ -28,8 +28,8 @@ struct ThesisLocation {
   std::string kind, number;
 };
 
-/// Returns the kind of location that a word announces: the numbers after "figure" are figures. After every word other
-/// than "figure", "table" and "equation", the numbers are sections.
+/// Returns the kind of the locations whose numbers follow a word: "Fig." for "figure", "Table" for "table", "Eq." for
+/// "equation", also for their short forms; "section" for every other word.
 std::string location_kind(const std::string& word) {
   const std::string lower = lower_case(word);
   if (lower == "fig" || lower == "figs" || lower == "figure") return "Fig.";
@@ -59,7 +59,7 @@ std::optional<ThesisLocation> parse_thesis_location(const std::string& name) {
 }
 
 /// Returns true if a source such as "3.3, Fig. 4, C.2a" names the location or a part of it. A kind applies to all
-/// numbers up to the next word. Numbers that are no location of the thesis are treated as locations too.
+/// numbers up to the next word. A number that means something else, such as a year, is treated as a location too.
 bool mentions_location(const std::string& source, const ThesisLocation& requested) {
   static const std::regex kParts(R"(([A-F]\.\d+|\d+)(\.\d+)*[a-d]?\b|[A-Za-z]+)");
   std::string kind = "section";

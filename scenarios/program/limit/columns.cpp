@@ -146,8 +146,8 @@ Columns<LimitRow> limit_value_columns(const LimitTable* table) {
        of(&Row::limit, &FieldLimit::no_linear)}};
 }
 
-/// Returns the columns of the search's diagnostics. `grid` adds numbers of the run at the limit, for comparing
-/// cases.
+/// Returns the columns that describe the search for the limit, such as tolerances, undecided runs and verification
+/// samples. `grid` adds numbers of the run at the limit, for comparing cases.
 Columns<LimitRow> search_columns(bool devices, bool grid) {
   using Row = LimitRow;
   const auto may_fail = [](const Row& r) {

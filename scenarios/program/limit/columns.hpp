@@ -9,7 +9,7 @@
 namespace hapbench {
 
 /// Name of a column of limit.csv: the number of runs that are unstable within the stable interval, or stable outside of
-/// it. In the JSON, this name has a list of these runs.
+/// it. In the JSON, the member with this name is the list of these runs.
 inline constexpr const char* kNonMonotonic = "non_monotonic_runs";
 
 /// A row of limit_runs.csv: a run and the case that it belongs to.
@@ -26,7 +26,7 @@ struct LimitRunRow {
 Columns<LimitRow> limit_columns(const LimitTable* table);
 /// Returns the columns of limit_runs.csv.
 Columns<LimitRunRow> limit_run_columns(const LimitTable* table);
-/// Returns the tables that this command writes and prints, for `describe`.
+/// Returns the tables that `limit` writes and prints, for `describe`.
 std::vector<DescribedTable> limit_tables();
 
 }  // namespace hapbench

@@ -24,7 +24,8 @@ void find_limits(const LimitOptions& options, std::vector<LimitRow>& rows, const
                [&](std::size_t i) { rows[i].limit = field_limit(rows[i].question); });
 }
 
-/// Computes the ratios of each limit to the limit of the first case in its block of rows.
+/// Computes the ratios of each limit to the limit of its reference case (LimitRow::stiffness_ratio). Each block of
+/// table.columns() rows begins with the reference case of all its rows.
 void add_ratios(LimitTable& table) {
   for (std::size_t i = 0; i < table.rows.size(); ++i) {
     LimitRow& row = table.rows[i];

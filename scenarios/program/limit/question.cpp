@@ -48,8 +48,10 @@ bool are_devices_changed(const LimitOptions& options) {
   return is_changed;
 }
 
-/// Returns the selected devices. Each device is followed by its variants: both ends of the range of unpublished
-/// parameters, or the friction factors of --friction. If --set changes a device, "*" is appended to its name.
+/// Returns the selected devices, each followed by its variants. With --friction none, there are no variants. With other
+/// values of --friction, the variants are the device with each factor on its friction. Without --friction, they are the
+/// device at both ends of the range of its unpublished parameters. If --set changes a preset, "*" is appended to its
+/// name.
 std::vector<ComparedDevice> device_variants(const LimitOptions& options) {
   const bool none_other = options.friction == std::vector<std::string>{kNoFriction};
   const bool is_changed = are_devices_changed(options);

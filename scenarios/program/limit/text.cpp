@@ -154,8 +154,10 @@ std::string notes_text(const LimitTable& table, const Layout& layout) {
        "source)"},
       {is_marked("* "), "*: a preset with fields changed by --set; nothing is published for this combination"},
       {is_marked("[soft]"),
-       fmt::format("[soft], [stiff]: the preset with all unpublished parameters at one end of their ranges ({})",
-                   kPresetRanges)},
+       fmt::format(
+           "[soft], [stiff]: the preset with all unpublished parameters at one end of their ranges: [soft] with the "
+           "smallest mass and friction and the coarsest encoder, [stiff] with the opposite ({})",
+           kPresetRanges)},
       {is_marked("[friction*"), "[friction*2]: the preset with its dry friction multiplied by this factor"},
       {table.first().question.path == kStiffnessPath && friction.has_value(),
        "device_model/README.md, \"Which K to quote?\", explains which of these stiffnesses to quote"},

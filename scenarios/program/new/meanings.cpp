@@ -17,7 +17,8 @@ const ValueGuide* object_of(const Json& value, const ValueGuide& guide) {
   return nullptr;
 }
 
-/// Adds the meaning of each field in a value by its dotted path. Objects come before their fields.
+/// Adds the meaning of each field in `value` to `meanings`, with the dotted path of the field as key. Objects come
+/// before their fields.
 void add_meanings(Json& meanings, const std::string& prefix, const Json& value, const ValueGuide& object) {
   for (const auto& entry : value.items()) {
     const auto field = std::ranges::find(object.fields, entry.key(), &FieldGuide::name);

@@ -6,8 +6,8 @@
 
 namespace hapbench {
 
-/// Returns an object with the meaning of each field in a scenario, by the field's dotted path. Objects come
-/// before their fields.
+/// Returns a JSON object with the meaning of each field in a scenario. The keys are the dotted paths of the fields.
+/// Objects come before their fields.
 Json field_meanings(const Json& scenario);
 
 }  // namespace hapbench

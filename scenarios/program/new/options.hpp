@@ -25,9 +25,9 @@ struct LengthUnit {
 };
 inline constexpr LengthUnit kLengthUnits[] = {{"mm", 0.001}, {"cm", 0.01}, {"m", 1.0}, {"in", 0.0254}};
 
-/// Returns the point of a text such as "0.01,0,0" [m]. Throws InputError with the option's name.
+/// Converts the value of an option, such as "0.01,0,0", to a point [m]. Throws InputError with the option's name.
 Vec3 parse_position(const char* option, const std::string& text);
-/// Returns the length of a text such as "12mm" [m]. Throws InputError with the option's name.
+/// Converts the value of an option, such as "12mm", to a length [m]. Throws InputError with the option's name.
 double parse_length(const char* option, const std::string& text);
 /// Throws InputError if the kind requires an option that is missing, if an option does not apply to the kind,
 /// and if a file does not exist.

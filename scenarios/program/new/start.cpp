@@ -55,9 +55,9 @@ double to_micrometres(double metres) {
   return std::round(1e6 * metres) / 1e6;
 }
 
-/// Makes a scene for a scenario file in `directory`, and determines its values one after the other. Positions
-/// are computed in the frame of the side from which the tool approaches: the side's direction is z. Throws
-/// InputError if a file cannot be used.
+/// Makes a scene for a scenario file in `directory`, and determines its values one after the other. Positions are
+/// computed in the frame of the side from which the tool approaches (--side). The direction of the side is the z axis
+/// of this frame. Throws InputError if a file cannot be used.
 class Start {
  public:
   Start(const StartKind& kind, const NewOptions& options, const std::filesystem::path& directory)
@@ -114,7 +114,7 @@ class Start {
     }
   }
 
-  /// Rotates the side's frame into the world frame, and orients the tool along the side's axis.
+  /// Sets the rotation from the side's frame to the world frame, and orients the tool along the side's axis.
   void rotate_to_side() {
     const auto axis = static_cast<Eigen::Index>(options_.side.back() - 'x');
     const Vec3 up = side_sign() * Vec3::Unit(axis), lean = Vec3::Unit(axis == 0 ? 1 : 0);
@@ -123,7 +123,8 @@ class Start {
       scene_["motion"]["orientation"] = {{"up", list_of(up)}, {"lean", list_of(lean)}};
   }
 
-  /// Returns the mesh file of the environment; if the mesh is a tool, the file of the tool.
+  /// Returns the file of --on, or the file of --from if --on is not given: the mesh or point shell of the environment,
+  /// or the mesh of the tool.
   const std::string& mesh_file() const { return options_.on.empty() ? options_.from : options_.on; }
 
   LoadedScenario scenario() const { return read_scenario(scene_, directory_); }
@@ -194,7 +195,8 @@ class Start {
 
   MeshFile mesh() const { return scenario().files.at(kEnvironmentFile).mesh(); }
 
-  /// Returns the largest component of the mesh, which is found once for each scene. Precondition: the scale is set.
+  /// Returns the largest component of the mesh. Computes it again only if the fields of the environment have changed
+  /// since the last call. Precondition: the scale is set.
   const MeshFile& largest_component() const {
     const Json& environment = scene_.at("environment");
     if (!largest_ || environment != largest_environment_) {
@@ -204,7 +206,8 @@ class Start {
     return *largest_;
   }
 
-  /// Returns the bounding box of the environment's mesh without specks, in the side's frame.
+  /// Returns the bounding box of the environment's mesh in the side's frame. Leaves out specks, the components whose
+  /// diameter is at most kSpeckSize times the diameter of the largest component.
   Box box_of_mesh() {
     const MeshFile file = mesh();
     const MeshFindings& found = file.findings();
@@ -238,7 +241,8 @@ class Start {
       notes_.push_back(fmt::format("the mesh has {} components; the tool starts over the largest", components));
   }
 
-  /// Sets the tool's diameter to a fiftieth of the object's length [m], but at least 1 mm.
+  /// Sets the tool's diameter to a fiftieth of the object's largest dimension `longest` [m], but at least 1 mm. Sets
+  /// the tool's length to ten diameters.
   void choose_tool(double longest) {
     diameter_ = std::max(0.001, rounded(longest / 50.0));
     for (const auto& [field, size] : {std::pair{"diameter_m", diameter_}, {"length_m", 10.0 * diameter_}})

@@ -8,7 +8,8 @@
 #include "results/summary/summary.hpp"
 #include "scenarios/analysis/tuning/tune.hpp"
 
-/// The results of `tune`. The choice of a law is its best feasible setting, with the stiffness K (TunedLaw::choice).
+/// The results of `tune`. The choice of a law is its best feasible setting (TunedLaw::choice). A setting includes the
+/// stiffness K.
 namespace hapbench {
 
 /// The question of a `tune` command, and the answer for each law.
@@ -28,7 +29,7 @@ struct Tuning {
 std::vector<const TunedLaw*> ranking_of(const std::vector<TunedLaw>& laws);
 
 /// A stability margin of a choice: its column in tune.csv, its heading, its JSON key, and its printed text. If the
-/// margin is at least `max`, the text says "more than", because the search for the margin ends there.
+/// margin is at least `max`, it lies at the end of the range in which it is searched, and the text says "more than".
 struct Margin {
   const char *column, *unit, *meaning, *heading, *key, *text;
   std::optional<double> TuneMargins::*of;

@@ -14,7 +14,7 @@ Json bounds_json(const TuneQuestion& question);
 Columns<TunedLaw> tuned_columns(const TuneQuestion& question);
 /// Returns the columns of tune_trials.csv, which has a row for each setting that was evaluated.
 Columns<TuneTrial> trial_columns();
-/// Returns the tables that this command writes and prints, for `describe`.
+/// Returns the tables that `tune` writes and prints, for `describe`.
 std::vector<DescribedTable> tune_tables();
 
 }  // namespace hapbench

@@ -9,10 +9,11 @@
 namespace hapbench {
 namespace {
 
-/// Endings of the names of fields whose felt value is proportional to the scale.
+/// Endings of the names of scaled fields: the hand feels their value times the scale of the mount.
 constexpr std::array<std::string_view, 4> kScaledUnits = {"_N_per_m", "_N_s_per_m", "_s_per_m", "_kg"};
 
-/// Adds the overrides of the scaled fields in `value`, the field at `path`.
+/// Adds an override for each scaled field within `value`, which divides the field by the scale. `path`: dotted path of
+/// `value` in the scenario.
 void add_overrides(const Json& value, const std::string& path, double scale, std::vector<std::string>& overrides) {
   if (value.is_object()) {
     for (const auto& [name, member] : value.items()) {

@@ -22,9 +22,10 @@ std::string low_vibration_rules() {
 namespace {
 
 std::string limits_text(const Tuning& tuning) {
-  std::string text =
-      fmt::format("largest K for which all runs settle at every stiffness from K to {:g} K{}", tuning.question.margin,
-                  tuning.ranges.damping_ratio ? ", with damping B = 2 zeta sqrt(K m)" : "");
+  std::string text = fmt::format(
+      "largest K for which all runs settle (are stable by \"hapbench describe stability\") at every stiffness "
+      "from K to {:g} K{}",
+      tuning.question.margin, tuning.ranges.damping_ratio ? ", with damping B = 2 zeta sqrt(K m)" : "");
   if (!tuning.question.allow_vibration)
     text +=
         fmt::format(". The run at K has low vibration: none of the rules {} applies (\"hapbench describe diagnosis\")",
@@ -60,14 +61,14 @@ std::string recommendation_text(const Tuning& tuning, const Layout& layout) {
   const auto line = [&](const char* name, const std::string& what) { text += layout.entry(name, what, 2, 14); };
   const bool is_at_end = best->binding == "range";
   line("limited by", fmt::format("{}; {}{}", best->binding, is_at_end ? "" : "with a larger K: ", best->why));
-  line("margins", margins_text(best->margins));
+  line("margins", margins_text(best->margins) + "; each is the smallest over all runs");
   if (tuning.ranking.size() > 1) {
     const TunedLaw* next = tuning.ranking[1];
     line("runner-up", fmt::format("{}, {}: renders {} times the stiffness", next->algorithm, choice_text(*next->choice),
                                   significant(next->choice->rendered() / best->choice->rendered(), 2)));
   }
-  line("limit of K",
-       fmt::format("without margin, at this damping and with the scenario's own hand: {}", limit_answer(best->limits)));
+  line("limit of K", fmt::format("without margin{}, with the scenario's own hand: {}",
+                                 setting_text(best->choice->setting), limit_answer(best->limits)));
   line("verified",
        fmt::format("by {} full-length runs between K and {:g} K, all settled: at most {:.0f} % of this interval may be "
                    "unstable (95 % confidence); {} runs in total",

@@ -9,7 +9,8 @@
 /// The printed text of `tune`.
 namespace hapbench {
 
-/// Returns the names of the diagnosis rules that a run with low vibration must not break, separated by commas.
+/// Returns the names of the diagnosis rules whose thresholds a run with low vibration must not exceed, separated by
+/// commas.
 std::string low_vibration_rules();
 
 /// Reports the question, the recommendation, the table of the laws, and the reason why a law has no feasible
