@@ -88,8 +88,8 @@ Finding judge_force_limit(const MeasuredCase& m, const PublishedNumbers& publish
                       constant ? "constant" : "not constant", onset ? "onset as published" : "onset elsewhere")};
 }
 
-// ---- L4: stiffness at the handle [N/m]: change of force over displacement of the handle, from the first contact to
-// the largest force.
+// ---- L4: stiffness at the handle [N/m]: change of the measured force divided by the displacement of the handle, from
+// the first to the last step with contact.
 
 MeasuredValues measure_felt_stiffness(const Evidence& e) {
   MeasuredValues values;
@@ -129,17 +129,15 @@ MeasuredValues measure_saturated_motion(const Evidence& e) {
     if (row.tool.velocity.dot(-row.force.S * spring) <= 0.0) against += 1.0;
     reactions.push_back(spring.norm());
   });
-  const double nan = std::nan(""), rows = static_cast<double>(reactions.size());
+  if (reactions.empty()) throw NothingToMeasure("no step with contact reaches the limit of the input force");
+  const double rows = static_cast<double>(reactions.size());
   std::ranges::sort(reactions);
-  const auto quantile = [&](double share) {
-    return reactions.empty() ? nan : reactions[static_cast<std::size_t>(share * (rows - 1.0))];
-  };
+  const auto quantile = [&](double share) { return reactions[static_cast<std::size_t>(share * (rows - 1.0))]; };
   return {{"rows", {rows}},          {"limit", {limit}},       {"median", {quantile(0.5)}},
           {"p99", {quantile(0.99)}}, {"max", {quantile(1.0)}}, {"against", {against / rows}}};
 }
 
 Finding judge_saturated_motion(const MeasuredCase& m, const PublishedNumbers& p) {
-  // With NaN a comparison is false.
   const double bound = threshold(p, "around") * m["limit"];
   const bool held = m["p99"] <= bound, median = m["median"] <= bound;
   return {decide(held, median), held ? "the reaction stays at the limit for every force of the hand"

@@ -266,7 +266,7 @@ TEST(Claims, AreJudgedByTheirThresholds) {
        {{"", replicated},
         {"p99=2.41", qualitatively},
         {"p99=2.6 median=2.5", not_replicated},
-        {"p99=nan median=nan", not_replicated}}},  // no such row exists, so that nothing is shown
+        {"p99=nan median=nan", not_replicated}}},  // NaN satisfies no rule
       {"L3",
        "frequency=2 mass=0.1 mass_unlimited=0.1 force=0.5 | frequency=4 mass=0.7 force=20",
        {{"", replicated},
