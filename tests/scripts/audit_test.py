@@ -3,6 +3,7 @@ import json
 import math
 import os
 import unittest
+from types import SimpleNamespace
 
 import numpy as np
 from fixture import PROGRAM, hapbench, ran, scratch_folder
@@ -10,6 +11,7 @@ from fixture import PROGRAM, hapbench, ran, scratch_folder
 os.environ.setdefault("HAPBENCH_PROGRAM", str(PROGRAM))
 
 from hapbench import InputError, audit  # noqa: E402  (finds the program in the environment)
+from hapbench_audit.audit import energy_by_contact  # noqa: E402
 
 T = 0.001  # sampling period of the logs [s]
 # Relative error of least squares on exact data: rounding of the normal equations, and 1e-6, which is added to every
@@ -273,6 +275,19 @@ class Clocks(unittest.TestCase):
         self.assertEqual(found["force_reversals"], 0)
         # Without the change of sign, the force changes by at most 1000 N/m times the motion of a row, below 0.1 N.
         self.assertLess(found["force_step_max_N"], 0.1)
+
+
+class Energy(unittest.TestCase):
+    def test_contacts_with_unknown_energy_are_left_out_of_the_rate(self):
+        """Checks the created energy per second for contacts of 1 s and 3 s, of which only the first has a known energy
+        of 2 J."""
+        every = [
+            {"start_s": 0.0, "end_s": 1.0, "rows": 1000, "created_J": 2.0, "error_J": 0.0},
+            {"start_s": 2.0, "end_s": 5.0, "rows": 3000, "created_J": None, "error_J": None},
+        ]
+        found = energy_by_contact(SimpleNamespace(interval=1e-3), every)
+        self.assertEqual(found["created_per_contact_J"], 2.0)
+        self.assertAlmostEqual(found["created_per_s_in_contact_W"], 2.0, delta=1e-12)
 
 
 class Formats(unittest.TestCase):

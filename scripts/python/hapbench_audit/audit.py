@@ -14,8 +14,8 @@ from .stiffness import FEWEST, contradicting, evidence_of, springs_of
 
 
 def audit_log(log, device=None):
-    """Returns (numbers for audit.json, Contacts, spectrum_of()). `device`: a device preset or the name of a device
-    file; None computes no stiffness limit."""
+    """Returns (numbers for audit.json, the Contacts, the result of spectrum_of()). `device`: a device preset or the
+    name of a device file. If `device` is None, no stiffness limit is computed."""
     contacts = contacts_of(log)
     clock, port = clock_of(log), Port(log, contacts)
     force, spectrum = force_of(log, contacts), spectrum_of(log, contacts)
@@ -29,7 +29,7 @@ def audit_log(log, device=None):
         "contact_rule": contacts.rule,
         "metrics": force,
         "energy": energy_of(log, port, stored_at(log, contacts, 0, main))
-        | energy_by_contact(log, contacts, every),
+        | energy_by_contact(log, every),
         "buzz": peaks_of(log, contacts, spectrum, force["force_mean_in_contact_N"]),
         "stiffness": main,
         "stiffness_range": stiffness_range(every),
@@ -49,11 +49,11 @@ def loop_interval(log):
     return log.interval * max([1.0] + [one.rows for one in (log.held, log.held_force) if one])
 
 
-def energy_by_contact(log, contacts, every):
+def energy_by_contact(log, every):
     """Returns the created energy per contact [J] and per second in contact [W], and the contact that created the most
-    energy. Contacts with unknown created energy are not part of the sums."""
+    energy. Contacts with unknown created energy are left out."""
     known = [one for one in every if one["created_J"] is not None]
-    seconds = contacts.in_contact.sum() * log.interval
+    seconds = sum(one["rows"] for one in known) * log.interval
     created = sum(one["created_J"] for one in known)
     worst = max(known, key=lambda one: one["created_J"], default=None)
     return {
@@ -168,7 +168,8 @@ def doubts(log, audit):
 
 
 def disagreement(springs):
-    """Returns a warning if no stiffness lies in the intervals of more than three quarters of the contacts."""
+    """Returns a list with a warning if no stiffness lies in the stiffness intervals of more than three quarters of the
+    contacts. Otherwise returns an empty list. `springs`: springs of the contacts that determine a stiffness."""
     if len(springs) < 2:
         return []
     ends = np.array([one["stiffness_interval"] for one in springs])
