@@ -358,9 +358,8 @@ int converge(const ConvergeOptions& options, ProgramContext& context) {
   report.write(kOrders, order_columns(), studies);
   report.write(kLevels, level_columns({}), rows);
   report.write(kTimes, time_columns(), studies.front().levels);
-  report.add_text(layout.wrapped("error %: estimated error (\"hapbench describe error_estimate\"), divided by the result "
-                                 "of the finest level",
-                                 0));
+  report.add_text(layout.wrapped(
+      "error %: estimated error (\"hapbench describe error_estimate\"), divided by the result of the finest level", 0));
   report.add_text(fmt::format("results in {}\n\"hapbench plot {}\" draws them\n", report.folder().string(),
                               shell_file(report.folder())));
   return report.finish();

@@ -81,7 +81,7 @@ void write_error(std::string_view text) {
 void print_errors(const ProgramContext& context, const InputError& error) {
   const std::vector<InputError> faults = error.faults();
   for (const InputError& fault : faults) print_error(context, fault.what());
-  if (faults.size() == kMaxFaults) print_error(context, fmt::format("only the first {} errors are shown", kMaxFaults));
+  if (faults.size() == kMaxFaults) print_error(context, fmt::format("at most {} errors are shown", kMaxFaults));
 }
 
 }  // namespace hapbench

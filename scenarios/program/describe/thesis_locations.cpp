@@ -140,7 +140,7 @@ std::optional<Description> describe_thesis_location(const std::string& name, con
   }
   json["contents"] = entries;
   if (scenarios.empty() && claims.empty() && pictures.empty() && contents.empty())
-    throw InputError(fmt::format("no bundled scenario and no claim refers to {} of the thesis", title));
+    throw InputError(fmt::format("no bundled scenario, claim or picture refers to {} of the thesis", title));
   return Description{fmt::format("{} of the thesis\n\n{}{}  scenarios\n{}\n  claims\n{}", bold(stdout, title),
                                  contents.empty() ? "" : "  contents\n" + contents + "\n",
                                  pictures.empty() ? "" : "  picture\n" + pictures + "\n",
