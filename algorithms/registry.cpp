@@ -46,8 +46,8 @@ const AlgorithmEntry& algorithm_entry(std::string_view name) {
   refuse("unknown algorithm ", name);
 }
 
-/// Throws std::invalid_argument if a text cannot be used as a scenario field and as an entry of a list on the
-/// command line.
+/// Throws std::invalid_argument if `text` is not allowed as a name. Allowed names can be used both as a scenario field
+/// and as an entry of a list on the command line.
 void require_name(const std::string& what, const char* text) {
   const std::string_view name = text == nullptr ? "" : text;
   constexpr std::size_t kLongest = 64;

@@ -88,7 +88,7 @@ std::span<const ModelInfo* const> stages();
 /// Returns the entry of the algorithm with this name; null if no algorithm has this name.
 const AlgorithmEntry* find_algorithm(std::string_view name);
 
-/// Returns a copy of the entry that owns copies of all its texts except `info->parameters`. Throws
+/// Returns a copy of the entry. The copy owns copies of all texts of the entry except `info->parameters`. Throws
 /// std::invalid_argument with the reason if a name is not allowed in a scenario, a text is missing, or a
 /// parameter has no valid range.
 AlgorithmEntry checked_copy(AlgorithmEntry entry);

@@ -143,7 +143,8 @@ void HandleMotion::move(Eigen::Index axis, double motors, double friction, const
 
 using TransitionMatrix = ElasticMotion::Matrix;
 
-// In the longest step of the search for stops, the phase of the fastest mode advances by at most kMaxStep radians.
+// The search for the times at which motors stop or start begins with its longest step and halves it. In the longest
+// step, the phase of the fastest mode advances by at most kMaxStep radians.
 constexpr std::size_t kChangeHalvings = 40;  ///< number of halvings of the longest step, to locate the time of a change
 constexpr std::size_t kSkipHalvings = 12;    ///< number of halvings that give the shortest time between two changes
 constexpr std::size_t kMaxHalvings = 52;     ///< number of halvings of a period: the number of bits in a double's
@@ -289,8 +290,9 @@ void ElasticMotion::apply(Axis& axis, const Transition& transition) noexcept {
 }
 
 /// Advances by at most the fraction `left` of the interval, until the motors stop or start to move. Returns the
-/// fraction of the interval that remains after this. If `skip` > 0, a first step of `skip` halvings of the search step
-/// is taken without a check, so that the search does not find the previous change again.
+/// fraction of the interval that remains after this. If `skip` > 0, the first step is taken without a check, so that
+/// the search does not find the previous change again. The length of this first step is the longest search step, halved
+/// `skip` times.
 double ElasticMotion::advance_to_change(Axis& axis, const Stretch& stretch, double left, std::size_t skip) noexcept {
   const std::vector<Transition>& transitions = axis.sticks ? stretch.sticking : stretch.moving;
   const auto fraction_of = [](std::size_t level) { return std::ldexp(1.0, -static_cast<int>(level)); };

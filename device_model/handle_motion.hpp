@@ -201,8 +201,9 @@ struct LoggedHandle {
 
 /// Simulates a log. Writes the `positions` [m] at `times` [s] of a handle that starts at position 0. Each of `forces`
 /// [N] is commanded at the time with the same index. It begins to act `handle.delay` later and acts until the next
-/// force begins. Before the first force, only the offset acts. Exact, including stops and rests. Precondition: `times`
-/// increase, and all spans have the same length. Takes 20 ns for each time.
+/// force begins. Before the first force, only the offset acts. The motion is exact, including stops and rests.
+/// Precondition: `times` increase; `times`, `forces` and `positions` have equally many entries. Takes 20 ns for each
+/// entry.
 void simulate_log(const LoggedHandle& handle, std::span<const double> times, std::span<const double> forces,
                   std::span<double> positions) noexcept;
 

@@ -168,9 +168,10 @@ class ForcePath {
 /// There is no virtual mass: the tool is at the measured position of the handle, and f_in is zero. x_k is the
 /// position with noise, rounded to the resolution q in each axis. A position filter changes the position that
 /// f_render gets, but the velocity v_k is computed from unfiltered positions; v_0 = 0. The motors give no force
-/// before the first rendered force arrives, at t = d T; a fractional d changes the force within the period. Between
-/// samples the handle moves exactly (HandleMotion). With a transmission, motors and handle move as two bodies
-/// (ElasticMotion), and x_k is measured at the motors. In the energy balance, `actuator` is the motors' work.
+/// before the first rendered force arrives, at t = d T. With a fractional d, the force changes within the period.
+/// Between samples the motion of the handle is computed exactly (HandleMotion). With a transmission, motors and handle
+/// move as two bodies (ElasticMotion), and x_k is measured at the motors. In the energy balance, `actuator` is the
+/// motors' work.
 /// Allocates only in the constructor; a step without Coulomb friction takes about 50 ns.
 class ImpedanceDevice final : public Device {
  public:

@@ -83,17 +83,18 @@ constexpr ModelInfo kContinuousNormalProjectionInfo = {
         "leaves to the side still loses its whole depth at once",
 };
 
-/// Normal projection without the force jump (thesis F.1, Fig. F.4). The model stores the depth d of each point and
-/// updates it in every step: d = min(max(d_sd, previous d + <dx, u>), d_np), and d = min(d_sd, d_np) when the point
-/// enters. d_sd is the shortest distance to the tool's surface, d_np the normal projection, u the gradient, and
+/// Normal projection without its force jump at corners (thesis F.1, Fig. F.4). The model stores the depth d of each
+/// point and updates it in every step: d = min(max(d_sd, previous d + <dx, u>), d_np), and d = min(d_sd, d_np) when the
+/// point enters. d_sd is the shortest distance to the tool's surface, d_np the normal projection, u the gradient, and
 /// dx the displacement of the tool at the point in one step.
 ///
 ///  - No depth grows by more than |dx| in a step. This also holds for the step in which a point enters: relative to
 ///    the tool, the point has moved by dx, so d_sd <= |dx|. The depths of a tool at rest do not drift.
 ///  - A motion of the tool along u changes d_np by the same amount. A point that the tool has pressed along u
-///    since first contact therefore has d = d_np, also beyond the median line, where d_sd saturates.
-///  - The increase by <dx, u> stores the work that is done against the force -K d u. Energy is created only where d_sd
-///    determines d, as in the depth model surface_normal. If a point leaves the tool sideways, some energy is lost.
+///    since first contact therefore has d = d_np, also beyond the tool's median line, where d_sd saturates.
+///  - The increase by <dx, u> stores the work that is done against the force -K d u. Energy is created only where
+///    d = d_sd; the depth model surface_normal, in which always d = d_sd, has the same fault. If a point leaves the
+///    tool sideways, some energy is lost.
 ///
 /// A depth that depends only on the pose cannot be both continuous and free of saturation. Continuity at entry requires
 /// depth 0 everywhere on the tool's surface. Without saturation, a point that was pressed through the whole tool to the

@@ -47,7 +47,8 @@ class SeriesLaw : public ForceLaw {
 
   bool gives_weights() const noexcept override { return false; }
 
-  /// The coupling multiplies the normal velocity by M^-1, as it does the stiffness tensor S_sum.
+  /// Returns the turning velocity of the springs without coupling, multiplied by M^-1. The coupling also multiplies the
+  /// stiffness tensor S_sum by M^-1.
   Vec3 turning_velocity(const ContactBuffer& contacts, const Mat3& S, const ToolState& tool) const noexcept override {
     return series_.solve(ForceLaw::turning_velocity(contacts, S, tool));
   }
@@ -107,16 +108,16 @@ class VirtualCoupling final : public SeriesLaw {
   double transmitted_ = 1.0;  ///< fraction of the summed force that a scalar coupling transmits
 };
 
-/// Bound of |f_spring| / K for n contacts with depths <= d: (I + U U^T)^-1 U has the singular values s / (1 +
-/// s^2) <= 1/2, where s is a singular value of U, the matrix of gradients, and |(d_1 … d_n)| <= sqrt(n) d.
-/// Precondition: K_vc = K.
+/// Bound of |f_spring| / K = |(I + U U^T)^-1 U (d_1 … d_n)^T| for n contacts with depths <= d. The columns of U are the
+/// gradients. (I + U U^T)^-1 U has the singular values s / (1 + s^2) <= 1/2, where s is a singular value of U. The
+/// vector of the depths has the norm |(d_1 … d_n)| <= sqrt(n) d. Precondition: K_vc = K.
 double virtual_coupling_bound(const RenderingConfig&, const ToolShape&, std::size_t n, double depth) {
   return 0.5 * std::sqrt(static_cast<double>(n)) * depth;
 }
 
 /// Mechanical equivalent: penalty springs of stiffness K / eps in series with one coupling spring of stiffness K. The
-/// energy is E = K / (2 eps) min over x of sum (d_i - <u_i, x>)^2 + eps |x|^2. The gradient of E with respect to the
-/// tool's position is K x = -f.
+/// energy is E = K / (2 eps) min [sum (d_i - <u_i, x>)^2 + eps |x|^2]. The minimum is taken over x, where -x is the
+/// stretch of the coupling spring. The gradient of E with respect to the tool's position is K x = -f.
 class LeastSquares final : public SeriesLaw {
  public:
   explicit LeastSquares(const RenderingConfig& config) : SeriesLaw(config.stiffness, config.regularisation, 1.0) {}
@@ -127,8 +128,8 @@ class LeastSquares final : public SeriesLaw {
 };
 
 /// Bound of |f_spring| / K = |x|, where x = (eps I + U U^T)^-1 U d. The columns of U are the gradients, and d is the
-/// vector of the depths. With the singular values s of U, |x| <= max s / (eps + s^2) |d|. This is at most |d| / (2 sqrt
-/// eps), reached at s^2 = eps. |d| is at most sqrt(n) times the largest depth.
+/// vector of the depths. |x| is at most |d| times the largest s / (eps + s^2) over the singular values s of U. For any
+/// s, s / (eps + s^2) <= 1 / (2 sqrt(eps)). |d| is at most sqrt(n) times the largest depth.
 double least_squares_bound(const RenderingConfig& config, const ToolShape&, std::size_t n, double depth) {
   return 0.5 * std::sqrt(static_cast<double>(n) / config.regularisation) * depth;
 }
@@ -163,8 +164,8 @@ double saturation_of(const RenderingConfig& config) {
 ///   W(s) + K/2 sum p_i^2,  W(s) = F_s^2 / K_vc (sqrt(1 + (K_vc |s| / F_s)^2) - 1)
 ///
 /// with the depths p_i of the contacts in the copy, the stiffness K_vc of the spring at s = 0 and its saturation force
-/// F_s. The balance does not depend on the previous step, so the force is the derivative of a potential of the
-/// contacts.
+/// F_s. The balance depends only on the current contacts and not on the previous step. The force is therefore the
+/// derivative of a potential energy.
 class StaticCoupling final : public ForceLaw {
  public:
   explicit StaticCoupling(const RenderingConfig& config)
@@ -195,7 +196,8 @@ class StaticCoupling final : public ForceLaw {
 
   bool gives_weights() const noexcept override { return false; }
 
-  /// The coupling multiplies the normal velocity by `transmission_`, as it does the stiffness tensor of the contacts.
+  /// Returns the turning velocity of the contacts without coupling, multiplied by `transmission_`. The coupling also
+  /// multiplies the stiffness tensor of the contacts by `transmission_`.
   Vec3 turning_velocity(const ContactBuffer& contacts, const Mat3& S, const ToolState& tool) const noexcept override {
     return transmission_ * ForceLaw::turning_velocity(contacts, S, tool);
   }

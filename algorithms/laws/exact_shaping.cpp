@@ -19,8 +19,8 @@ using Vec6 = Eigen::Matrix<double, 6, 1>;
 using Mat6 = Eigen::Matrix<double, 6, 6>;
 
 constexpr double kEps = kExactShapingEpsilon;
-/// Maximum number of Newton steps with the final epsilon, before the solver follows kPath. Nearly all scenes need one
-/// or two steps.
+/// Maximum number of Newton steps with the final epsilon, before the solver follows kPath. Nearly all sets of contacts
+/// need one or two steps.
 constexpr int kDirectSteps = 6;
 /// Decreasing values of epsilon, the weight of the regularisation. The solver uses one value after the other if it has
 /// not converged after kDirectSteps steps with the final epsilon (see solve).
@@ -179,8 +179,8 @@ void refine(const Tensors& tensors, Vec6 w, TensorSums sums) noexcept {
   }
 }
 
-/// solve_exact_shaping for any tensors a_i of trace 1, with S = sum c_i a_i and <a_i, S> in place of rho_i.
-/// Precondition: all weights are 1.
+/// Computes weights as solve_exact_shaping() does, but for any tensors a_i of trace 1 in place of u_i u_i^T, with S =
+/// sum c_i a_i and rho_i = <a_i, S>. Returns the number of Newton steps. Precondition: all weights are 1.
 template <class Tensors>
 int solve(const Tensors& tensors) noexcept {
   // Start at w = identity, where every tensor is active, because a_i . identity is the trace of a_i.
@@ -191,8 +191,8 @@ int solve(const Tensors& tensors) noexcept {
     // The direct steps do not converge for dense clusters of nearly equal gradients. The optimum gives positive weights
     // to a few of hundreds of contacts, and Newton's method would find these contacts one by one. Following the optimum
     // from a large epsilon to a small epsilon takes a few steps for each epsilon. Measured total number of steps: at
-    // most 32 for 6e6 adversarial sets of contacts, which take a hundred direct steps, and 135 for the worst of 1e6
-    // mixtures of such sets.
+    // most 32 for 6e6 adversarial sets of contacts, and at most 135 for 1e6 mixtures of such sets. With direct steps
+    // alone, an adversarial set takes about a hundred steps.
     double eps = kPath[0];
     w = identity6() / eps;
     sums = evaluate_at(tensors, w);
@@ -235,9 +235,9 @@ class ExactShaping final : public ForceLaw {
   }
 };
 
-/// Number of cells along each edge of the cube of directions. It gives 1350 cells of about 6 degrees, the angle up to
-/// which the point reduction counts gradients as similar by default. The number is odd, so that the coordinate axes lie
-/// in the middle of cells.
+/// Number of cells along each edge of a cube whose faces are divided into cells. A direction belongs to the cell that
+/// it crosses. The number gives 1350 cells of about 6 degrees, the angle up to which the point reduction counts
+/// gradients as similar by default. It is odd, so that the coordinate axes lie in the middle of cells.
 constexpr int kDirectionCells = 15;
 
 constexpr std::size_t kFaces = 6, kCells = kFaces * kDirectionCells * kDirectionCells;
@@ -273,7 +273,8 @@ std::size_t cell_of(double x, double y, double z) noexcept {
 
 using PerCell = std::array<double, simd::padded(kCells)>;
 
-/// The tensors of the groups divided by their traces, in the order of the cells. One column for each component.
+/// The tensors of the groups divided by their traces, in the order of the cells. One array for each of the six tensor
+/// components.
 struct Groups {
   std::size_t size = 0, padded_size = 0;
   double* weight = nullptr;

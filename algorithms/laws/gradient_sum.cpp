@@ -47,8 +47,9 @@ double original_averaging_bound(const RenderingConfig&, const ToolShape&, std::s
   return 1e9 * std::min(1.0, static_cast<double>(n)) * depth;
 }
 
-/// Smallest ratio sigma of scaled to unscaled energy that gives a force. Up to this value, the springs cancel each
-/// other, a division by sigma would amplify rounding noise, and the force is zero.
+/// Limit of sigma = sum beta_i d_i^2 / sum d_i^2, with the ratios beta_i of cancelling_ratio(). If sigma is at most
+/// this limit, the springs cancel each other, and a division by sigma would amplify rounding noise. The force is then
+/// zero.
 constexpr double kMinEnergyRatio = 1e-12;
 
 class Tandpasta final : public ForceLaw {

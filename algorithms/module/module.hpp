@@ -61,8 +61,8 @@ class ModuleState {
   std::array<char, kFaultTextSize> fault_{};
 };
 
-/// A force law from a module. It passes the contacts of the step without copying and allocates nothing in a
-/// step.
+/// A force law from a module. In a step, it passes the contacts to the module without copying them, and allocates
+/// nothing.
 class ModuleLaw final : public SingleSpringLaw {
  public:
   /// `values` are the values of the module's parameters, in their order.

@@ -9,17 +9,17 @@
 
 #include "sim/core/types.hpp"
 
-/// Finds the point x of a polyhedron in N dimensions that is nearest to a given point t. These are the quadratic
-/// programs of the proxies: N = 3 for a proxy that only translates, N = 6 for a proxy that also rotates.
+/// Finds the point x of a polyhedron in N dimensions that is nearest to a given point t. A proxy solves this quadratic
+/// program in every pass, with N = 3 if the proxy only translates, and N = 6 if it also rotates.
 ///
 ///   minimise |x - t|^2   subject to   d_i + <u_i, x> <= 0
 ///
 /// A type `Rows` of constraints has the functions
 ///   size()                            number of constraints
 ///   depth(i), row(i)                  d_i and the vector u_i of dimension N
-///   largest_violation(x, tolerance)   the largest d_i + <u_i, x>, the first if several are equal;
-///                                     amount 0 if all are within the tolerance.
-/// Nothing here allocates.
+///   largest_violation(x, tolerance)   the constraint with the largest d_i + <u_i, x>, the first if several are equal;
+///                                     a Violation of amount 0 if no d_i + <u_i, x> exceeds the tolerance
+/// The functions of this file allocate nothing.
 namespace hapbench::nearest_point {
 
 template <int N>
@@ -169,11 +169,12 @@ bool solve_exactly(const Rows& rows, double tolerance, Vector<N>& x, ActiveSet<N
   return true;
 }
 
-/// Value, gradient and Hessian at one move x of the function
+/// Value, gradient and Hessian, with respect to x, of the function
 ///
-///   1/2 sum max(0, d_i + <u_i, x>)^2 + epsilon/2 |x - t|^2,
+///   1/2 sum max(0, d_i + <u_i, x>)^2 + epsilon/2 |x - t|^2
 ///
-/// whose minimum is the least-squares compromise between contradictory constraints. `wanted` is t.
+/// at one point x. The minimum of the function is the least-squares compromise between contradictory constraints.
+/// `wanted` is t.
 template <int N>
 struct Compromise {
   double value;

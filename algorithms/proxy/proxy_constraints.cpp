@@ -56,15 +56,15 @@ double largest_length(const ContactBuffer& c, const Vec3& wanted) noexcept {
 /// the rounding errors of margin and move.
 constexpr double kQueryMargin = 1.0 + 1e-6;
 /// At an edge of the tool, a point counts as beyond both faces if it lies beyond one face and inside the other face by
-/// at most this distance, relative to the spacing.
+/// at most this distance, relative to the spacing of the shell points.
 constexpr double kEdgeSlack = 1e-3;
 
 /// Largest number of shell points at which typical_spacing() measures the distance to the neighbours.
 constexpr std::size_t kSpacingSamples = 100;
-/// Radius of a patch relative to the spacing. In a square lattice of points, the patches cover the centre between
-/// four points, which is 0.707 spacings away from each.
+/// Radius of a patch (see add_edges), relative to the typical spacing of the shell points. In a square lattice of
+/// points, the patches cover the centre between four points, which is 0.707 spacings away from each of these points.
 constexpr double kPatch = 0.75;
-/// Largest depth at which an edge constraint applies, relative to the spacing.
+/// Largest depth at which an edge constraint applies, relative to the spacing of the shell points.
 constexpr double kMaxPatchDepth = 0.1;
 
 /// Points closer than this fraction of the diagonal of the shell's bounding box count as one point, because a shell may
@@ -149,14 +149,15 @@ ShellConstraints::ShellConstraints(const PointShell& shell, const ToolShape& too
 /// its faces.
 ///
 /// The surface around each point x_i with normal n_i is assumed to be flat up to the neighbouring points. This flat
-/// piece is called a patch. Let v_i be the tool's support point towards the surface, argmin <q, n_i> over the tool. If
-/// v_i lies above or below the patch, the tool must stay above the patch after the move x:
+/// piece is called a patch. Let v_i be the tool's support point towards the surface: the point q of the tool with the
+/// smallest <q, n_i>. If v_i lies above or below the patch, the tool must be above the patch after the move x:
 ///
 ///   <n_i, v_i + x - x_i> >= 0, appended as a contact with depth <n_i, x_i - v_i> and gradient -n_i.
 ///
-/// Patches apply at distances up to the margin and depths up to a tenth of the spacing. A patch outside this
-/// range belongs to another part of the surface, such as the other side of a rim. Called after
-/// ToolShape::surface_constraints. Precondition: room for twice the contacts. O(n).
+/// The constraint is appended only if v_i lies above the patch by at most the margin, or below the patch by at most a
+/// tenth of the spacing of the points. A patch outside this range belongs to another part of the surface, such as the
+/// other side of a rim. Called after ToolShape::surface_constraints. Precondition: `contacts` has room for twice its
+/// size. O(n).
 void ShellConstraints::add_edges(const ToolPose& proxy, ContactBuffer& contacts) noexcept {
   const std::size_t points = contacts.size(), padded = contacts.padded_size();
   const PackRange all{0, padded / simd::lanes, 0xff, static_cast<std::uint8_t>(0xffu >> (padded - points))};
@@ -165,7 +166,7 @@ void ShellConstraints::add_edges(const ToolPose& proxy, ContactBuffer& contacts)
   const Pack highest(margin_), deepest(-kMaxPatchDepth * spacing_), patch2(kPatch * spacing_ * kPatch * spacing_);
   const MutablePointArrays support{support_x_.data(), support_y_.data(), support_z_.data()};
   tool_->support_points(proxy, contacts, support);
-  // For each contact whose support point lies on its patch, append the constraint of the patch.
+  // For each contact whose support point lies above or below the contact's patch, append the constraint of the patch.
   for (std::size_t i = 0; i < padded; i += simd::lanes) {
     const Pack nx = load(&contacts.nx[i]), ny = load(&contacts.ny[i]), nz = load(&contacts.nz[i]);
     const Pack dx = load(&support.x[i]) - load(&contacts.x[i]), dy = load(&support.y[i]) - load(&contacts.y[i]),

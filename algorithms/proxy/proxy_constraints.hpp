@@ -25,7 +25,7 @@ struct AllowedMove {
   /// back.
   Mat3 held = Mat3::Zero();
   bool feasible = true;  ///< false: no move satisfies all contacts, so x is the least-squares compromise
-  /// Only set if `feasible` is false: <u_i, share> is the contribution of contact i to the residual t - x [m].
+  /// Only set if `feasible` is false: contact i contributes <u_i, share> u_i to the residual t - x [m].
   Vec3 share = Vec3::Zero();
   int iterations = 0;
 };
@@ -118,8 +118,9 @@ class ShellConstraints final : public ProxyConstraints {
   AlignedDoubles support_x_, support_y_, support_z_;
 };
 
-/// Constraints from the springs of a SpringSet. Each spring is a plane that holds the tool at any distance. A bilateral
-/// spring holds the tool from both sides, so it gives two constraints, (d, u) and (-d, -u).
+/// Constraints from the springs of a SpringSet. Each spring acts as a plane that the proxy must not cross; every spring
+/// gives a constraint, however far the proxy is from the plane. A bilateral spring keeps the proxy on its plane, so it
+/// gives two constraints, (d, u) and (-d, -u).
 class SpringConstraints final : public ProxyConstraints {
  public:
   /// The spring set must outlive the constraints.

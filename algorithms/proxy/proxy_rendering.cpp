@@ -24,8 +24,8 @@ constexpr std::size_t kLongestCycle = 4;
 /// Two positions of the proxy count as equal if their distance is at most this fraction of the margin.
 constexpr double kEqualPositions = 1e-3;
 /// Maximum number of times that next_move() shortens the move of a proxy with points inside. After these shortenings,
-/// the length of the move is within a few per cent of the allowed length, except that the move may be longer if the
-/// tool pulls the proxy away.
+/// the length of the move exceeds the allowed length by at most a few per cent, unless the tool itself pulls the proxy
+/// farther away from the points.
 constexpr int kMaxShortenings = 3;
 
 constexpr AlgorithmParameter kOwnParameters[] = {
@@ -58,7 +58,7 @@ void for_each_holding(const ContactBuffer& contacts, const Use& use) {
 /// nearest to the tool (nearest_allowed). A move is at most as long as the margin, so that the proxy cannot
 /// reach points beyond the margin, for which it has no constraints.
 ///
-/// Guarantee: after a pass, no shell point is inside the proxy by more than kViolationTolerance of the margin,
+/// Guarantee: after a pass, no shell point is inside the proxy by more than kViolationTolerance times the margin,
 /// if the contacts of this pass do not contradict each other and the move was not scaled because points were
 /// inside. Reason: the constraints are conservative (the tool is convex), and for a proxy without penetration
 /// they also hold for a part of the move. If contacts contradict each other (a slot narrower than the tool),
@@ -67,14 +67,15 @@ void for_each_holding(const ContactBuffer& contacts, const Use& use) {
 ///
 /// Points may be inside the proxy if the proxy was placed on them, or if walls leave no room for it. Moving the proxy
 /// out in one step would throw the tool out. The depths are therefore scaled so that the deepest point leaves at
-/// kProxyRecoverySpeed. A proxy without points inside keeps the guarantee, however fast the tool rotates. Planes of
-/// springs have no inside.
+/// kProxyRecoverySpeed. A proxy without points inside keeps the guarantee, however fast the tool rotates. With a
+/// SpringSet there are no points, and depths are not scaled.
 ///
 /// With multi-rate contacts (ContactSchedule), the proxy follows the tool and searches points only in steps in
 /// which a query returns, for the tool's pose in the query. If MultiRateSchedule::linear is false, the spring force
-/// stays constant until the next query returns. If it is true, the constraints of the last pass become planes in space
-/// that rotate with the tool's material, and in every step the proxy moves to the allowed position nearest to the tool,
-/// without passes. Points beyond the margin are not found before the next query.
+/// stays constant until the next query returns. If it is true, each constraint of the last pass becomes a plane that is
+/// fixed in space. The material point of the proxy at the contact must not cross the plane; this material point rotates
+/// with the tool. In every step the proxy moves to the allowed position nearest to the tool, without passes. Points
+/// beyond the margin are not found before the next query.
 ///
 /// f_spring = K (x - p) with the tool's position p. S is the projector onto the span of the gradients that hold the
 /// proxy back. With angular damping, v_n is S v plus the shortest velocity in this span whose components along the u_i
@@ -139,8 +140,9 @@ class ProxyRendering final : public ForceAlgorithm {
     out.friction = damping_and_limits_.friction_state();
   }
 
-  /// Returns the energy of the spring from tool to proxy, and the moment about the proxy's tip centre of the points
-  /// that hold the proxy back. Each of these points pushes the proxy with the force K lambda_i.
+  /// Returns the energy stored in the spring between tool and proxy, in friction and in violated contacts, and a moment
+  /// about the proxy's tip centre. It is the moment of the forces K lambda_i with which the points that hold the proxy
+  /// back push the proxy.
   SpringState spring_state(const ToolState&, const ContactBuffer&) const noexcept override {
     if (K_ == 0.0) return {};
     SpringState state{spring_.squaredNorm() / (2.0 * K_) + damping_and_limits_.stored_energy(), Vec3::Zero()};
@@ -203,7 +205,8 @@ class ProxyRendering final : public ForceAlgorithm {
     spring_ = K_ * (proxy_ - tool.position);
   }
 
-  /// Rotates the constraint planes with the tool since the query, about constraint_position_.
+  /// Adapts the depths of the constraints to the rotation of the tool since the query: the rotation about
+  /// constraint_position_ displaces the proxy's material at each contact. The gradients stay fixed.
   void move_planes(const ToolPose& from, const ToolPose& to) noexcept {
     const Mat3 turned = turn_matrix(from, to) - Mat3::Identity();
     ContactBuffer& planes = *near_contacts_;
@@ -262,8 +265,8 @@ class ProxyRendering final : public ForceAlgorithm {
     near_contacts_->clear();
   }
 
-  /// Returns the allowed move nearest to the wanted move. If points are inside the proxy, returns a slow move out of
-  /// them.
+  /// Returns the allowed move nearest to the wanted move. If points are deep inside the proxy, returns a slow move with
+  /// which the points leave the proxy (kProxyRecoverySpeed).
   AllowedMove next_move(const Vec3& wanted) noexcept {
     depth_scale_ = 1.0;
     const double deepest = clear_ ? 0.0 : near_contacts_->largest_depth();
@@ -373,7 +376,7 @@ class ProxyRendering final : public ForceAlgorithm {
   const std::uint64_t* row_ = nullptr;  ///< null if no Simulation steps the algorithm; then each call counts as a step
   double dt_ = 0.0;
   bool clear_ = false;        ///< true if no points are inside the proxy after the last pass
-  double recovery_ = 0.0;     ///< distance by which the deepest point may leave in a step [m]
+  double recovery_ = 0.0;     ///< largest distance by which points leave the proxy in a step [m]
   double depth_scale_ = 1.0;  ///< factor on the depths of points inside the proxy in the last pass
   Vec3 spring_ = Vec3::Zero();
   AlgorithmWork work_;

@@ -17,9 +17,9 @@ constexpr int kMaxPasses = 100;
 constexpr int kMaxNewtonSteps = 60;
 /// Largest number of sub-steps into which a step of the hand's intended pose (Intent) is divided.
 constexpr double kMaxSubsteps = 64.0;
-/// Imbalance between hand and device [N] at which Newton's method stops. Also the change of this imbalance [N] between
-/// two calls at one pose at which a law with a memory counts as converged. The rounding error of a force of 20 000 N/m
-/// times 10 mm is 1e-13 N.
+/// Newton's method stops when the imbalance between hand and device [N] is at most this value. A law with a memory
+/// counts as converged when this imbalance changes by at most this value [N] between two calls at the same pose. The
+/// rounding error of a force of 20 000 N/m times 10 mm is 1e-13 N.
 constexpr double kExact = 1e-11;
 /// Change of the force for difference quotients [N]. It moves the handle by 20 nm at 500 N/m.
 constexpr double kForceStep = 1e-5;
@@ -124,8 +124,8 @@ void ThreeDofDevice::place(const Intent& intent, const Vec3& force) noexcept {
   Vec3 yield = Vec3::Zero();
   Vec3 axis = axis_of(intent.orientation);
   if (springs_.grip != 0.0) {
-    // The moment depends on the handle's rotation only to second order. Each iteration reduces the error by the factor
-    // |c f| / K_phi.
+    // The moment of the force about the grip depends on the rotation that it causes, so the rotation is found by
+    // iteration. Each iteration reduces the error by the factor |c f| / K_phi.
     for (int i = 0; i < kMaxNewtonSteps; ++i) {
       const Vec3 next = -springs_.grip / springs_.hand_rotation * axis.cross(force);
       const double change = (next - yield).norm();

@@ -33,8 +33,8 @@ constexpr double kShortestNudge = 1e-6;
 /// direction.
 constexpr double kFlat = 1e-3;
 /// Number of passes (iterations of the search for the equilibrium) after which only every second pass uses second
-/// derivatives of the constraints. If the active set alternates between passes with one model, the passes may converge
-/// with the other model.
+/// derivatives of the constraints. If the active set changes in every pass with second derivatives, the search may
+/// converge in passes without them, and the other way round.
 constexpr int kManyPasses = 40;
 
 }  // namespace
@@ -137,7 +137,7 @@ Mat6 ToolEquilibrium::curvature(const CoupledPose& pose) noexcept {
 }
 
 /// Solves the quadratic program of a pass with the second derivatives `hessian`. Writes the motion z and the points
-/// that hold the tool. If the matrix is not positive definite, returns false and writes nothing.
+/// that hold the tool. If `hessian` is not positive definite, returns false and writes nothing.
 bool ToolEquilibrium::solve_program(const PoseSprings& springs, const EnergyModel& model, const Mat6& hessian,
                                     Vec6& z) noexcept {
   const Eigen::LLT<Mat6> factor(hessian / springs.stiffness);

@@ -30,7 +30,7 @@ inline constexpr double kSolved = 1e-9;
 ///   m_i: outward normal of the tool at the point nearest to point i,   r_i: from the force point to point i,
 ///
 /// and adds the second derivatives of the constraints that hold the tool to the second derivatives of the energy, so
-/// that the passes converge quadratically. A pass moves no point of the tool by more than a margin. If the second
+/// that the passes converge quadratically. A pass moves no point of the tool by more than margin(). If the second
 /// derivatives at a stationary pose show a descent, such as for a cylinder balanced on one row of points, the search
 /// leaves the pose along this descent. If it cannot leave the pose, the outcome is not `solved`.
 ///
@@ -71,14 +71,15 @@ class ToolEquilibrium {
   /// Returns tip centre, axis and roll of a tool with this force point [m] and orientation; the roll is 0 for a solid
   /// of revolution.
   ToolPose tool_pose(const Vec3& position, const Eigen::Quaterniond& orientation) const noexcept;
-  /// Returns the largest motion of a point of the tool in one pass [m].
+  /// Returns the largest distance [m] that a pass may move a point of the tool.
   double margin() const noexcept { return margin_; }
   std::size_t capacity() const noexcept { return near_->capacity(); }
   /// Returns the largest depth of a point inside the tool at the pose of the last pass [m]; 0 if no point is inside.
   double deepest() const noexcept { return deepest_; }
-  /// Sets the depth [m] to which the depth of the deepest point inside the tool is reduced, so that points leave the
-  /// tool slowly. All other positive depths are scaled by the same factor. A search with points inside the tool, or
-  /// without room for the tool, then takes one pass. Infinite by default.
+  /// Sets the largest depth [m] in the constraints of a pass, so that points inside the tool leave it slowly. If a
+  /// point is deeper than `depth`, one factor scales all positive depths, so that the largest depth becomes `depth`. A
+  /// search ends after a pass with scaled depths. If `depth` is finite, it also ends after a pass without room for the
+  /// tool. `depth` is infinite by default.
   void set_recovery(double depth) noexcept { recovery_ = depth; }
   void reset() noexcept;
   const SearchWork& work() const noexcept { return near_->work(); }

@@ -133,8 +133,8 @@ class StagedRendering final : public ForceAlgorithm {
 ///
 /// Before this computation, the springs are weakened if the scripted rotation would draw more energy than E from the
 /// moment of the springs. The rotation of the coming step is predicted as the last step's rotation, plus or minus twice
-/// the largest change of rotation between two steps so far. The work of half the moment over twice this largest change
-/// is kept in reserve. In free air the controller renders nothing.
+/// the largest change of rotation between two steps so far. For this uncertainty the controller keeps an energy in
+/// reserve: the norm of the moment times this largest change. In free air the controller renders nothing.
 ///
 /// Guarantee for the leapfrog integrator and a free position: E is never negative, up to rounding, while no
 /// change of the rotation exceeds twice the largest earlier change. (In a run that starts in contact, the first

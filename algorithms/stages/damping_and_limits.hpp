@@ -11,8 +11,8 @@
 namespace hapbench {
 
 /// Returns the bristle of dry friction as a spring-damper with stiffness K_t and damping B_t = 2 zeta_t
-/// sqrt(K_t M). While the tool sticks, it acts like this spring-damper under leapfrog: f = -K_t (e + dt v) -
-/// B_t v and e <- e + dt v.
+/// sqrt(K_t M). While the tool sticks, dry friction acts like this spring-damper under leapfrog: f = -K_t (e + dt v)
+/// - B_t v and e <- e + dt v.
 SpringDamper bristle_of(const DryFrictionConfig& config, const RenderingConfig& rendering, double dt) noexcept;
 
 /// Dry friction with one bristle of deflection e [m] for the whole tool (Kikuuwe, Takesue, Sano, Mochiyama and Fujimoto
@@ -136,15 +136,15 @@ class DampingAndLimits {
   Friction friction_state() const noexcept { return dry_friction_ ? dry_friction_->state() : Friction::none; }
 
  private:
-  /// Returns B [N s/m], scaled down so that no eigenvalue of the returned value times S exceeds max_damping. With Hunt
-  /// and Crossley's damping, 1 replaces B, and S is the damping matrix [N s/m].
+  /// Returns B [N s/m], scaled down so that no eigenvalue of the returned value times S exceeds max_damping. For Hunt
+  /// and Crossley's damping, S is the damping matrix [N s/m], and the returned value is a factor <= 1.
   double limited_damping(const Mat3& S) const noexcept;
   double friction(const Vec3& spring) const noexcept { return config_.mu_s + config_.mu_f * spring.norm(); }
 
   RenderingConfig config_;
   double B_;
   std::optional<DryFriction> dry_friction_;
-  /// Hunt and Crossley's limited damping chi sum N_i u_i u_i^T of the last force [N s/m].
+  /// Hunt and Crossley's damping chi sum N_i u_i u_i^T of the last force, after the limit max_damping [N s/m].
   Mat3 damping_ = Mat3::Zero();
   std::optional<double> angular_velocity_cutoff_;
 };

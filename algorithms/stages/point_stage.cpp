@@ -70,8 +70,8 @@ class LocalAverage final : public PointStage {
  private:
   static constexpr std::uint32_t kNone = 0xffffffff;
 
-  /// Moves the first contact of each cell to the front, stores the cell's sum of d u as its gradient, and
-  /// returns the number of cells. Points of a cell are mostly consecutive, so their sum stays in registers.
+  /// Moves the first contact of each cell to the front, stores the cell's sum of d u as the gradient of this contact,
+  /// and returns the number of cells. Points of a cell are mostly consecutive, so their sum stays in registers.
   std::size_t gather(ContactBuffer& contacts) noexcept {
     const auto depth_vector = [&](std::size_t i) { return Vec3(contacts.depth[i] * contacts.gradient(i)); };
     std::size_t cells = 0;

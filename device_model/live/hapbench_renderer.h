@@ -110,10 +110,10 @@ typedef struct HapbenchSetup {
 
 /* Bits of HapbenchInput::has. The first four bits say which vectors are given. A step ignores a vector whose bit is not
  * set.
- * CLUTCH: the handle moves while the tool stays. The force falls to 0. When the bit is released, world_from_device is
- *         moved so that the tool continues from its last position; its orientation follows the handle. The renderer is
- *         WAITING then. In admittance mode, the hand moves the virtual mass without contact meanwhile. A FAULT ends
- *         the clutch without moving the mount.
+ * CLUTCH: while the bit is set, the handle moves and the tool stays. The force falls to 0. In admittance mode, the hand
+ *         moves the virtual mass without contact. In the first call without the bit, world_from_device is moved so
+ *         that the tool continues from its last position; its orientation follows the handle. The renderer is then
+ *         WAITING. A FAULT ends the clutch without moving the mount.
  * REARM:  ends a FAULT if the bit was not set in the previous call and the input of this call is valid. */
 enum {
   HAPBENCH_VELOCITY = 1,
@@ -151,11 +151,11 @@ typedef struct HapbenchInput {
  *
  * CLAMPED: as ON, but a limit of HapbenchOutput::limited acts.
  *
- * STALE: the time since the previous call was longer than stale_s. The force of the last call falls to 0, counted from
- * the last call; then the renderer is WAITING.
+ * STALE: the time since the previous call was longer than stale_s. The force of the previous call falls to 0 within
+ * ramp_s, and the time since that call already counts. Then the renderer is WAITING.
  *
- * FAULT: HapbenchOutput::reason says why. The force of the last call falls to 0 and stays 0 until REARM; then the
- * renderer is WAITING. */
+ * FAULT: HapbenchOutput::reason says why. The force of the last call before the FAULT falls to 0 and stays 0 until
+ * REARM. Then the renderer is WAITING. */
 enum {
   HAPBENCH_WAITING = 0,
   HAPBENCH_RAMPING = 1,

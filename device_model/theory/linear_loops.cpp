@@ -69,8 +69,8 @@ Eigen::MatrixXd motion_rate(const SampledLoop& loop) {
 
 /// Writes the motion over one period into the rows of the map A that belong to the state components `body`. The
 /// force is `before` for the fraction `fraction` of the period and `after` for the rest. `hand` is the force of a
-/// sampled hand over the whole period; it is empty if no sampled hand holds the handle. The forces are row vectors over
-/// the state.
+/// sampled hand over the whole period; it is empty if no sampled hand holds the handle. Each force is given as the row
+/// vector whose product with the state is the force.
 void add_motion(Eigen::MatrixXd& A, const std::vector<Eigen::Index>& body, double fraction, const Eigen::MatrixXd& rate,
                 const Eigen::RowVectorXd& before, const Eigen::RowVectorXd& after, const Eigen::RowVectorXd& hand) {
   const auto n = static_cast<Eigen::Index>(body.size());
@@ -125,8 +125,8 @@ Eigen::MatrixXd SampledLoop::state_matrix() const {
   const auto unit = [n](Eigen::Index i) -> Eigen::RowVectorXd { return Eigen::RowVectorXd::Unit(n, i); };
   Eigen::MatrixXd A = Eigen::MatrixXd::Zero(n, n);
 
-  // Adds a filter with the input `u` to A, in the next free state components. Returns the filter's output as a row
-  // vector.
+  // Adds a filter to A, in the next free state components. The filter's input and output are products of row vectors
+  // with the state. `u` is the row vector of the input. Returns the row vector of the output.
   Eigen::Index next = kModes;
   const auto filtered = [&](const std::vector<LowPassMode>& modes, const Eigen::RowVectorXd& u) {
     Eigen::RowVectorXd output = Eigen::RowVectorXd::Zero(n);
@@ -144,7 +144,7 @@ Eigen::MatrixXd SampledLoop::state_matrix() const {
     }
     return output;
   };
-  // Compute the wall's force as a row vector over the state.
+  // Compute the row vector whose product with the state is the wall's force.
   const Eigen::RowVectorXd measured = unit(kPosition);
   A.row(kLastPosition) = measured;
   Eigen::RowVectorXd force = -(wall_damping * T / m) * filtered(velocity, measured - unit(kLastPosition));
@@ -341,7 +341,8 @@ bool is_stable_loop(const std::vector<Eigen::MatrixXd>& loop) {
 }
 
 std::vector<Eigen::MatrixXd> contact_loop(const SampledLoop& loop, const LinearContact& contact) {
-  // The map is linear in the four coefficients of wall and sampled hand. `unit` makes their effect comparable to 1.
+  // The map is linear in the four coefficients of wall and sampled hand. A stiffness of `unit`, or a damping of
+  // `damping_unit`, changes entries of the map by about 1, so that the differences from the free map are accurate.
   const double unit = loop.moving_mass() / (loop.period * loop.period), damping_unit = unit * loop.period;
   const auto map = [&loop](double K, double B, double k, double c) {
     SampledLoop at = loop;
@@ -435,8 +436,8 @@ double minimum(Function f, double low, double high, int points) {
   return smallest;
 }
 
-/// Returns the largest passive K for a whole delay; nullopt for a fractional delay. The condition gives an upper bound
-/// of K at angles where p > 0, and a lower bound where p < 0.
+/// Returns the largest passive K if the delay is a whole number of samples, otherwise nullopt. The passivity condition
+/// gives an upper bound of K at angles where p > 0, and a lower bound where p < 0.
 std::optional<double> passive_with_delay(const SampledLoop& loop) {
   const double d = loop.device.delay_samples;
   if (d != std::floor(d)) return std::nullopt;

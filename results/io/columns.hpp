@@ -128,8 +128,8 @@ struct Metric {
     absolute = absolute_part;
     return *this;
   }
-  /// Returns the largest error of the value [unit of the value]; empty if the error is unknown or there is no
-  /// value.
+  /// Returns the tolerance: the value may be wrong by at most this error [unit of the value]. Empty if `within` was not
+  /// called or there is no value.
   std::optional<double> tolerance() const;
 };
 

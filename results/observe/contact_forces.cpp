@@ -105,7 +105,8 @@ void LastQuarterVibration::add(std::uint64_t step, const Vec3& velocity) noexcep
   const std::uint64_t quarter = step * 4 / steps_;
   if (quarter != std::exchange(quarter_, quarter)) vibration_.restart_count();
   vibration_.add(step, velocity);
-  // Keep enough squares for the last quarter of a run of any length. The constructor has reserved the memory.
+  // Keep as many squares as a quarter of the planned steps, which is enough for the last quarter of a run that ends
+  // early. The constructor has reserved the memory.
   if (squares_.size() < squares_.capacity())
     squares_.push_back(vibration_.last_square());
   else

@@ -130,7 +130,7 @@ class LastQuarterVibration {
 /// to whole periods, provided that at least one period fits.
 class EvaluationWindow {
  public:
-  /// The run has `steps` steps. `period`: period of the script [steps]; 0: it does not repeat.
+  /// The run has `steps` steps. `period`: period of the script [steps]; 0: the script does not repeat.
   EvaluationWindow(std::uint64_t steps, double period) : steps_(steps), period_(period) {}
   /// Records that the tool is in contact in `step`. Only the first call has an effect.
   void touch(std::uint64_t step) noexcept;

@@ -101,8 +101,10 @@ void EnergyLedger::add_step(const StepRecord& now) noexcept {
   if (created > events_.back().created) add_event(now, created);
 }
 
-/// Returns the created energy of a step [J]. Adds to the balance the work of rotation, and the difference between the
-/// work `spring_work` of the integrator and the work of translation by the trapezoidal rule.
+/// Returns the created energy of a step [J]. Adds the work of the tool's rotation on the springs to
+/// EnergyBalance::rotation. Adds the sum of two works to EnergyBalance::integration: the work `spring_work` of f_spring
+/// on the tool as the integrator computes it, and the work of the tool's translation on the springs by the trapezoidal
+/// rule.
 double EnergyLedger::created_in_step(const StepRecord& now, double spring_work) noexcept {
   const Vec3 moved = now.tool.pose.position - last_.tool.pose.position;
   const Vec3 turned = turn(last_.tool.pose, now.tool.pose);
@@ -213,7 +215,7 @@ void PassivityObserver::on_step(const StepRecord& record) noexcept {
   observed_.move(record.tool, record.handle_moves_tool);
   observed_.answer(record.tool, record.force.rendered, record.springs);
   const double energy = observed_.energy();
-  // The comparison is negated so that a NaN becomes and stays the minimum.
+  // If the energy is NaN once, the minimum becomes NaN and stays NaN.
   if (now_.rows && !(energy < now_.energy_min) && !std::isnan(energy)) return;
   if (std::isnan(now_.energy_min)) return;
   now_.energy_min = energy;

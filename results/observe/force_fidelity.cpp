@@ -172,8 +172,8 @@ void ForceFidelityObserver::add_members(nlohmann::ordered_json& section) const {
 }
 
 void ForceFidelityObserver::report(Section& s) const {
-  // A difference between two laws is ranked if it exceeds the sum of their tolerances. With five times the error of the
-  // reference, a ranked difference is at least ten times this error.
+  // A difference between two laws is ranked if it exceeds the sum of their tolerances. Each tolerance is five times the
+  // error of the reference, so a ranked difference is at least ten times this error.
   constexpr double kPerTolerance = 5.0;
   const double reference_error = force_ == nullptr ? 0.0 : kPerTolerance * force_->error();
   const auto limited = [reference_error](Metric& metric, double per_newton) -> Metric& {

@@ -19,8 +19,8 @@ namespace hapbench {
 /// is a convex function, equal to rho - R above the hole's bottom (rho: distance from the hole's axis, R: hole
 /// radius). Along each straight line on the side of the cylinder, upwards from the tip, -z decreases. So the deepest
 /// point of a line is its end at the tip, or its point with D = -z. All points with D = -z lie on the 45-degree cone
-/// that opens downwards from the rim. (The deepest point is never inside the tip's flat face: in a horizontal
-/// displacement z is constant, and D decreases in one direction at most.) The depths of two lines differ by at most
+/// that opens downwards from the rim. (The interior of the tip's flat face contains no deeper point: along a horizontal
+/// line in this face z is constant, and the convex D is largest at an end.) The depths of two lines differ by at most
 /// radius * angle between them. 64 lines around the tool are evaluated. Near each line that is deeper than both of
 /// its neighbours, the angle of the deepest line is searched to 1e-8 rad. This gives a depth accurate to about 1e-11
 /// m. Takes about 2 us. Precondition: the tool does not point upwards, axis.z <= 0.

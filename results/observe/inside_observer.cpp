@@ -244,8 +244,8 @@ double CorePassage::find_segments(const Vec3& position, const Vec3& axis, double
   return 0.5 * nearest;  // between two evaluated points the surface may be at half the evaluated distance
 }
 
-/// Returns the first segment of the last check that overlaps a segment, null if there is none. Marks all overlapping
-/// segments of the last check as continued.
+/// Returns the first segment of the last check that overlaps `next`; null if no segment of the last check overlaps it.
+/// Marks all segments of the last check that overlap `next` as continued.
 const CorePassage::Segment* CorePassage::continued_by(const Segment& next) noexcept {
   const Segment* first = nullptr;
   for (Segment& old : last_segments_) {

@@ -44,8 +44,8 @@ struct Passage {
     Vec3 point;   ///< [m]
   };
   std::optional<Event> deep;  ///< first step with the tip centre deeper than half the tool's width
-  /// deepest: largest depth of the tip centre over all steps, with a relative error of 2 % [m]. last_depth: depth of
-  /// the tip centre in the last step [m].
+  /// deepest: largest depth of the tip centre over all steps, with a relative error of at most 2 % [m]. last_depth:
+  /// depth of the tip centre in the last step [m].
   double deepest = 0.0, last_depth = 0.0;
   /// began_inside: true if the front point was inside in the first step. ends_inside: true if it was inside in the last
   /// step.

@@ -15,9 +15,9 @@
 namespace hapbench {
 namespace {
 
-/// Returns the edit distance (optimal string alignment) of two names: the minimum number of letters to replace,
-/// remove, insert or swap with a neighbour to convert `a` into `b`. Omitting the part of `b` after an underscore
-/// counts as one edit.
+/// Returns the edit distance (optimal string alignment) of two names: the smallest number of edits that convert `a`
+/// into `b`. An edit replaces, removes or inserts a letter, or swaps two adjacent letters. Appending the whole part of
+/// `b` after an underscore also counts as one edit.
 std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> row(b.size() + 1), before(row),
       row_before_previous(row);  // rows of the distance matrix; row[j]: distance from the first i letters of `a` to

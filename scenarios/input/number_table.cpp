@@ -183,7 +183,8 @@ void CsvReader::skip_lines_above_header(std::span<const std::string_view> expect
     if (trimmed(*line).empty() || is_comment(*line)) continue;
     HeaderNames found = names_in(*line, expected);
     if (finite_number(found.names[0]) || has_decimal_comma(found.names[0])) return;
-    // Require two expected names, because a title may contain one of them by chance.
+    // Require two expected names, because a title may contain one expected name by chance. If the list `expected` has
+    // only one name, this name suffices.
     if (found.expected >= std::min<std::size_t>(2, expected.size())) {
       first_line_above_ = header_line_;
       lines_above_ = above;
@@ -213,7 +214,7 @@ void CsvReader::find_separator_of_rows(std::string_view row) {
   if (!has_comments_ || has_all_cells() || columns_.size() < 2) return;
   const char of_header = separator_;
   for (const char separator : kSeparators) {
-    // Commas in rows below a header with semicolons or tabs are more likely decimal commas.
+    // Below a header with semicolons or tabs, commas in the rows are more likely decimal commas than separators.
     if (separator == ',' && of_header != ' ') continue;
     separator_ = separator;
     split(row);
@@ -388,8 +389,8 @@ class RowParser {
   RowParser(CsvReader rows, const TakenColumns& taken, bool decimal_comma)
       : csv_(std::move(rows)), taken_(taken), decimal_comma_(decimal_comma) {}
 
-  /// Appends the rows to the table. If the parser does not expect decimal commas, stops at the first decimal comma and
-  /// returns its line. Otherwise returns nothing.
+  /// Appends the rows to the table. At a decimal comma that the parser does not expect, stops and returns the line of
+  /// this comma. Returns nothing if all rows were read.
   std::optional<std::size_t> read(NumberTable& table, const std::filesystem::path& file, std::size_t max_rows) {
     std::size_t row = 0, line = 0;  // index of the row, and line of the previous row
     while (csv_.advance()) {
@@ -453,7 +454,7 @@ NumberTable parse_number_table(std::string_view text, const std::filesystem::pat
   table.chosen = taken.chosen;
   if (auto note = csv.note_of_lines_above()) table.notes.push_back(std::move(*note));
   if (auto note = unused_columns(csv, taken)) table.notes.push_back(std::move(*note));
-  // Parse the rows. If a number has a decimal comma, parse all rows again, because a point is then not a decimal point.
+  // Parse the rows. If a number has a decimal comma, parse all rows again: a number with a point is then a fault.
   if (const auto line = RowParser(csv, taken, false).read(table, file, max_rows)) {
     table.values.clear();
     table.line_jumps.clear();

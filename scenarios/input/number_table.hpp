@@ -44,7 +44,7 @@ std::string cause_of_exponent(std::string_view cell);
 class RowFaults {
  public:
   /// Adds the fault of a row. Only the text of the first fault is kept, and a row with several faults counts once.
-  /// `line` is 0 in a binary file. `entry` names the entry of the row, such as "sample 3"; it may be empty.
+  /// `line` is 0 in a binary file. `entry` names what the row contains, such as "sample 3"; it may be empty.
   void add(std::size_t line, const std::string& problem, const std::string& entry = "");
   bool any() const { return count_ > 0; }
   /// If a fault was added, throws InputError with the line of the first fault and the number of further rows with
@@ -101,8 +101,8 @@ class CsvReader {
 
  private:
   void find_header(std::span<const std::string_view> expected);
-  /// Replaces `header` by a header with expected names in one of the next lines, if there is one. Precondition:
-  /// `header` has no expected names.
+  /// If one of the next lines is a header with expected names, replaces `header` by this header. Precondition: `header`
+  /// has no expected names.
   void skip_lines_above_header(std::span<const std::string_view> expected, HeaderNames& header);
   void split(std::string_view row);
   /// Finds the separator of the rows, which may differ from the separator of the header.

@@ -37,7 +37,7 @@ bool has_other_dimension(std::string_view word) {
          word.substr(0, at).find_first_not_of("STCN4n") == std::string_view::npos;
 }
 
-/// Counts of the entries, as the header declares them.
+/// Numbers of vertices and faces that the header declares.
 struct Counts {
   std::size_t vertices, faces;
   bool has_edges;  ///< false: the number of edges may follow in a separate line

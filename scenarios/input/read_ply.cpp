@@ -49,12 +49,12 @@ const PlyType* ply_type(std::string_view name) {
   return found == std::end(kPlyTypes) ? nullptr : found;
 }
 
-/// Names of the vertex properties that are read. The role of a property is its index in this list, kCorners or
-/// kIgnored.
+/// Names of the vertex properties that are read. The role of a property is a number: the index in this list for these
+/// properties, kCorners or kIgnored for other properties.
 constexpr std::array<std::string_view, 6> kVertexProperties = {"x", "y", "z", "nx", "ny", "nz"};
 constexpr std::size_t kCorners = 6;  ///< role of a list with the vertex indices of a face
 constexpr std::size_t kIgnored = 7;  ///< role of every other property
-/// Values of the properties in kVertexProperties.
+/// Values of the properties in kVertexProperties for one vertex.
 using Values = std::array<double, kVertexProperties.size()>;
 
 /// A property of an element: a number or a list of numbers.
@@ -213,7 +213,8 @@ class PlyValues {
     word_ = 0;
     if (is_text_ && !text_.next()) fail_cut_short();
   }
-  /// Counts the entry if its line has more values than the header declares. Call it after all values were read.
+  /// Ends the current entry. If its line has more values than the header declares, counts it for warn_of_rest(). Call
+  /// end() after all declared values of the entry were read.
   void end() {
     if (!is_text_ || word_ >= text_.words().size()) return;
     if (long_entries_++ == 0) first_long_line_ = text_.line();

@@ -150,7 +150,8 @@ bool is_text(std::string_view text) {
 /// that a binary header declares. `complete`: number of triangles that the file contains.
 [[noreturn]] void refuse(std::string_view text, std::size_t triangles, std::size_t complete, const fs::path& file) {
   constexpr const char* kAllowed = "; allowed: \"solid\" and text, or 84 bytes and 50 for each triangle";
-  // A text of another kind, such as a page that a server sent instead of the file, has no binary header.
+  // If the first line is printable, the file is a text of another kind, such as a web page that a server sent instead
+  // of the file. Quote this line, because the counts of triangles mean nothing in a text.
   constexpr std::size_t kShown = 40;
   const std::string_view first = LineReader(text).next().value_or("");
   const auto is_printable = [](unsigned char c) { return c >= 0x20 && c < 0x7f; };

@@ -14,7 +14,8 @@
 namespace hapbench {
 namespace {
 
-/// Returns a hint for users who passed the name of a JSON file instead of its contents; otherwise empty.
+/// If `given` is a text that ends with ".json", returns a hint that the content of the file is needed instead of its
+/// name. Otherwise returns an empty text.
 std::string text_of_file_hint(const Json& given) {
   if (!given.is_string() || !given.get_ref<const std::string&>().ends_with(".json")) return "";
   return fmt::format("; on a command line \"$(cat {})\" is what is in the file", given.get_ref<const std::string&>());

@@ -10,10 +10,10 @@
 
 namespace hapbench {
 
-/// Cache of values that take long to compute: parsed files, point shells, distance grids. All runs of a process
-/// share it. Thread-safe. Keeps the most recently used values, up to 128 values and 512 MiB. It always keeps at
-/// least two values for each hardware thread, so that parallel runs do not evict each other's values. An evicted
-/// value stays alive while a run holds it.
+/// Cache of values that take long to compute: parsed files, point shells, distance grids. All runs of a process share
+/// it. Thread-safe. Keeps the most recently used values. When a new key is requested, evicts the least recently used
+/// values while the cache has more than 128 values or 512 MiB. It always keeps at least two values for each hardware
+/// thread, so that parallel runs do not evict each other's values. An evicted value stays alive while a run holds it.
 class SharedCache {
  public:
   /// Returns the value of a key. If the value is missing, calls `make` and caches the result. If another thread
@@ -47,7 +47,8 @@ class SharedCache {
     std::mutex mutex;
     Made made;
   };
-  /// Largest number of values. If two values for each hardware thread are more, that number is the largest number.
+  /// Largest number of values. With more than kMaxEntries / 2 hardware threads, the largest number is instead two
+  /// values for each hardware thread.
   static constexpr std::size_t kMaxEntries = 128;
   static constexpr std::size_t kMaxBytes = std::size_t{512} << 20;  ///< largest size of all values together [bytes]
 

@@ -22,13 +22,13 @@ Json json_of(Fields::Body value, const OnFile& file = nullptr);
 /// on the scenario (Presence::no_default).
 Json default_of(Fields::Body value);
 
-/// Returns the JSON of a value of any kind, by its function `describe`.
+/// Returns the JSON of a value for whose type a function describe(Fields&, T&) exists.
 template <class T>
 Json written(T value) {
   return json_of([&value](Fields& f) { describe(f, value); });
 }
 
-/// Returns the JSON object of a struct, by its function `describe`.
+/// Returns the JSON object of a struct whose fields a function describe(Fields&, T&) describes.
 template <class T>
 Json written_object(T value) {
   return json_of([&value](Fields& f) { f.object(value); });

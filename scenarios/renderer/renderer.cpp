@@ -30,7 +30,7 @@ std::vector<std::string> list_of(const char* const* texts) {
   return list;
 }
 
-/// Returns the scenario of a text, a file or a name. Throws InputError.
+/// Returns the scenario that setup.scenario gives as a JSON text, a file or a name. Throws InputError.
 ScenarioText scenario_text(const HapbenchSetup& setup) {
   if (setup.scenario == nullptr)
     throw InputError("scenario: got NULL; allowed: a name, a file, or a JSON text that begins with \"{\"");

@@ -94,10 +94,10 @@ SimulationParts assemble_rendering(const Scenario& scenario, const NamedFiles& f
   parts.tool = make_tool(scenario, files);
   parts.shell = std::move(shell);
   const RenderingConfig& rendering = scenario.rendering;
-  // A law that finds its contacts itself ignores a trace or a module. Its metrics describe the contacts with the
-  // surface's points.
+  // A law that finds its contacts itself ignores a trace or a module. The contact source is then the search over the
+  // point shell, and the metrics describe the contacts that this search finds.
   const bool finds_contacts = !find_algorithm(rendering.algorithm)->reported_depth_model.empty();
-  // Create the contact source: springs, a recorded trace, a module, or our search over the point shell.
+  // Create the contact source: springs, a recorded trace, a module, or the search over the point shell.
   if (std::holds_alternative<SpringsEnvironment>(scenario.environment)) {
     parts.springs = std::make_shared<const SpringSet>(make_springs(scenario));
     parts.source = std::make_unique<SpringSource>(parts.springs);

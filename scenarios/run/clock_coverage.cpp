@@ -94,15 +94,15 @@ bool sees_few_samples(Samples samples, const RunTimes& run) {
 
 // ---- Traces
 
-/// Counts of the steps of a run for which a trace has contacts.
+/// Counts that show how many contact queries of a run a trace covers.
 struct TraceCoverage {
   std::uint64_t queries = 0;  ///< number of steps in which the run searches contacts
   std::uint64_t covered = 0;  ///< number of these steps with a time of the trace within half a step
   std::uint64_t times = 0;    ///< number of times of the trace within the run
 };
 
-/// Counts the contact queries with a time of the trace within half a step. The times of the trace are first divided by
-/// `per_second`.
+/// Counts the contact queries of the run that have a time of the trace within half a time step. Divides the times of
+/// the trace by `per_second` first.
 TraceCoverage coverage_of(const ContactTrace& trace, const RunTimes& run, std::int64_t every, double per_second) {
   TraceCoverage coverage;
   coverage.queries = static_cast<std::uint64_t>((run.steps - 1.0) / static_cast<double>(every)) + 1;
@@ -130,8 +130,8 @@ double median_interval(const ContactTrace& trace) {
   return *middle;
 }
 
-/// Returns the unit of the trace's clock with which at least five times as many queries are covered as with the second
-/// (`coverage`), and at least a tenth of all queries. Returns null if there is no such unit.
+/// Returns the unit of the trace's clock with which the trace covers at least a tenth of all contact queries, and at
+/// least five times as many queries as with a clock in seconds (`coverage`). Returns null if there is no such unit.
 const ClockUnit* unit_of_trace(const ContactTrace& trace, const RunTimes& run, std::int64_t every,
                                const TraceCoverage& coverage) {
   for (const ClockUnit& unit : kClockUnits) {
@@ -143,7 +143,7 @@ const ClockUnit* unit_of_trace(const ContactTrace& trace, const RunTimes& run, s
 }
 
 /// Returns the unit of time in which the interval of the trace fits the interval of the contact queries, `query` [s].
-/// Returns null if the second fits, or if no unit fits. Used for a clock that does not begin at 0.
+/// Returns null if the interval in seconds fits, or if no unit fits. Used for a clock that does not begin at 0.
 const ClockUnit* unit_of_interval(double interval, double query) {
   constexpr double kFactor = 10.0;  // a trace may be slower or faster than the run
   const auto fits = [&](double per_second) {

@@ -12,7 +12,7 @@ namespace hapbench {
 
 /// Returns a warning in three cases: the times of the stroke and of the run do not overlap, the stroke starts late or
 /// ends early, or the clock of the stroke probably does not count in seconds. If another unit fits, such as
-/// milliseconds, the warning names the factor between this unit and the second. Cost: O(log n) for n samples.
+/// milliseconds, the warning names the factor that converts the times to seconds. Cost: O(log n) for n samples.
 std::optional<Warning> stroke_clock_warning(const Stroke& stroke, const TimeFields& time);
 
 /// Compares the times of the trace with the steps in which the run searches contacts: steps 0, every, 2 every, …

@@ -15,10 +15,12 @@
 namespace hapbench {
 namespace {
 
-// Position step of the central differences [m]: at most a ten-thousandth of the tool's size and of the depth.
+// Position step of the central differences [m]: in usual scenarios, at most a ten-thousandth of the tool's width and of
+// the penetration depth.
 constexpr double kPositionStep = 1e-8;
 constexpr double kVelocityStep = 1e-4;   // velocity step of the differences [m/s]; any step is right for linear dampers
-constexpr double kRelativeError = 1e-7;  // relative error of the differences; smaller entries count as zero
+constexpr double kRelativeError = 1e-7;  // estimated relative error of the differences; a matrix entry counts as zero
+                                         // if its ratio to the largest entry is at most this value
 
 /// Returns the scenario without the parts that the linear theory leaves out.
 Scenario without_nonlinear_parts(Scenario scenario) {
@@ -29,8 +31,8 @@ Scenario without_nonlinear_parts(Scenario scenario) {
   return scenario;
 }
 
-/// Sets the entries of M to zero that are at most kRelativeError times `largest`: they may be errors of the
-/// differences.
+/// Sets the entries of M to zero whose magnitude is at most kRelativeError times `largest`. Such entries may be errors
+/// of the central differences.
 Mat3 without_noise(const Mat3& M, double largest) {
   return (M.array().abs() > kRelativeError * largest).select(M, 0.0);
 }
@@ -176,9 +178,10 @@ class RestingTool {
     input_ = measured_.input;
   }
 
-  /// Returns the displacement of the tool [m] to its equilibrium, if the total force changes linearly with this slope
-  /// [N/m]. The tool moves only in directions in which forces act: a law without a force along the surface does not
-  /// move the tool along the surface, even if its normal force depends on the position along the surface.
+  /// Returns the displacement of the tool [m] to its equilibrium, assuming that the total force decreases linearly with
+  /// the displacement. `slope`: force decrease per displacement [N/m], like a stiffness. The tool moves only in
+  /// directions in which forces act: a law without a force along the surface does not move the tool along the surface,
+  /// even if its normal force depends on the position along the surface.
   Vec3 newton_step(const Mat3& slope) const {
     constexpr double kSingular = 1e-6;  // smaller singular values, in units of the largest, count as zero
     const Eigen::JacobiSVD<Eigen::Matrix3d> svd(slope, Eigen::ComputeFullU | Eigen::ComputeFullV);

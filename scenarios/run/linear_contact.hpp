@@ -45,12 +45,12 @@ std::optional<ContactAtRest> linear_contact(const CheckedScenario& scenario,
                                             const std::shared_ptr<const PointShell>& shell, const ContactState& near);
 
 /// Converts a contact that was linearised with the stiffness K [N/m] and the damping B [N s/m] of `from` to K and B of
-/// `to`: multiplies the contact's stiffness by the ratio of both K, and its damping by the ratio of both B. Keeps the
-/// damping if B of `from` is 0.
+/// `to`: multiplies the contact's stiffness by K of `to` divided by K of `from`, and its damping by B of `to` divided
+/// by B of `from`. Keeps the damping if B of `from` is 0.
 LinearContact scaled(LinearContact contact, const RenderingConfig& from, const RenderingConfig& to);
 
-/// Checks the stability of the loop of hand, device and contact at several values of a scenario field, near a state of
-/// a run.
+/// Checks the stability of the loop of hand, device and contact at several values of a scenario field. The contact is
+/// linearised near a given state of a run.
 class ContactLoops {
  public:
   /// `near`: see linear_contact(). `is_stiffness`: true if the field is the stiffness K. At a K without an equilibrium

@@ -41,11 +41,13 @@ constexpr int kDlopenFlags = RTLD_NOW | RTLD_LOCAL | RTLD_DEEPBIND;
 std::vector<LoadedModule> modules;  ///< loaded modules, in the order of loading
 std::atomic<int> allowing = 0;      ///< number of existing ModulePermission objects that allow all modules
 
-/// Maps the file of each loaded library of contacts to its table. The mutex protects the map.
+/// Maps the file of each loaded library that is a source of contacts to the library's table. The mutex protects the
+/// map.
 std::mutex contact_modules_mutex;
 std::map<fs::path, const HapbenchModule*> contact_modules;
 
-/// Returns the hash of a file. Throws InputError for a directory or a pipe, before it is opened as a library.
+/// Returns the hash of a file. Called before dlopen(), so that a directory, a pipe or an unreadable file causes an
+/// InputError.
 std::string hash_of_file(const fs::path& file) {
   return with_file(file, [&] { return hash_text(hash_of(read_text_file(file, kMaxModuleBytes))); });
 }
@@ -117,8 +119,8 @@ Module module_of(const HapbenchModule& table, const fs::path& file) {
   return {{std::shared_ptr<void>(), &table}, file.filename().string()};
 }
 
-/// Returns the table of a library of contacts, and loads the library at the first call. Throws InputError without
-/// permission. Thread-safe.
+/// Returns the table of a library that is a source of contacts. Loads the library at the first call. Throws InputError
+/// if the user has not permitted the library, or if the library is not a usable source of contacts. Thread-safe.
 const HapbenchModule& contacts_table(const fs::path& file) {
   require_module_permission(file);
   const std::lock_guard lock(contact_modules_mutex);

@@ -51,9 +51,10 @@ void allow_all_modules();
 /// loads laws.
 using LoadingGuard = std::function<std::shared_ptr<void>()>;
 
-/// Loads a module that the user named. Registers a law as an algorithm until the program ends. Allows scenarios to name
-/// a source of contacts. Does nothing if the file is already loaded. Must not be called while another thread reads the
-/// table of algorithms. Throws InputError if the file is not a usable module.
+/// Loads a module that the user named. If the module is a law, registers it as an algorithm until the program ends. If
+/// the module is a source of contacts, scenarios may name its file from then on. Does nothing if the file is already
+/// loaded. Must not be called while another thread reads the table of algorithms. Throws InputError if the file is not
+/// a usable module.
 void load_module(const std::filesystem::path& file, const LoadingGuard& guard = {});
 
 /// Loads every *.so file in the given folders, in the order of file names. `folders` are separated by colons.

@@ -7,7 +7,8 @@ namespace fs = std::filesystem;
 std::error_code NewDirectories::create(const fs::path& directory) {
   constexpr int kMaxAttempts = 1000;
   std::error_code error;
-  // Another process may remove a new parent, which is still empty, before its child exists; then create it again.
+  // Another process may remove a new parent directory that is still empty, before its child is created. Then the
+  // creation of the child fails, and the next attempt creates both again.
   for (int attempt = 0; attempt < kMaxAttempts; ++attempt) {
     error = create_missing(directory);
     if (error != std::errc::no_such_file_or_directory) break;
@@ -25,7 +26,8 @@ std::error_code NewDirectories::create_missing(const fs::path& directory) {
     missing.push_back(path);
   }
   for (auto path = missing.rbegin(); path != missing.rend(); ++path) {
-    // A path that ends with a slash has its last directory twice.
+    // If the path ends with a slash, `missing` has the last directory twice. create_directory() then returns false the
+    // second time, and the directory is recorded once.
     if (fs::create_directory(*path, error)) created_.push_back(*path);
     if (error) return error;
   }

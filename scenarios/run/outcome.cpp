@@ -38,10 +38,11 @@ class OutcomeObserverImpl final : public OutcomeObserver {
         drag_(dynamic_cast<const DragHand*>(parts.hand.get())) {
     const auto is_unexpected = [&scenario](Outcome outcome) { return !outcome_is_expected(scenario.expect, outcome); };
     const bool may_end = length == RunLength::until_failure && can_fail_early(scenario);
-    // A passage ends the run only if the scenario expects neither possible outcome: the run may still diverge.
+    // After a passage through the surface, the outcome is went_through, or diverges if the run diverges later. The
+    // passage ends the run only if the scenario expects neither of these outcomes.
     passage_ends_ = may_end && is_unexpected(Outcome::went_through) && is_unexpected(Outcome::diverges);
-    // A loss of contact ends the run only if the scenario also does not expect a passage: the tool may have gone
-    // through before it left.
+    // A loss of contact ends the run only if the scenario expects none of the outcomes lost_contact, no_contact and
+    // went_through. The outcome can be went_through, because the tool may have gone through the surface before it left.
     leaving_ends_ = may_end && never_returns(scenario) && is_unexpected(Outcome::went_through) &&
                     is_unexpected(Outcome::lost_contact) && is_unexpected(Outcome::no_contact);
     const auto steps = static_cast<std::uint64_t>(scenario.time.steps);
@@ -260,7 +261,7 @@ class OutcomeObserverImpl final : public OutcomeObserver {
           "{}",
           length_text(half_width), p.deep->time, millimetres(p.deep->point), length_text(p.deepest), end);
     }
-    // In this case the tip centre was never deeper than the half width.
+    // From here on, the tip centre was never deeper than the half width.
     if (p.left) return fmt::format("it entered the environment at {} and {}", millimetres(p.entered), end);
     if (p.ends_inside)
       return fmt::format("the core of the tool ended inside the environment; for the tip centre: {}", end);

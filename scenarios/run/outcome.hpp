@@ -30,7 +30,7 @@ enum class RunLength {
   full,
   /// For batches of runs: a run ends at its first final failure (FinalFailure). This requires that the position of the
   /// tool is free, the hand is not of type tracking, the scenario has no stop condition, and the scenario expects none
-  /// of the outcomes that are still possible. The outcome is the outcome of the full run in any case.
+  /// of the outcomes that are possible after this failure. The outcome is the outcome of the full run in any case.
   until_failure
 };
 

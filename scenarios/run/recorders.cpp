@@ -33,8 +33,9 @@ struct RecorderEntry {
   bool has_every_row = false;
 };
 
-// The observers that find() looks up exist, because the same record fields create them. checked() has rejected
-// record.force_reference for a scenario that has neither a reference force nor a measured force.
+// SectionObservers::find() never returns null here, because the record field that requests a table also creates the
+// table's observer. checked() has rejected record.force_reference for a scenario that has neither a reference force nor
+// a measured force.
 const RecorderEntry kRecorders[] = {
     {kTrajectoryTable, &RecordFields::trajectory,
      [](const RecordedTrial& t) { return trajectory_rows(t.fields, t.inside); }},

@@ -43,8 +43,8 @@ std::vector<ResultTable> tables_with(const RecordFields& fields);
 std::vector<ResultTable> record_tables();
 
 /// Returns an estimate of the bytes that a run of the scenario writes, all trials together. Assumes that the run
-/// makes all its steps, 12 bytes for each number and 30 contacts in each step. If the number of contacts is right,
-/// the estimate is within a factor of two. O(1).
+/// makes all its steps, 12 bytes for each number and 30 contacts in each step. If the steps have about 30 contacts, the
+/// estimate is within a factor of two. O(1).
 double expected_output_bytes(const Scenario& scenario);
 
 }  // namespace hapbench

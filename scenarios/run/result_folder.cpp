@@ -47,7 +47,8 @@ void remove_earlier_run(const fs::path& directory, FileSet& files) {
   for (const fs::path& trial : trial_directories(directory)) remove_earlier_run(trial, files);
 }
 
-/// Removes trial directories that this run does not use. Directories with other files stay.
+/// Removes the trial directories that are empty, because this run does not use them. fs::remove() keeps directories
+/// that contain files.
 void remove_empty_trials(const fs::path& directory) {
   std::error_code ignored;
   for (const fs::path& trial : trial_directories(directory)) fs::remove(trial, ignored);

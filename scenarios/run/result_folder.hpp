@@ -49,8 +49,8 @@ class ResultFolder {
   std::optional<FolderLock> lock_;  ///< empty if the caller holds a lock
 };
 
-/// Removes the files that a run wrote from a directory, and keeps all other files. Does nothing if the
-/// directory does not exist. Throws IoError if it cannot be listed.
+/// Removes the files in `directory` that an earlier run wrote, and keeps all other files. Does nothing if the directory
+/// does not exist. Throws IoError if the directory cannot be listed.
 void remove_run(const std::filesystem::path& directory);
 
 }  // namespace hapbench

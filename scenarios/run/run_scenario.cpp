@@ -45,8 +45,8 @@ MetricsConfig metrics_config(const Scenario& scenario, const SimulationParts& pa
   return config;
 }
 
-/// Returns the force with which the rendered force is compared: an ideal force, or the force that was measured
-/// with a stroke. Null if there is no reference.
+/// Returns the force with which the rendered force is compared: an ideal force, or the measured force in the file of a
+/// recorded stroke. Null if there is no such force.
 std::shared_ptr<const ReferenceForce> reference_force(const Scenario& scenario, const NamedFiles& files) {
   if (scenario.reference_force) {
     if (const auto* given = std::get_if<GivenForceFields>(&*scenario.reference_force))
@@ -233,8 +233,8 @@ class Run {
     if (outcome == Outcome::diverges) {
       if (auto* targets = sections_.find<TargetMetricsObserver>()) targets->fail_rest();
     }
-    // Set the outcome of the run to the worst outcome of its trials (the order of Outcome), and add the numbers of
-    // steps.
+    // Set the outcome of the run to the worst outcome of its trials, which is the last in the order of Outcome. Add the
+    // number of steps of this trial.
     const std::uint64_t rows = result.rows + result_.end.rows;
     if (trials_ == 1 || outcome > result_.end.outcome)
       result_.end = {outcome, rows, result.divergence, result_.end.ended_at};

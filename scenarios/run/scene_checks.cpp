@@ -105,8 +105,8 @@ std::optional<Warning> wrong_side_warning(const PointShell& shell, const ToolSha
     nearest = i;
     distance = to_point;
   }
-  // Cosine of 45 degrees. If the direction from the surface point to the core deviates less than this from the reversed
-  // normal, the core lies behind the point and not beside an edge of the surface.
+  // Cosine of about 45 degrees. If the angle between the direction from the surface point to the core and the reversed
+  // normal is below 45 degrees, the core lies behind the point and not beside an edge of the surface.
   constexpr double kBehind = 0.7;
   const SurfacePoint point = shell.point(nearest);
   const double behind = point.normal.dot(point.position - core);
@@ -154,7 +154,7 @@ class WarningList {
   std::vector<Warning> warnings_;
 };
 
-/// Adds warnings about sizes. Precondition: the environment's points do not coincide.
+/// Adds warnings about sizes. Precondition: the environment's points do not all have the same position.
 void add_size_warnings(WarningList& warnings, const LoadedScenario& loaded, const ToolShape& tool,
                        const SceneFacts::Surface& surface) {
   const Scenario& scenario = loaded.scenario;

@@ -11,7 +11,7 @@
 
 namespace hapbench {
 
-/// Properties of a scenario's scene that are known before it runs.
+/// Properties of a scenario's scene that are known before the run.
 struct SceneFacts {
   /// The environment's point shell. An environment of springs has no points.
   struct Surface {

@@ -12,8 +12,8 @@
 namespace hapbench {
 namespace {
 
-/// Returns the mean distance between neighbouring vertices of a mesh [m]: the square root of the area for each
-/// vertex.
+/// Returns an estimate of the mean distance between neighbouring vertices of a mesh [m]: the square root of the mean
+/// surface area per vertex.
 double vertex_distance(const TriangleSoup& soup) {
   double area = 0.0;
   for (const auto& [a, b, c] : soup.triangles) {

@@ -18,8 +18,8 @@ struct Gap {
   std::size_t touching = 0;  ///< number of points inside or on the tool
 };
 
-/// Returns the smallest distance between the tool and a point of the shell. Precondition: the shell has points.
-/// O(points).
+/// Returns the distance between the tool and the nearest point of the shell, and the number of points that touch the
+/// tool. Precondition: the shell has points. O(points).
 Gap gap_between(const ToolShape& tool, const ToolPose& pose, const PointShell& shell);
 
 /// Spacing of the environment's points, and the scenario field that sets the spacing.

@@ -21,13 +21,15 @@ class LastTensor final : public Observer {
   Mat3 S = Mat3::Zero();
 };
 
-/// Stiffness [N/m] and damping [N s/m] of a sampled hand along one axis.
+/// Stiffness [N/m] and damping [N s/m], along one axis, of a sampled hand: a hand whose force is computed once in each
+/// time step.
 struct SampledHand {
   double stiffness = 0.0, damping = 0.0;
 };
 
-/// Returns the sampled hand along the normal of the surface; zero for a hand whose force does not depend on the handle,
-/// and for a hand that is attached to the handle. A subject's intended position is held constant.
+/// Returns stiffness and damping of the sampled hand along the normal of the surface. Both are zero for a hand whose
+/// force does not depend on the handle, and for a hand that is attached to the handle. A subject's intended position is
+/// held constant.
 SampledHand sampled_hand(const Scenario& scenario) {
   if (const auto* hand = std::get_if<ImpedanceHandFields>(&scenario.hand)) return {hand->stiffness, hand->damping};
   if (const auto* drag = std::get_if<DragHandFields>(&scenario.hand)) return {0.0, drag->drag.normal_damping};
@@ -66,9 +68,10 @@ DeviceLoop admittance_loop(const Scenario& scenario, const AdmittanceDeviceConfi
   return result;
 }
 
-/// Returns the scenario with the stiffness and damping of the friction bristle in place of the contact springs: the
-/// linear loop along a surface on which dry friction holds the tool. The bristle integrates the velocity that the
-/// device measures. The deflection of the bristle is therefore the filtered position.
+/// Returns the scenario in which the stiffness and damping of the friction bristle replace those of the contact
+/// springs. The linear loop of this scenario is the loop along a surface on which dry friction holds the tool. The
+/// bristle integrates the velocity that the device measures. The deflection of the bristle is therefore the position,
+/// filtered by the device's velocity filter.
 Scenario stuck_scene(Scenario scenario) {
   RenderingConfig& r = scenario.rendering;
   const SpringDamper bristle = bristle_of(*r.dry_friction, r, scenario.time.step);

@@ -8,7 +8,7 @@
 #include "scenarios/scene/scenario.hpp"
 #include "sim/loop/integrators/table.hpp"
 
-/// The linear control loop of a scenario: tool, device, hand and the springs of its wall, as long as nothing
+/// The linear control loop of a scenario: tool, device, hand and the contact springs, as long as nothing
 /// saturates and contact is not lost. Let K be the stiffness, B the damping, and lambda an eigenvalue of the
 /// springs' stiffness tensor S (in units of K). Along the direction of lambda, the springs act like one spring
 /// lambda K with one damper lambda B. The loop is stable if no eigenvalue of the state matrix of one step

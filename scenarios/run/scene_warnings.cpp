@@ -21,8 +21,8 @@ const char* size_question(const Environment& environment) {
 std::optional<Warning> short_path_warning(const DragHandFields& fields, const DragHand& hand, double duration,
                                           const ToolShape& tool) {
   const double path = hand.path().length(), to_cover = intended_drag_length(fields, duration);
-  // If the path is short by less than the tool's width, the drag ends at an edge of the surface, which is
-  // normal.
+  // If the path is shorter than the intended length by at most the tool's width, the drag ends at an edge of the
+  // surface, which is normal.
   if (to_cover <= path + 2.0 * tool.half_width()) return std::nullopt;
   const std::string ends = fmt::format(
       "the path of the drag ends after {}, but the hand would move {}: ", length_text(path), length_text(to_cover));

@@ -11,8 +11,8 @@ void Standstill::add(const StepRecord& record) noexcept {
   constexpr double kMeanWeight = 1 / 32.0;
   const Vec3& position = record.tool.pose.position;
   const Vec3 target = target_(record.time);
-  // Before the first contact, the direction of the contact force is unknown. Distances of the target in these steps
-  // do not count.
+  // Before the first contact, the direction of the contact force is unknown. The distances between target and tool in
+  // these steps do not count.
   if (mean_force_.isZero(0.0)) across_ = 0.0;
   mean_force_ += kMeanWeight * (record.force.spring - mean_force_);
   // Extend the boxes of tool and target.

@@ -15,8 +15,8 @@ namespace hapbench {
 /// the tool's width perpendicular to the contact force.
 class Standstill {
  public:
-  /// `target(t)` returns the position of the spring's target at time t [s]; it is only called with the time of the
-  /// last step. `width`: width of the tool [m].
+  /// `target(t)` returns the position of the spring's target at time t [s]. In each step, add() calls it with the time
+  /// of this step. `width`: width of the tool [m].
   Standstill(std::function<Vec3(double)> target, double width) : target_(std::move(target)), width_(width) {}
 
   void add(const StepRecord& record) noexcept;

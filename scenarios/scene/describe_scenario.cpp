@@ -71,8 +71,8 @@ void describe_outcomes(Fields& f, std::vector<Outcome>& outcomes) {
       });
 }
 
-/// Sets the defaults of the scene's type to the thesis's parameters (Tables A.1, A.2, B.1). Does nothing for
-/// springs, whose parameters are the structs' default values.
+/// Sets the fields whose defaults depend on the type of the environment to the thesis's parameters (Tables A.1, A.2,
+/// B.1). Does nothing for springs, whose parameters are the structs' default values.
 void set_scene_defaults(Scenario& scenario) {
   if (std::holds_alternative<SpringsEnvironment>(scenario.environment)) return;
   RenderingConfig& rendering = scenario.rendering;

@@ -24,10 +24,10 @@ inline std::shared_ptr<const PointShell> make_shell(const Scenario& scenario) {
   return make_shell(scenario, NamedFiles(scenario));
 }
 
-/// Returns the solid that the environment's exact surface bounds; null for springs. It does not depend on the
-/// sampling of the shell, except for a point-shell file, which has no other surface. Environments from equal
-/// files share the solid (SharedCache). `files` are the scenario's files. Throws InputError if the environment's
-/// file cannot be used.
+/// Returns the solid that the environment's exact surface bounds; null for springs. The solid does not depend on the
+/// sampling of the shell. Exception: the solid of a point-shell file is computed from the file's points, because the
+/// file has no other surface. Environments from equal files share the solid (SharedCache). `files` are the scenario's
+/// files. Throws InputError if the environment's file cannot be used.
 std::shared_ptr<const Solid> make_solid(const Scenario& scenario, const NamedFiles& files);
 
 /// Returns the springs of the environment. Random directions depend on the scenario's seed. Precondition: the

@@ -78,7 +78,7 @@ void rethrow_with_file(const InputError& error, const LoadedScenario& loaded) {
 
 fs::path file_of(const LoadedScenario& loaded, const std::string& pointer) {
   if (!pointer.starts_with('/')) return loaded.file;
-  // No file sets a field that has its default value. In this case search for the object around the field.
+  // Search for a file that sets the field. If no file sets the field, search for a file that has the object around it.
   for (Json::json_pointer at(pointer); !at.empty(); at = at.parent_pointer()) {
     for (const ScenarioLayer& layer : loaded.layers)
       if (layer.json.contains(at)) return layer.file;

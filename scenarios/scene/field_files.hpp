@@ -7,7 +7,7 @@
 #include "results/summary/summary.hpp"
 #include "scenarios/input/input_error.hpp"
 
-/// Adds to errors and warnings the name of the file that sets the field of a scenario.
+/// Adds to an error or warning about a scenario field the name of the file that sets this field.
 namespace hapbench {
 
 struct LoadedScenario;

@@ -14,7 +14,8 @@
 namespace hapbench {
 namespace {
 
-/// Returns the element of a list that a key of a dotted path names. Throws InputError.
+/// Returns the element list[key]. Throws InputError if `key` is not an index of the list. `path`: the dotted path that
+/// contains the key.
 Json& element_at(Json& list, std::string_view key, const std::string& path) {
   const auto index = whole_number(key);
   if (!index || *index >= list.size()) {

@@ -25,8 +25,8 @@ void apply_override(Json& scenario, const std::string& text);
 bool keeps_run_unchanged(std::string_view override);
 
 /// Relaxes the expectations for a run that an override has changed. Removes the bounds on metrics. Adds the outcomes
-/// that are expected without the field "expect" (ExpectFields) to the listed outcomes. A run that never touches its
-/// object or diverges stays unexpected unless the scenario lists that outcome.
+/// that are expected without the field "expect" (ExpectFields) to the listed outcomes. All other outcomes, such as
+/// no_contact and diverges, stay unexpected unless the scenario lists them.
 void relax_expectations(Json& expect);
 
 }  // namespace hapbench

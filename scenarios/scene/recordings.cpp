@@ -66,7 +66,7 @@ std::string quaternion_problem(const Eigen::Quaterniond& q) {
   return fmt::format("got a quaternion qw,qx,qy,qz of norm {}; allowed: 1 within {}", norm, kMaxNormError);
 }
 
-/// Statistics of the axes in a file whose length is not 1.
+/// Statistics of the tool axes in one file, over the axes whose length is not 1.
 struct OtherLengths {
   std::size_t count = 0, first_line = 0;
   double smallest = 0.0, largest = 0.0;

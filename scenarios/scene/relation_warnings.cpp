@@ -21,8 +21,8 @@ namespace hapbench {
 namespace {
 
 /// Warns about a depth model or reduction in `json` that differs from the depth model or reduction that the
-/// algorithm fixes. Also warns about recorded or external contacts if the algorithm ignores them or is defined
-/// with another depth model.
+/// algorithm fixes. Also warns about contacts from a recording or a shared library, if the algorithm ignores such
+/// contacts, or if the algorithm is defined with one depth model only: these contacts bring their own depths.
 void warn_of_fixed_stages(const Scenario& scenario, const Json& json, std::vector<Warning>& warnings) {
   const RenderingConfig& fixed = scenario.rendering;
   const AlgorithmEntry& entry = *find_algorithm(fixed.algorithm);

@@ -13,8 +13,8 @@ inline constexpr const char* kNoEffect = "no_effect";
 
 /// Returns warnings about values in `json`, from which the scenario was read, that have no effect or are likely
 /// mistakes. Examples: a parameter that the algorithm does not use; a handle of 80 kg; a script of waypoints whose last
-/// segment begins after the end of the run. The latter happens easily if the time step is reduced and the number of
-/// steps is not increased.
+/// segment begins after the end of the run. A script outlasts the run easily if the time step is reduced and the number
+/// of steps is not increased.
 std::vector<Warning> relation_warnings(const Scenario& scenario, const Json& json);
 
 }  // namespace hapbench

@@ -69,13 +69,13 @@ struct BlockEnvironment {
 };
 struct PointShellEnvironment {
   std::string file;            ///< CSV or PLY, relative to the scenario file
-  std::optional<double> grid;  ///< cell size of the local average [m]; empty: no cells
+  std::optional<double> grid;  ///< edge length of the local average's grid cells [m]; empty: no cells
 };
 struct MeshEnvironment {
   std::string file;               ///< OBJ, PLY, STL or OFF, relative to the scenario file
   double scale = 1.0;             ///< length of the file's unit [m]
   std::optional<double> spacing;  ///< spacing after resampling [m]; empty: no resampling
-  std::optional<double> grid;     ///< cell size of the local average [m]; empty: no cells
+  std::optional<double> grid;     ///< see PointShellEnvironment::grid
   bool flip = false;              ///< true: the normals of an open surface are reversed
 };
 using Environment = std::variant<SpringsEnvironment, Hole2d, Plane, Slot, BlockEnvironment, PointShellEnvironment,
@@ -234,9 +234,10 @@ bool records_rows(const RecordFields& record);
 struct GivenForceFields {
   std::array<Profile, 3> force;  ///< [N]
 };
-/// The reference force is K (x' - x) of frictionless contact with the rigid triangles of the mesh: x is the prescribed
-/// position of the tool or the target of its hand, and x' the free position at which a tool that is pulled towards x
-/// rests (scenarios/run/rigid_contact_force.hpp).
+/// The reference force is k (x' - x) of frictionless contact with the rigid triangles of the mesh. If the tool's
+/// position is prescribed, x is this position and k is rendering.stiffness. Otherwise x is the target of the hand's
+/// spring and k the stiffness of this spring. x' is the collision-free position at which a tool that is pulled towards
+/// x rests (scenarios/run/rigid_contact_force.hpp).
 struct RigidContactFields {};
 using ReferenceForceFields = std::variant<GivenForceFields, RigidContactFields>;
 

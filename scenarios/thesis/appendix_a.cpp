@@ -15,8 +15,8 @@
 namespace hapbench {
 namespace {
 
-// ---- A1: vibration of the original algorithm and of stiffness shaping, without friction (Table A.1 lists none) and
-// with the trainer's friction. The initial tilt and speed are assumptions of this project (assumptions.json), which
+// ---- A1: vibration of the original algorithm and of stiffness shaping, without friction (Table A.1 lists no friction)
+// and with the trainer's friction. The initial tilt and speed are assumptions of this project (assumptions.json), which
 // `reproduce --sensitivity` varies.
 
 Measured measure_peg_motion(const Evidence& e) {

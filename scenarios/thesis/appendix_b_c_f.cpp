@@ -35,7 +35,8 @@ Finding judge_flipped_gradient(const MeasuredCase& m, const PublishedNumbers&) {
                                                    : "the original algorithm pushes the tool out here"};
 }
 
-/// Returns damping_ratio_of_swings() of the tool's x coordinate in a run; NaN if it is empty.
+/// Returns damping_ratio_of_swings() of the tool's x coordinate in a run; NaN if damping_ratio_of_swings() returns
+/// nothing.
 double damping_ratio_of(const LoadedScenario& loaded) {
   std::vector<double> x;
   for_each_row(checked(loaded), [&](const StepRecord& row) { x.push_back(row.tool.pose.position.x()); });
@@ -43,8 +44,8 @@ double damping_ratio_of(const LoadedScenario& loaded) {
 }
 
 // ---- B2: a hand presses a mass into a groove of two springs; the mass starts beside the bottom. One case for each
-// half angle between the contacts' gradients, with the damping ratios of the oscillation across the groove. NaN if the
-// mass does not oscillate; then it is not under-damped.
+// half angle between the contacts' gradients, with the damping ratios of the oscillation across the groove. If the mass
+// does not oscillate, and thus is not under-damped, the damping ratio is NaN.
 
 constexpr double kHalfAngles[] = {10.0, 20.0, 30.0, 40.0, 50.0, 60.0, 70.0, 80.0};  ///< [degrees]
 
@@ -221,8 +222,9 @@ Finding judge_density(const Measured& measured, const PublishedNumbers& p) {
           limit <= small ? "decouple it" : "do not", reduced <= small ? "decouples" : "does not decouple")};
 }
 
-// ---- T6: change of the spring force in task 2 by the reduction: rms of the difference over the rms of the force of
-// all points, with the thesis's three updates and without the local average.
+// ---- T6: relative change of the spring force in task 2 by the reduction: the rms of the force difference with and
+// without the reduction, divided by the rms of the force without the reduction. Stiffness shaping makes the thesis's
+// three updates. The local average is off.
 
 MeasuredValues measure_information(const Evidence& e) {
   const LoadedScenario loaded = e.load("task2_rotate_signed_distance", {"rendering.local_average=false"});
@@ -294,9 +296,12 @@ Finding judge_normal_projection(const MeasuredCase& m, const PublishedNumbers& p
                       saturates ? "does" : "does not")};
 }
 
-// ---- F2, the law tandpasta: the elastic energy of the weighted springs over the energy of the unweighted springs; at
-// some prescribed tilts of the planar peg, the outward force over the outward force of unweighted springs in the same
-// pose; and in a converged run without friction (1/100 of the step), the time until the peg leaves the hole [s].
+// ---- F2, the law tandpasta.
+// energy_ratio: elastic energy of the weighted springs, divided by the energy of the unweighted springs.
+// boosts: outward force at some prescribed tilts of the planar peg, divided by the outward force of unweighted springs
+//   in the same pose.
+// One value for each law: time [s] until the peg leaves the hole, without friction and with 1/100 of the time step, at
+//   which the motion has converged.
 
 constexpr double kEnergyKept = 1e-9;                      ///< largest relative change of a conserved energy
 constexpr double kBoostTilts[] = {0.08, 0.12, 0.2, 0.4};  ///< [rad]
@@ -318,7 +323,8 @@ double tandpasta_energy_ratio(const Evidence& e) {
   return ratio;
 }
 
-/// Returns the outward force over the outward force of unweighted springs, at the first step beyond each tilt.
+/// Returns, for the first step at or beyond each tilt, the outward force divided by the outward force of unweighted
+/// springs.
 std::vector<double> outward_boosts(const Evidence& e) {
   const LoadedScenario loaded = e.load("tilt_sweep_tandpasta");
   const double stiffness = loaded.scenario.rendering.stiffness;

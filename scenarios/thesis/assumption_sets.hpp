@@ -39,9 +39,10 @@ struct CalibratedSet {
   std::set<std::size_t> missed = {};  ///< assumptions that could not be calibrated within their range
 };
 
-/// Calibrates the inputs of a set. Leaves an input unchanged if its value is given, or if no other assumption of the
-/// set changes the scenario of its calibration. Uses the secant method on logarithms, from the recorded value, with at
-/// most 8 runs for each input. Throws InputError.
+/// Calibrates the inputs of a set, that is, the assumptions that have an Assumption::calibration. Leaves an input
+/// unchanged if its value is given, or if no other assumption of the set changes the scenario of its calibration. Uses
+/// the secant method on logarithms of the values, starts at the recorded value, and makes at most 8 runs for each
+/// input. Throws InputError.
 CalibratedSet calibrated(AssumptionSet set, const Assumptions& assumptions);
 
 /// Overrides that reduce the experiments of appendix D: 4 of 15 targets at each position, for each of the six subjects.

@@ -70,9 +70,10 @@ Finding judge_flat_reduction(const Measured& counts, const PublishedNumbers& pub
           one ? "on a flat all gradients are equal, so one point is left" : "more than one point is left on the flat"};
 }
 
-/// Returns whether the mean, and whether the spread, of counts is near the published value of recording `one`. The
-/// thesis publishes two recordings of a task and no errors of their values. A value is near recording `one` if its
-/// difference from this recording is at most the difference between the two recordings.
+/// Returns two values: true if the mean of the counts is near the published mean of recording `one`, and true if their
+/// spread is near the published spread of recording `one`. The thesis publishes two recordings of a task, without
+/// uncertainties. A value is near recording `one` if its difference from this recording is at most the difference
+/// between the two recordings.
 std::pair<bool, bool> nearness(const MeasuredCase& c, const std::string& counts, const PublishedNumber& one,
                                const PublishedNumber& other) {
   const auto is_near = [](double value, double published, double elsewhere) {

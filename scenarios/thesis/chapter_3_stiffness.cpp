@@ -117,9 +117,9 @@ double largest(const Measured& measured, const std::string& value) {
   return result;
 }
 
-/// Returns the smallest ratio after one update of one contact against `parallel` parallel contacts. With k = `parallel`
-/// and the square x of the inner product of the two directions, the ratio of the single contact is
-/// 1 / (1 + k x) + k x / (k + x).
+/// Returns the smallest stiffness ratio, after one update, of a single contact beside `parallel` contacts that have the
+/// same direction, over all angles between the two directions. With k = `parallel` and the square x of the inner
+/// product of the two directions, the ratio of the single contact is 1 / (1 + k x) + k x / (k + x).
 double smallest_after_one_update(int parallel) {
   const double k = parallel;
   double smallest_ratio = 1.0;

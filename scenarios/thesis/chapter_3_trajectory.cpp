@@ -49,7 +49,7 @@ MeasuredValues measure_trajectory(const Evidence& e) {
 Finding judge_trajectory(const MeasuredCase& m, const PublishedNumbers& published) {
   const double around = threshold(published, "around");
   const double depth = around * published["J1.depth"].mean, lateral = around * published["J1.lateral"].mean;
-  // With NaN a comparison is false.
+  // If a measured number is NaN, all comparisons with it are false.
   const bool follows = std::abs(m["low_height"]) <= depth;
   const bool offset = std::abs(m["high_height"]) > std::abs(m["low_height"]);
   const bool on_line = m["high_lateral"] <= lateral, shallow = m["inside"] <= depth;

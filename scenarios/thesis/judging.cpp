@@ -11,8 +11,8 @@ namespace hapbench {
 
 Finding Claim::judged(const Measured& cases, const PublishedNumbers& numbers_of_thesis) const {
   Finding finding = judge(cases, numbers_of_thesis);
-  // Insert the measured numbers into the texts. <NAME> is a number of the latest case so far, <CASE.NAME> a number of
-  // the case CASE.
+  // Insert the measured numbers into the texts; a list of numbers is replaced by its mean. <NAME> is the number NAME of
+  // the latest case so far, <CASE.NAME> the number NAME of the case CASE.
   PublishedNumbers numbers = numbers_of_thesis;
   std::string of_cases;
   for (const MeasuredCase& m : cases) {

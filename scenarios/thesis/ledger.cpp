@@ -137,8 +137,9 @@ std::string failures(const Json& claims) {
   return text;
 }
 
-/// Returns a table with a row for each assumption: its other values with which claims have another verdict. Adds a note
-/// for each claim that has another verdict in the record of sensitivity than in the ledger. Empty without such values.
+/// Returns a table with a row for each assumption: the values, other than the recorded value, with which claims have
+/// another verdict. Adds a note for each claim whose verdict in the record of sensitivity, under the recorded
+/// assumptions, differs from its verdict in the ledger. Empty if no value changes a verdict.
 std::string other_values(const Json& claims) {
   std::map<std::string, std::string> cells;
   std::string notes;

@@ -12,8 +12,8 @@
 namespace hapbench {
 
 /// Returns the content of claims.json: the headline, the sentences of the abstract and the claims. Claims whose numbers
-/// a figure plots (Claim::drawn) include their cases. Uses an entry of the record of sensitivity only if it is about
-/// the same assumptions.
+/// a figure plots (Claim::drawn) include their cases. Uses the entry of a claim in the record of sensitivity only if
+/// the entry has the hash JudgedClaim::reach, that is, if the assumptions that can change the claim are the same.
 Json ledger_json(const std::vector<JudgedClaim>& judged, const PublishedNumbers& published,
                  const SensitivityRecord& record);
 /// Returns a sentence with the number of claims for each verdict and for each robustness of a verdict. Claims about

@@ -63,8 +63,9 @@ double seconds_of(int repetitions, Work work) {
   return *middle;
 }
 
-/// Returns a scenario of a drill in the block's hole, prepared for measuring contacts: it has an ideal device, which
-/// has no dynamics, with the original force limit; it lasts at most one period of the tilt (6 s); it records nothing.
+/// Returns a scenario of a drill in the block's hole, prepared for measuring contacts. An ideal device, which has no
+/// dynamics, replaces the device of `scenario` and keeps its input-force limit. The returned scenario lasts at most one
+/// period of the tilt (6 s) and records nothing.
 Scenario drill_in_hole(Scenario scenario);
 
 /// The contacts before (`colliding`) or after (`rendered`) the scenario's point stages.
@@ -105,8 +106,8 @@ MeasuredCase reference_vibration(const std::string& name, const Result& run);
 bool vibrates_more(const MeasuredCase& a, const MeasuredCase& b);
 /// Returns true if `a` vibrates in comparison with a smooth algorithm `b`. With the factor f = rule.vibrates: either
 /// its velocity variation is at least f times, and its vibration power at least f^2 times, the value of `b`; or
-/// vibrates_more() is true and its number of force reversals is at least f times the number of `b`, or f if `b` has
-/// none.
+/// vibrates_more() is true and its number of force reversals is at least f times the number of `b`, or at least f if
+/// `b` has no force reversals.
 bool vibrates_much_more(const MeasuredCase& a, const MeasuredCase& b, const PublishedNumbers& p);
 
 /// Returns the damping ratio zeta of an oscillation about zero, from positions `x` [m], one for each time step. With

@@ -10,9 +10,11 @@
 namespace hapbench {
 namespace {
 
-// ---- S2: one case for each task and density: completes (1 or 0), and the numbers of the diagnosis for vibration: buzz
-// (rms of the force above 30 Hz over the mean force) and pop (largest force step over the mean force), in settled
-// contact; disturbed: number of rules of the diagnosis for low vibration whose threshold is exceeded.
+// ---- S2: one case for each task and density.
+// completes: 1 if the run has the outcome `completes`, otherwise 0.
+// buzz: rms of the force's part above 30 Hz, divided by the mean force; in settled contact.
+// pop: largest force step, divided by the mean force; in settled contact.
+// disturbed: number of rules of the diagnosis for low vibration whose threshold is exceeded.
 
 MeasuredValues stability_values(const LoadedScenario& loaded) {
   const Result run = run_scenario(checked(loaded), std::nullopt, false);

@@ -98,8 +98,8 @@ class CommandLine(Arguments):
             self.flag(name, SHARED)
 
     def parse(self, words):
-        """Returns the parsed arguments. The word after an option with a value is its value, even if the word begins
-        with "-". Positional arguments may stand before, between and after options."""
+        """Returns the parsed arguments. The word after an option that takes a value is this value, even if the word
+        begins with "-". Positional arguments may stand before, between and after options."""
         if not {"-h", "--help"}.isdisjoint(words):
             self.print_help()
             self.exit()
@@ -428,8 +428,9 @@ def write(file, data):
 
 
 def unwritable(error):
-    """Prints why a file could not be written and returns the exit status: BAD_INPUT if the path cannot be a file,
-    FAILED if the disk is full or broken."""
+    """Prints why a file or standard output could not be written and returns the exit status. The status is FAILED
+    if the disk is full or broken, or if standard output cannot be written. Otherwise the path of the file is wrong, and
+    the status is BAD_INPUT."""
     if error.filename is None:
         with suppress(OSError, ValueError):
             # Discards the remaining output, which cannot be printed.

@@ -150,7 +150,8 @@ TO_OKLAB = np.array(
 
 
 def law_name(algorithm):
-    """Returns the name of a law as pictures and pages of the user's runs print it, like the tables of the program."""
+    """Returns the name of a law in the form that the pictures and pages of the user's runs and the tables of the
+    program print."""
     return algorithm.replace("_", " ")
 
 
@@ -224,8 +225,8 @@ def oklab(colour):
 
 
 def in_hue(hue, luminances=LUMINANCES[0]):
-    """Returns two colours of a hue (0 to 1): the lightest colour with at most the first relative luminance, for white,
-    and the darkest colour with at least the second relative luminance, for the dark page."""
+    """Returns two colours of a hue (0 to 1): the lightest colour whose relative luminance is at most luminances[0], for
+    white, and the darkest colour whose relative luminance is at least luminances[1], for the dark page."""
     shades = [colorsys.hls_to_rgb(hue, percent / 100, 0.65) for percent in range(101)]
     light = max((s for s in shades if luminance(s) <= luminances[0]), key=luminance)
     dark = min((s for s in shades if luminance(s) >= luminances[1]), key=luminance)

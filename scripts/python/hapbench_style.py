@@ -65,9 +65,9 @@ SHEETS = {
 }
 SHEET, PAGE = SHEETS["double"], Sheet(WIDTH, 3)
 
-# Colours of measured quantities, forces and contacts; algorithms have other colours. Each has a contrast of at least
-# 4.5 to white. Amber and petrol can be distinguished with every type of colour vision. A curve in a third colour also
-# has a different line style or marker. Red is for the thesis's numbers.
+# Colours of measured quantities, forces and contacts; algorithms have other colours. Each of these colours has a
+# contrast of at least 4.5 to white. Amber and petrol can be distinguished with every type of colour vision. A third
+# curve has a third colour, and also a different line style or marker. Red is for the thesis's numbers.
 BLACK, GREY, AMBER, PETROL, PLUM, RED = (
     "#000000",
     "#5F5F5F",
@@ -131,8 +131,8 @@ def panels(rows, columns, height, **keywords):
 
 
 def number_ticks(axis, subs=()):
-    """Labels more ticks than the powers of ten on a logarithmic axis that shows too few powers of ten. With `subs`,
-    labels these multiples of each power of ten on every logarithmic axis, whatever its range."""
+    """Labels more ticks than the powers of ten on a logarithmic axis that shows too few powers of ten. If `subs` is
+    not empty, labels instead these multiples of each power of ten on a logarithmic axis of any range."""
     low, high = axis.get_view_interval()
     if axis.get_scale() == "log" and (subs or high / low < 60):
         axis.set_major_locator(LogLocator(subs=subs or ((1, 2, 5) if high / low < 20 else (1, 3))))

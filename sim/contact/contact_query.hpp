@@ -49,8 +49,8 @@ class ContactQuery {
 };
 
 /// Returns the contact search of a run. With Skips::on it uses neighbour lists. With Skips::off it compares
-/// every point of the shell with the tool (brute force). Both return bitwise identical contacts. Shell and tool
-/// must outlive the search. O(shell size).
+/// every point of the shell with the tool (brute force). Both searches return bitwise identical contacts. Shell
+/// and tool must outlive the search. O(shell size).
 std::unique_ptr<ContactQuery> make_contact_query(const PointShell& shell, const ToolShape& tool, Skips skips);
 
 }  // namespace hapbench

@@ -10,15 +10,15 @@
 namespace hapbench {
 namespace {
 
-/// Number of cells that are halved together; the tool evaluates their eight halves in one call.
+/// Number of cells that are halved together. One call of ToolShape::surface_constraints() evaluates their eight halves.
 constexpr std::size_t kAtOnce = 4;
 /// Maximum size of the stack of cells. A cell is smaller than the tolerance after at most about 60 halvings, and each
 /// round of the search adds at most kAtOnce cells.
 constexpr std::size_t kMaxCells = 1024;
 /// Maximum number of distance evaluations in one search, which bounds its time.
 constexpr std::size_t kMaxEvaluations = 20000;
-/// Tolerances in half widths of the tool. A point at most kOnTool outside the tool counts as in the tool. Cells smaller
-/// than kCoarse are not searched beyond the border of an open surface.
+/// Tolerances in half widths of the tool. A point at most kOnTool outside the tool counts as in the tool. Beyond
+/// the border of an open surface, a cell with a half diagonal shorter than kCoarse is not halved further.
 constexpr double kOnTool = 1e-9, kCoarse = 0.25;
 
 /// Lengths in half widths of the tool. A segment of the tool's axis shorter than kShort is not halved. A segment longer
@@ -98,7 +98,7 @@ void InsideSearch::halve(const ToolPose& pose, const Cell* parents, std::size_t 
 }
 
 /// Evaluates a cell, and keeps it if it meets the tool and may hold a deeper point. `outside`: distance of its centre
-/// outside the tool [m]; `gradient`: direction of this distance.
+/// outside the tool [m]; `gradient`: unit vector along which this distance grows.
 void InsideSearch::examine(const ToolPose& pose, Cell cell, double outside, const Vec3& gradient) noexcept {
   double radius = cell.half.norm();
   if (!(outside <= radius)) return;
@@ -143,8 +143,8 @@ bool InsideSearch::into_tool(const ToolPose& pose, Vec3& point) noexcept {
   return false;
 }
 
-/// Moves from a point of the tool to deeper points of the tool and updates the largest depth. `near`: a distance known
-/// nearby.
+/// Moves from a point of the tool to deeper points of the tool and updates the largest depth. `near`: the signed
+/// distance at a point nearby.
 void InsideSearch::improve(const ToolPose& pose, Vec3 point, const KnownDistance& near) noexcept {
   constexpr int kMoves = 8, kHalvings = 6;
   const MutablePointArrays answer{x_.data(), y_.data(), z_.data()};
@@ -207,7 +207,8 @@ std::vector<InsideBound::Ball> InsideBound::balls_of(const Segment& segment) con
   double low = segment.from - half_width_, high = segment.to + half_width_;
   for (int i = 0; i < kRounds; ++i) {
     const double third = (high - low) / 3.0;
-    // Ternary search: the distance to the farthest of several points is convex in the centre.
+    // Ternary search: the distance from the centre to the farthest of several points is a convex function of the
+    // centre.
     if (radius(segment, low + third) < radius(segment, high - third)) {
       high -= third;
     } else {
@@ -224,8 +225,9 @@ std::vector<InsideBound::Ball> InsideBound::balls_of(const Segment& segment) con
   return balls;
 }
 
-/// Returns the bound from one ball. Reuses the ball's last evaluation in two cases: its bound is sufficient; or only a
-/// sufficient bound is useful, and a new evaluation clearly cannot give a sufficient bound.
+/// Returns the bound from one ball. Does not evaluate the distance at the ball's centre again in two cases: the bound
+/// from the last evaluation is sufficient; or only a sufficient bound is useful (`best` is false), and a new evaluation
+/// clearly cannot give a sufficient bound.
 InsideBound::Evaluation InsideBound::evaluate(Ball& ball, const BoundRequest& q) {
   const Vec3 centre = q.pose.position + ball.position * q.pose.axis;
   const double beyond = ball.radius + q.moved + std::abs(ball.position) * q.turned;

@@ -39,8 +39,8 @@ class InsideSearch {
   /// Default of the argument `tolerance`. The same number is the relative error of the depth that is allowed in
   /// addition.
   static constexpr double kTolerance = 0.02;
-  /// Returns the error of the depth [m] in addition to the tolerance, if the tool is sampled on a grid or points
-  /// represent the surface; 0 otherwise.
+  /// Returns the error of the depth [m] that adds to the tolerance if the tool is sampled on a grid or points represent
+  /// the surface; 0 otherwise.
   double error() const noexcept { return error_; }
   /// Approximate number of distances evaluated in all searches so far.
   std::size_t looks() const noexcept { return evaluations_; }
@@ -82,8 +82,8 @@ class InsideSearch {
 /// phi changes by at most the distance between two points, so no point in a ball of radius R around c is deeper
 /// than R - phi(c). When the tool moves, the bound grows by at most the displacement of c. The smallest ball
 /// fits round tips and shanks. Larger balls, with centres ahead of or behind the segment, touch a rim or a flat
-/// end along the surface's normal and fit these at any tilt. A segment for which no ball gives a sufficient
-/// bound is halved.
+/// end along the surface's normal and therefore fit a rim or a flat end at any tilt. A segment for which no ball
+/// gives a sufficient bound is halved.
 class InsideBound {
  public:
   /// Tool and solid must outlive the bound.

@@ -16,8 +16,9 @@ namespace hapbench {
 /// Multi-rate contacts: the contacts of another source, found in some steps only and used until newer contacts
 /// arrive. There are no contacts before the first query has returned.
 ///
-/// Held contacts keep depth, point and gradient. With MultiRateSchedule::linear, contacts are moved instead: they keep
-/// point and gradient, and their depth follows the motion of the tool's material at the point x_i since the query:
+/// Held contacts keep depth, point and gradient. With MultiRateSchedule::linear, contacts are moved instead: contact i
+/// keeps its point x_i and its gradient u_i. Its depth changes from d_i at the query with the motion of the tool's
+/// material at x_i to
 ///
 ///   d_i + <u_i, (p - p_q) + (Q - I)(x_i - p_q)>
 ///
@@ -44,7 +45,7 @@ class MultiRateContacts final : public ContactSource {
   const ContactSchedule* schedule() const noexcept override { return &schedule_; }
 
  private:
-  /// Sends the query of the step, if one is scheduled, and takes the result that is due.
+  /// Sends a query if a query is scheduled in this step. Then takes the result of a query if this result is due.
   void begin_step(std::uint64_t row, const ToolPose& pose) noexcept;
   /// Replaces the contents of `contacts` by the found contacts, with their depths extrapolated linearly to this
   /// pose.
@@ -55,7 +56,7 @@ class MultiRateContacts final : public ContactSource {
   bool may_pull_;
   std::uint64_t seed_;
   Random random_;
-  std::uint64_t calls_ = 0;                 ///< number of steps so far; counts calls if follow() was not called
+  std::uint64_t calls_ = 0;                 ///< number of calls so far: the step number if follow() was not called
   std::optional<std::uint64_t> last_step_;  ///< last step that has begun; empty before the first step
 
   std::vector<ContactSchedule::Query> waiting_;  ///< ring buffer of pending queries

@@ -19,8 +19,8 @@ constexpr int kMaxDoublings = 12;
 /// Relative slack that covers rounding in the tool's motion and in the search.
 constexpr double kSlack = 1e-9;
 
-/// Returns an upper bound of the absolute coordinates [m] of a tool that has shell points within twice its reach. If
-/// the tool is farther away from the shell, the list is empty.
+/// Returns an upper bound of the absolute values of the coordinates [m] of any tool point, for a tool that has shell
+/// points within twice its reach. If the tool is farther away from the shell, the list is empty.
 double largest_scale(const PointShell& shell, const ToolShape& tool) {
   const Box& box = shell.bounds();
   return std::max(box.min.cwiseAbs().maxCoeff(), box.max.cwiseAbs().maxCoeff()) + 4.0 * tool.reach();
@@ -33,8 +33,8 @@ double largest_scale(const PointShell& shell, const ToolShape& tool) {
 /// No contact is missed: since the list was built, no point of the tool has moved farther than
 /// ToolShape::displacement_bound [m], which covers translation and rotation. While this bound is at most the thickness
 /// of the skin, every shell point that touches the tool is in the list. When the bound exceeds the thickness, the list
-/// is rebuilt. The list therefore saves work but does not change the result. In the thesis (2.2), a slow loop that
-/// searches the contacts has the role of the list.
+/// is rebuilt. The list therefore saves work but does not change the result. In section 2.2 of the thesis, a slow loop
+/// that searches the contacts has the role of the list.
 ///
 /// In free air, the list is empty. The thickness of the skin is then doubled as long as the doubled skin contains no
 /// point, at most kMaxDoublings times. Until the tool has moved by this thickness, a step costs one comparison.
@@ -99,7 +99,7 @@ class NeighbourListQuery final : public ContactQuery {
   }
 
   /// Returns the search margin [m] for a skin of the thickness `skin` [m]. The margin covers rounding, so that no point
-  /// within the skin is missed. `scale` is the largest coordinate [m].
+  /// within the skin is missed. `scale`: upper bound of the absolute values of the tool's coordinates [m].
   double margin_of(double skin, double scale) const noexcept {
     return skin + kSlack * (skin + tool_->reach()) + 1e-12 * scale;
   }
@@ -119,8 +119,8 @@ class NeighbourListQuery final : public ContactQuery {
     tool_->mark_near(pose, margin, {grid_.x(), grid_.y(), grid_.z()}, runs_, marks_.data());
   }
 
-  /// Calls `take(hits, i)` for each pack that has marked points, in the order of the grid. Bit k of `hits` is
-  /// point i + k.
+  /// Calls `take(hits, i)` for each pack that has marked points, in the order of the grid. Bit k of `hits` is set if
+  /// point i + k is marked.
   template <class Take>
   void for_each_hit(const Take& take) const {
     const std::uint8_t* marks = marks_.data();

@@ -10,7 +10,7 @@
 namespace hapbench {
 namespace {
 
-/// A search ends when it moves by less than this fraction of the tool's radius, or after kMaxMoves moves. Rounding of
+/// A search ends after a move shorter than this fraction of the tool's radius, or after kMaxMoves moves. Rounding of
 /// positions is about 1e-16 m in scenes of centimetres, 2e-13 of a radius of half a millimetre.
 constexpr double kAtRest = 1e-12;
 constexpr int kMaxMoves = 200;
@@ -113,7 +113,7 @@ void RigidContact::collect_near(const Vec3& axis, double reach) {
   }
 }
 
-/// Linearises the distances of all triangles that the tool may touch within `reach` of the free position.
+/// Linearises the tool's distance from each triangle that the tool may touch within `reach` of the free position.
 void RigidContact::linearise(const Vec3& axis, double reach) {
   collect_near(axis, reach);
   half_spaces_.clear();

@@ -22,8 +22,8 @@ struct RoundTool {
 /// a convex function of the tool's position. Hence, where the linearised distance is at least the radius, the tool does
 /// not overlap T. These positions form a half-space, and straight paths within the half-space are free of T as well.
 /// The search moves from the last free position to the point nearest to x in the half-spaces of all near triangles, and
-/// repeats this until the position stays. The search cannot pass a triangle. It ends at a local minimum of |x' - x| in
-/// the free space that the path has reached.
+/// repeats this until the position no longer changes. The search cannot pass a triangle. It ends at a local minimum of
+/// |x' - x| in the free space that the path has reached.
 class RigidContact {
  public:
   RigidContact(TriangleSoup surface, const RoundTool& tool);

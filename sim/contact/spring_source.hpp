@@ -11,13 +11,14 @@
 
 namespace hapbench {
 
-/// Springs that act on the tool (thesis A.2). At the origin all springs have their rest length. With the tool at the
-/// position p, spring j has the unit gradient u_j and the depth d_j = <p, u_j> [m].
+/// Springs that act on the tool (thesis section A.2). At the origin all springs have their rest length. With the tool
+/// at the position p, spring j has the unit gradient u_j and the depth d_j = <p, u_j> [m].
 ///
-/// Bilateral springs push and pull. Their depths are signed. Without signed depths, following thesis 2.3 (d >=
-/// 0), the depth is |<p, u_j>| and the gradient points along the displacement. The force of a spring is the same in
-/// both cases. A law that averages gradients distinguishes the cases: with signed depths, the gradients of opposite
-/// springs cancel; without signed depths, they are equal. Unilateral springs are contacts only while d_j > 0.
+/// Bilateral springs push and pull. With signed_depths, the depth of a bilateral spring is d_j and may be negative.
+/// Without signed_depths, the depth is |d_j| >= 0, as in section 2.3 of the thesis, and the gradient is -u_j if
+/// d_j < 0. The force of a spring is the same in both cases. A law that averages gradients distinguishes the cases:
+/// with signed depths, the gradients of opposite springs cancel; without signed depths, they are equal. Unilateral
+/// springs are contacts only while d_j > 0.
 struct SpringSet {
   /// Unit vectors u_j.
   std::vector<Vec3> gradients;

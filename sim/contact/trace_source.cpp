@@ -27,13 +27,13 @@ void TraceSource::contacts_at(const ToolPose&, ContactBuffer& contacts) noexcept
   ++work_.queries;
   contacts.clear();
 
-  // Find the recorded time nearest to the time of the step. It is the first recorded time that is not earlier, or the
-  // last recorded time that is earlier.
+  // Find the recorded time nearest to the time of the step: either the first recorded time that is not before the step,
+  // or the last recorded time before the step.
   const auto& times = trace_->times;
   auto at = std::partition_point(times.begin(), times.end(), [now](const auto& t) { return t.time < now; });
   if (at != times.begin() && (at == times.end() || now - std::prev(at)->time < at->time - now)) --at;
 
-  // Copy the contacts of this time if it is within half a step.
+  // Copy the contacts of this time if it is at most half a step away from the time of the step.
   if (at != times.end() && std::abs(at->time - now) <= 0.5 * dt_) {
     const std::size_t end = trace_->end_of(static_cast<std::size_t>(at - times.begin()));
     for (std::size_t i = at->first; i < end; ++i) {

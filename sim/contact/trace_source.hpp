@@ -9,7 +9,7 @@
 
 namespace hapbench {
 
-/// Recorded contacts, from a run or from another engine, sorted by time. The contacts of one time are
+/// Recorded contacts, from a run of hapbench or from another program, sorted by time. The contacts of one time are
 /// contiguous.
 struct ContactTrace {
   struct Contact {
@@ -32,7 +32,8 @@ struct ContactTrace {
 
 /// Plays back a contact trace. A step gets the contacts recorded nearest to its time, or none if the nearest
 /// time is more than half a step away. The pose has no effect, so the tool should move as in the recording. A
-/// contact's index is its position among the contacts of its time; its normal is the reversed gradient.
+/// contact's index is its number, from 0, among the contacts recorded at the same time. Its normal is the reversed
+/// gradient.
 class TraceSource final : public ContactSource {
  public:
   /// `dt`: time step of the run [s].

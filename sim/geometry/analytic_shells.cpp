@@ -99,8 +99,8 @@ std::vector<SurfacePoint> surface_points(const Slot& slot) {
   return points;
 }
 
-/// Upper bound: the sum of the rings' circumferences divided by the spacing, plus four points a ring for rounding
-/// up to a multiple of four.
+/// Returns an upper bound of the number of points: the sum of the rings' circumferences divided by the spacing, plus
+/// four points per ring for rounding up to a multiple of four.
 double point_count(const ConicalHole& cone) {
   const double rings = intervals(slant(cone), cone.spacing);
   const double mouth = math::sin(cone.half_angle) * slant(cone);

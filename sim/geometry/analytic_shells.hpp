@@ -11,8 +11,8 @@
 /// can be rejected.
 namespace hapbench {
 
-/// Planar peg-in-hole scene of thesis A.1.1, in the plane z = 0. The y axis points up; the mouth of the hole is at
-/// y = 0, centred at x = 0. Point order: along the profile from the left end of the flat top, down the left wall,
+/// Planar peg-in-hole scene of thesis section A.1.1, in the plane z = 0. The y axis points up; the mouth of the hole is
+/// at y = 0, centred at x = 0. Point order: along the profile from the left end of the flat top, down the left wall,
 /// along the bottom, up the right wall, to the right end of the flat top. The thesis gives the width (1 mm) and the
 /// spacing (0.1 mm). The depth, the length of the flat top and the 45 degree normals at edges are assumptions of this
 /// project.
@@ -31,8 +31,8 @@ struct Plane {
 };
 
 /// Slot between two parallel faces x = -gap/2 (normal +x) and x = +gap/2 (normal -x), with |y| <= length / 2 and
-/// -depth <= z <= 0: the drill between two walls of thesis 4.6. Point order: left face first; in a face, y is the
-/// outer loop and z the inner loop.
+/// -depth <= z <= 0. Used for the drill between two walls in section 4.6 of the thesis. Point order: left face first;
+/// in a face, y is the outer loop and z the inner loop.
 struct Slot {
   double gap = 0.001;
   double depth = 0.005;
@@ -72,7 +72,7 @@ double signed_distance(const Slot& slot, const Vec3& point);
 double signed_distance(const Hole2d& hole, const Vec3& point);
 double signed_distance(const ConicalHole& cone, const Vec3& point);
 
-/// Validation object of thesis 3.2: a cuboid centred at x = y = 0 with its top face in z = 0, and a round blind
+/// Validation object of thesis section 3.2: a cuboid centred at x = y = 0 with its top face in z = 0, and a round blind
 /// hole along the z axis.
 struct BlockWithHole {
   Vec3 size = {0.015, 0.015, 0.01};  ///< [m]

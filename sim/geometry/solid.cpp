@@ -136,9 +136,9 @@ class MeshSolid final : public Solid {
     Vec3 normal;  ///< not normalised
     bool is_border;
   };
-  /// Returns the normal of the face, edge or vertex on which the closest point lies. A query point lies on the side
-  /// of the surface to which this normal points; the normal at a vertex is the mean weighted by angles (J. A.
-  /// Baerentzen and H. Aanaes, IEEE Trans. Vis. Comput. Graph. 11, 2005).
+  /// Returns the normal of the face, edge or vertex on which the closest point lies. A query point is outside
+  /// if it lies on the side to which this normal points. This test needs a vertex normal that is the mean of the face
+  /// normals weighted by angles (J. A. Baerentzen and H. Aanaes, IEEE Trans. Vis. Comput. Graph. 11, 2005).
   Feature feature(const TriangleTree::Nearest& nearest) const {
     const std::size_t t = nearest.triangle;
     if (nearest.corners == 7u) return {normal(t), false};
@@ -180,8 +180,8 @@ class PointSolid final : public Solid {
     const double h = n.dot(q - p);
     const Vec3 along = q - p - h * n;
     const double tangential = along.norm(), beyond = std::max(0.0, tangential * tangential - spacing_ * spacing_);
-    // If the tangential distance exceeds the spacing, phi is known only if the shell has a point farther along in the
-    // tangential direction.
+    // If the tangential distance exceeds the spacing, phi is known only if the shell continues in the tangential
+    // direction: a shell point lies near the position that is 2 spacing_ away from p in this direction.
     const bool continues =
         beyond == 0.0 || tree_.nearest(p + 2.0 * spacing_ / tangential * along, 1.5 * spacing_).has_value();
     return {std::copysign(std::sqrt(h * h + beyond), h), continues};

@@ -13,7 +13,8 @@ namespace {
 constexpr std::uint32_t kMaxLeafTriangles = 4;  ///< maximum number of triangles in a leaf
 /// Size of the search stack. Halving 2^32 triangles takes 32 levels, and a search stores one box for each level.
 constexpr std::size_t kStackSize = 64;
-/// A plane whose squared distance is larger than the squared distance of a known triangle by this factor is not closer.
+/// nearest() skips a triangle if the squared distance of its plane exceeds the smallest squared distance found so far
+/// by this factor.
 constexpr double kPlaneMargin = 1.0 + 1e-9;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 

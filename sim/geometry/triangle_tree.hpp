@@ -41,8 +41,8 @@ struct Crossing {
 
 /// Returns the intersection of the vertical line through (x, y) with a triangle; empty if they do not intersect. The
 /// test determines on which side of each edge the line passes, identically for both triangles at the edge. A line
-/// through an edge counts as a line slightly beside the edge. The intersections with a closed surface are therefore
-/// consistent.
+/// through an edge counts as a line slightly beside the edge. A line therefore enters and leaves a closed surface
+/// equally often.
 std::optional<Crossing> vertical_crossing(const std::array<Vec3, 3>& corners, double x, double y);
 
 /// Tree of axis-aligned bounding boxes over triangles (AABB tree), for exact distances and rays. A query visits

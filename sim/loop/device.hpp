@@ -57,7 +57,7 @@ struct MeasuredForce {
 struct DeviceEnergy {
   double hand = 0.0;        ///< work done by the hand on the handle
   double actuator = 0.0;    ///< work done by the actuator
-  double dissipated = 0.0;  ///< energy lost to friction and structural damping; never positive
+  double dissipated = 0.0;  ///< work done by friction and structural damping; never positive
   double stored = 0.0;      ///< kinetic and elastic energy of the parts, relative to the reset
 
   /// Returns the balance with `energy` [J] added to the stored energy.
@@ -85,8 +85,8 @@ class Device {
   /// Moves the handle from step k to step k + 1, under f_render and the hand's force of step k [N]. Called only
   /// if moves_tool().
   virtual void drive(const Vec3& /*rendered*/, const Vec3& /*hand_force*/) noexcept {}
-  /// Returns position and velocity of the handle as measured by the device. The tool takes over both. Called only if
-  /// moves_tool().
+  /// Returns position and velocity of the handle as measured by the device. They become the position and velocity of
+  /// the tool. Called only if moves_tool().
   virtual HandleState sampled() const noexcept { return handle(); }
 };
 

@@ -51,14 +51,15 @@ struct RenderedForce {
 ///  - Laws with weights: f_i = -K c_i d_i u_i.
 ///  - virtual_coupling and least_squares: f_i = -K_p (d_i + <u_i, s>) u_i, the penalty springs after the
 ///    coupling has stretched by s. K_p is K for virtual_coupling, and K / eps with the regularisation eps for
-///    least_squares. These forces push and pull against each other, so the moment may be much larger than force
-///    times arm suggests.
+///    least_squares. These forces push and pull against each other, so the moment may be much larger than the
+///    product of f_spring and the lever arm.
 ///  - original_averaging and highest_depth: the law has one spring without a point of application, so each of
 ///    the n contacts gets f_spring / n.
 ///  - proxy: f_i = -K lambda_i m_i for the points that hold the proxy, with multiplier lambda_i and tool normal
-///    m_i, and r_i from the proxy's tip centre. For a point inside the proxy, the force is scaled by the same factor
-///    as the slow motion that moves the proxy out of the point. If several sets of points hold the proxy equally
-///    well, the solver uses one of them. The total force is the same for each set, but the moment may differ.
+///    m_i, and r_i from the proxy's tip centre. If points lie deep inside the proxy, their depths are multiplied by a
+///    factor < 1, so that the proxy moves out slowly. The forces f_i of these points are multiplied by the same
+///    factor. If several sets of points hold the proxy equally well, the solver uses one of them. The total force
+///    is the same for each set, but the moment may differ.
 ///  - A passivity controller scales all contact forces by the factor by which it scales f_spring.
 ///
 /// Damping, friction and force limits act on the tool as a whole and do not contribute. The springs of a spring
@@ -78,7 +79,7 @@ inline bool has_springs(const ContactBuffer& rendered, const RenderedForce& forc
 /// dp - damping dv, with displacement dp [m] and velocity change dv [m/s].
 struct ForceJacobian {
   Mat3 stiffness = Mat3::Zero();  ///< K S, stiffness [N/m]
-  Mat3 damping = Mat3::Zero();    ///< B S for normal damping, plus friction in the remaining directions [N s/m]
+  Mat3 damping = Mat3::Zero();    ///< normal damping (B S for a linear damper) plus friction [N s/m]
 };
 
 /// Counters of the work of an algorithm since its last reset.
@@ -110,7 +111,7 @@ class ForceAlgorithm {
 
   /// Called once before the first step. Only this function may allocate or throw.
   virtual void prepare(const Scene& scene) = 0;
-  /// Resets the algorithm to t = 0; the next run is then bitwise identical.
+  /// Resets the algorithm to t = 0. A run after the reset is bitwise identical to the first run.
   virtual void reset() noexcept = 0;
   /// Computes the force for the state of the step. Some integrators then also call it for states within the
   /// step. On entry, `contacts` holds the contacts at the tool's pose with depth and gradient (ContactSource).

@@ -16,8 +16,8 @@ namespace hapbench {
 /// the created energy. Dissipated energy counts as absorbed, so it can hide energy that is created later.
 ///
 /// If a device's handle moves the tool, the force is held while the tool moves, and its work is f_render_k .
-/// (p_(k+1) - p_k), with the position p_k of the tip centre. E then is the energy of the display and includes the
-/// energy created by sampling and holding. If a script prescribes the position, the force is not held: its work is the
+/// (p_(k+1) - p_k), with the position p_k of the tip centre. E then also includes the energy created by sampling the
+/// position and holding the force. If a script prescribes the position, the force is not held: its work is the
 /// integral along the path by the trapezoidal rule, (f_k + f_(k+1))/2 . (p_(k+1) - p_k). If a contact of stiffness K
 /// begins or ends between two steps whose positions are d apart, this rule has an error of up to K d^2 / 8.
 ///
@@ -68,7 +68,8 @@ class ObservedEnergy {
     set_pose(tool.pose);
   }
 
-  /// Returns E [J]. Between `move` and `answer` it does not yet include the work of this step's moment.
+  /// Returns E [J]. Between `move` and `answer`, E does not yet include the work of this step's moment and, if a script
+  /// prescribes the position, of this step's force.
   double energy() const { return energy_; }
   /// Returns true in the first step, in which E starts from the energy of the springs.
   bool first() const { return first_; }

@@ -26,7 +26,7 @@ enum class Ending {
 };
 
 /// Ends a run early after the first step in which its condition holds, as in the thesis's peg-in-hole runs
-/// (A.1.2). The condition depends on `ending`. left_hole: the tip centre is above height 0, the height of the
+/// (section A.1.2). The condition depends on `ending`. left_hole: the tip centre is above height 0, the height of the
 /// hole's mouth. tool_horizontal: the tool's axis, which points down at first, has reached the plane
 /// perpendicular to `up`.
 struct StopRule {
@@ -141,7 +141,8 @@ class Simulation {
   Simulation(const Simulation&) = delete;
   Simulation& operator=(const Simulation&) = delete;
 
-  /// Resets the run to t = 0; the next run is then bitwise identical. Does not reset the observers.
+  /// Resets the run to t = 0. A run after the reset is bitwise identical to the first run. Does not reset the
+  /// observers.
   void reset() noexcept;
   /// Evaluates the next step k, passes it to the observers and moves the tool on to step k + 1. Returns false
   /// and does nothing if the run has ended. Allocates nothing.

@@ -24,8 +24,8 @@ Vec3 position(const HalfEdgeMesh& mesh, OpenMesh::VertexHandle vertex) {
   return {p[0], p[1], p[2]};
 }
 
-/// Key of a cube and a direction: the coordinates of the cube's centre divided by its edge length, then the axis and
-/// the sign of the largest component of the normal.
+/// Key of a group of points in subsampled(): the centre of the points' cube divided by the cube's edge length, then the
+/// axis and the sign of the largest component of the points' normals.
 using CubeKey = std::array<double, 5>;
 
 struct CubeKeyHash {
@@ -53,8 +53,8 @@ struct Hinge {
 };
 
 constexpr std::uint32_t kNone = 0xffffffffu;
-/// Maximum number of outermost parts whose boxes are tested for enclosing another part. Without this limit, a mesh with
-/// a million small parts would take minutes.
+/// Maximum number of parts whose bounding boxes are tested for enclosing other parts. Without this limit, a mesh with a
+/// million small parts would take minutes.
 constexpr std::size_t kMaxEnclosingParts = 1000;
 
 /// Returns for each triangle and corner the index of the hinge at the edge from this corner; kNone if there is

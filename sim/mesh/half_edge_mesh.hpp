@@ -22,7 +22,8 @@ struct HalfEdgeMesh : OpenMesh::TriMesh_ArrayKernelT<HalfEdgeMeshTraits> {
 };
 
 /// Returns the vertices of the mesh in order, with outward normals. A normal is the normalised, unweighted mean of
-/// the unit normals of the adjacent faces (thesis C.1). Omits vertices without an adjacent face of positive area.
+/// the unit normals of the adjacent faces (thesis section C.1). Omits vertices without an adjacent face of positive
+/// area.
 std::vector<SurfacePoint> vertices_with_normals(const HalfEdgeMesh& mesh);
 
 /// Splits the longest edge at its midpoint until no edge is longer than `longest_edge` [m]. Does not change the

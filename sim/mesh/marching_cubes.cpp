@@ -178,8 +178,8 @@ class GridLayer {
   std::vector<Edges> edges_;
 };
 
-/// Maximum number of slabs, independent of the number of threads. The last digits of a normal that is summed in two
-/// slabs depend on the position of the slab boundary.
+/// Maximum number of slabs (see Slab), independent of the number of threads. The last digits of a normal that is summed
+/// in two slabs depend on the position of the slab boundary.
 constexpr std::size_t kMaxSlabs = 16;
 
 /// Calls visit(i) for each node i whose bit is set in `bits`, the word of the nodes 64 w … 64 w + 63.
@@ -381,7 +381,8 @@ std::vector<CubeTriangle> cube_triangles(unsigned inside) {
       edge = std::exchange(next[static_cast<std::size_t>(edge)], -1);
     }
     if (polygon.empty() || triangulate(polygon, triangles)) continue;
-    // Only a polygon that crosses one face twice cannot be divided by diagonals through the inside; use a fan.
+    // Only a polygon that crosses one face twice cannot be divided by diagonals through the inside of the cell. Divide
+    // this polygon into a fan of triangles.
     for (std::size_t i = 1; i + 1 < polygon.size(); ++i) triangles.push_back({polygon[0], polygon[i], polygon[i + 1]});
   }
   return triangles;

@@ -13,7 +13,7 @@ namespace hapbench {
 /// Scalar field whose iso surface marching_cubes() extracts.
 enum class Density {
   signed_distance,  ///< minus the signed distance [m], iso value 0
-  binary            ///< 1 inside and 0 outside, iso value 0.5: the "raw density field" of thesis 2.1 taken literally
+  binary            ///< 1 inside and 0 outside, iso value 0.5: the "raw density field" of thesis section 2.1, literally
 };
 
 /// A solid and the grid on which it is sampled. The grid nodes lie at half-integer multiples of the spacing.
@@ -27,8 +27,8 @@ struct DensityField {
 };
 
 /// Grid cells that the surface cuts, and the vertices on the edges of each cell. A vertex belongs to all cells
-/// around its edge, at most four. Thesis 2.1 stores points in this form: "up to 4 points contained by a single grid
-/// cell".
+/// around its edge, at most four. Section 2.1 of the thesis stores points in this form: "up to 4 points contained by a
+/// single grid cell".
 struct CutCells {
   std::vector<Vec3> centres;                ///< centres of the cells [m]
   std::vector<std::uint32_t> starts = {0};  ///< index in `vertices` at which each cell begins; the last entry is
@@ -39,7 +39,7 @@ struct CutCells {
 /// Surface of a solid as triangles with shared vertices.
 struct IsoSurface {
   /// Vertices [m] with outward normals. A normal is the normalised, unweighted mean of the unit normals of the
-  /// adjacent triangles (thesis C.1); zero if no adjacent triangle has an area.
+  /// adjacent triangles (thesis section C.1); zero if no adjacent triangle has an area.
   std::vector<SurfacePoint> vertices;
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< counter-clockwise from outside
   CutCells cells;
@@ -69,13 +69,13 @@ DensityField density_field(const BlockWithHole& block, double spacing, Density d
 
 /// Returns the vertices of marching_cubes() as a shell in the order of its grid (in_grid_order). Omits vertices
 /// without a normal. O(vertices). A point takes 48 bytes in the shell; construction temporarily needs about twice
-/// that.
+/// this memory.
 PointShell surface_shell(const DensityField& field);
 
-/// Returns the vertices of a surface as the thesis stores them (2.1, C.2): each vertex is repeated for every cell
-/// that has it on an edge, four times on average, so that each point belongs to one cell. Cells are in the order of
-/// grid_order(), the points of a cell in the order of its edges. Omits vertices without a normal. `spacing`: distance
-/// between neighbouring grid nodes [m]. O(vertices). Precondition: the surface was computed with its cells
+/// Returns the vertices of a surface as the thesis stores them (sections 2.1 and C.2): each vertex is repeated for each
+/// cell that has the vertex on an edge, four times on average, so that each point belongs to one cell. Cells are in the
+/// order of grid_order(), the points of a cell in the order of its edges. Omits vertices without a normal. `spacing`:
+/// distance between neighbouring grid nodes [m]. O(vertices). Precondition: the surface was computed with its cells
 /// (IsoSurfaceOptions::cells).
 ShellPoints points_by_cell(const IsoSurface& surface, double spacing);
 

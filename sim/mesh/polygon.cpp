@@ -98,7 +98,7 @@ bool PolygonDivider::project(std::span<const Vec3> corners) {
 }
 
 /// Tests the fan by the directions from the first corner to the other corners. These directions must turn
-/// counter-clockwise only, and by less than a full turn in sum.
+/// counter-clockwise only, and by less than a full turn in total.
 PolygonDivider::Fan PolygonDivider::fan() const {
   const Point &first = points_[0], *start = nullptr, *last = nullptr;
   bool is_past_half = false, has_flat = false;
@@ -176,7 +176,7 @@ void PolygonDivider::refuse_crossings() const {
   if (!turns_once()) throw PolygonError("crosses itself: its boundary makes several turns; allowed: a simple polygon");
 }
 
-/// Returns true if the direction along the boundary makes one full turn in sum. Also returns true if rounding would
+/// Returns true if the direction along the boundary makes one full turn in total. Also returns true if rounding would
 /// decide the result.
 bool PolygonDivider::turns_once() const {
   int turns = 0;

@@ -36,10 +36,10 @@ struct DividedPolygon {
 /// divided in its projection onto this plane:
 ///
 /// - as a fan around its first corner, if no triangle of the fan is reversed or flat. This includes all convex polygons
-/// without corners on a line, and polygons without area.
+/// without three corners on a line, and polygons without area.
 /// - by ear clipping otherwise, the best-shaped ear first. O(n^2). Flat triangles are avoided: if the corners a, b and
-/// c lie on a line, the edge from a to c would belong to the flat triangle and to a triangle on each of its sides. A
-/// boundary that touches itself is allowed, such as the bridge between an outline and a hole.
+/// c lie on a line, the edge from a to c would belong to three triangles, the flat triangle and one on each side of the
+/// edge. A boundary that touches itself is allowed, such as the bridge between an outline and a hole.
 ///
 /// Differences below the rounding error of single precision do not count. Throws PolygonError if the polygon crosses
 /// itself, is not planar (kMaxUnevenness), or has too many corners (kMaxPolygonCorners). Preconditions: at least 3

@@ -14,7 +14,8 @@ namespace hapbench {
 enum class TargetDisplay { panel, height };
 
 /// A displayed force gauge, on which a person cannot read single samples. It shows the spring force along +z
-/// through a first-order low-pass filter. The task also checks this reading, unless the rules have a Threshold.
+/// through a first-order low-pass filter. Without a Threshold in the rules, the task also compares this reading with
+/// min_press_force.
 struct Gauge {
   double cutoff = 30.0;  ///< cut-off frequency of the low-pass [Hz]
   double grace = 0.1;  ///< time for which the reading may stay below min_press_force without interrupting the hold [s]
@@ -42,7 +43,7 @@ struct Threshold {
   LowForce low = LowForce::restarts;
 };
 
-/// The rules of the man-machine experiments of the thesis (D.2.2, D.3.2).
+/// The rules of the man-machine experiments of the thesis (sections D.2.2 and D.3.2).
 struct TargetRules {
   TargetDisplay display = TargetDisplay::panel;
   /// Positions at which targets appear [m]; only the displayed components count.

@@ -70,8 +70,9 @@ BurProfile frustum(double begins, double rear, double front, double shank, Tip t
   return {std::move(outline).points(), tip};
 }
 
-/// Returns a cone that widens from the shank at (begins, neck) and touches the ball. It touches at the angle
-/// `touches` from the axis: its unit normal n = (cos touches, sin touches) satisfies <n, (begins, neck)> = radius.
+/// Returns a ball about the tip centre and a cone that widens from the shank at (begins, neck) and touches the ball.
+/// The cone touches the ball at the angle `touches` from the axis: the cone's unit normal
+/// n = (cos touches, sin touches) satisfies <n, (begins, neck)> = radius.
 BurProfile pear(double radius, double length, double neck) {
   const double begins = radius - length;
   const double distance = math::hypot(begins, neck);
@@ -85,8 +86,8 @@ BurProfile pear(double radius, double length, double neck) {
   return {std::move(outline).points(), Tip::round};
 }
 
-/// Returns two arcs: from the shank to the largest radius, and from there to the point. An arc that is parallel to
-/// the axis at its highest point and falls by h over the length l has the radius (l^2 + h^2) / (2 h).
+/// Returns two arcs: from the shank to the largest radius, and from there to the pointed tip. An arc that is parallel
+/// to the axis at its highest point and falls by h over the length l has the radius (l^2 + h^2) / (2 h).
 BurProfile flame(double radius, double length, double neck) {
   const double rear = kRearOfFlame * length, front = length - rear, rise = radius - neck;
   if (rise > rear || radius > front)

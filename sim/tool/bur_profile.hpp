@@ -19,8 +19,8 @@ struct BurProfile {
 ///
 /// - diameter: largest diameter of the head, the nominal size of ISO 6360 (a "012" has 1.2 mm).
 /// - length: length of the head along the axis, from its front end (including the half ball of a round tip) to the
-///   beginning of the shank. For a ball bur it equals the diameter; the neck hides a small part of the ball at the
-///   rear.
+///   beginning of the shank. The length of a ball bur equals the diameter; the neck hides a small part of the ball at
+///   the rear.
 /// - shank_diameter: diameter of the cylinder behind the head, called neck if it is thin. The length of this cylinder
 ///   is ten times its diameter.
 ///
@@ -32,7 +32,7 @@ struct BurProfile {
 /// | tapered | a cone frustum that narrows to 0.6 of the diameter, flat end | centre of the end |
 /// | inverted_cone | a cone frustum that widens from 0.6 of the diameter, flat end | centre of the end |
 /// | pear | a cone that widens from the shank and touches the ball at its end | centre of the ball |
-/// | flame | two arcs: from the shank to the diameter in the rear third, and from there to a point | the point |
+/// | flame | two arcs: from the shank to the diameter in the rear third, then to a pointed tip | the pointed tip |
 ///
 /// Arcs are polylines with corners on the arc and a sagitta (largest deviation from the arc) of at most a
 /// thousandth of the diameter. Throws std::invalid_argument with the allowed range if a length is invalid for the

@@ -141,7 +141,7 @@ std::vector<std::int8_t> winding_numbers(const ClosedSurface& surface, const Gri
     for (std::size_t i = first; i < last; ++i) layers[i].push_back(t);
   }
   std::vector<std::int8_t> numbers(nodes.size());
-  // Each layer: intersect its columns with the triangles, then sum the crossings from below.
+  // For each layer, intersect its columns with the triangles, then sum the crossings from below.
   parallel_for(std::size_t{0}, nodes.count[0], [&](std::size_t i) {
     const auto columns = crossings_of_layer(surface, nodes, layers[i], nodes.coordinate(0, i));
     for (std::size_t j = 0; j < nodes.count[1]; ++j) {

@@ -42,9 +42,9 @@ bool is_balanced(std::span<const TriangleSide> edge);
 class ClosedSurface {
  public:
   /// Builds the surface from welded(vertices, triangles), in O(n log n). Throws std::invalid_argument with the
-  /// measured values if an index or a coordinate is invalid, if edges are open or neighbours are wound against each
-  /// other (with the number of such edges and the position of the first), or if the enclosed volume is not
-  /// positive. Self-intersections are not detected here; SignedDistanceGrid detects them when it samples the
+  /// measured values if an index or a coordinate is invalid, if edges are open or neighbouring triangles are wound
+  /// against each other (with the number of such edges and the position of the first), or if the enclosed volume is
+  /// not positive. Self-intersections are not detected here; SignedDistanceGrid detects them when it samples the
   /// surface.
   ClosedSurface(std::span<const Vec3> vertices, std::span<const TriangleCorners> triangles);
 

@@ -52,7 +52,7 @@ double exit_root(double a, double b, double c) {
   return b > 0.0 ? c / (b + root) : (root - b) / a;
 }
 
-/// Returns the exit distance through the side (thesis F.7); kNever if the ray is parallel to the axis.
+/// Returns the exit distance through the side (thesis Eq. F.7); kNever if the ray is parallel to the axis.
 double exit_side(double radius, const Vec3& rho, const Vec3& radial_u) {
   const double a = radial_u.squaredNorm();
   const double c = std::max(0.0, radius * radius - rho.squaredNorm());
@@ -70,8 +70,8 @@ double exit_half_ball(double radius, const Vec3& x, const Vec3& u, double s, dou
   return s + d * slope >= 0.0 ? if_positive(d) : kNever;
 }
 
-/// Returns the distance at which the ray from `point` along u first leaves the body: through the side (thesis F.7),
-/// the tip (F.9) or the bottom (F.12).
+/// Returns the distance at which the ray from `point` along u first leaves the body: through the side (thesis Eq. F.7),
+/// the tip (Eq. F.9) or the bottom (Eq. F.12).
 double exit_distance(const Cylinder& tool, const ToolPose& pose, const Vec3& point, const Vec3& u) {
   const Vec3 x = point - pose.position;
   const double s = x.dot(pose.axis);
@@ -206,7 +206,7 @@ void Cylinder::surface_constraints(const ToolPose& pose, const Vec3& wanted, dou
       outwards = select(beyond_both, side * edge_scale, outwards);
       along = select(beyond_both, forward * (end * edge_scale), along);
 
-      // If the displacement violates the constraint, use a face that is flush with the surface instead.
+      // If the displacement `wanted` violates the constraint, use a face that is flush with the surface instead.
       const PackVector n(&contacts.nx[i], &contacts.ny[i], &contacts.nz[i]);
       const Pack faces_side = -out.dot(n), faces_end = -forward * axis.dot(n);
       const Mask bumps = at_edge && outwards * out.dot(move) + along * axis.dot(move) > distance;

@@ -6,7 +6,7 @@
 
 namespace hapbench {
 
-/// A drill's stylus: a cylinder with a flat or a round tip (thesis A.1.1, B.1).
+/// A drill's stylus: a cylinder with a flat or a round tip (thesis sections A.1.1 and B.1).
 ///
 ///      <----------- length L ----------->
 ///     +----------------------------------+           s = <x - position, axis> along the axis:
@@ -40,8 +40,8 @@ class Cylinder final : public ToolShape {
   /// Returns a row of balls along the axis.
   Cover cover(double margin) const override;
   /// Depth d = min(r - |rho|, -s, L + s), with gradient u = rho / |rho|, axis or -axis for the smallest term
-  /// (thesis B.1). r: radius; rho: radial vector. With a round tip, d = r - |x| and u = x / |x| for s > 0, where x
-  /// is the position relative to the tip centre.
+  /// (thesis section B.1). r: radius; rho: radial vector. With a round tip, d = r - |x| and u = x / |x| for s > 0,
+  /// where x is the position relative to the tip centre.
   void shortest_depths(const ToolPose& pose, ContactBuffer& contacts) const noexcept override;
   /// If several surfaces are equally near, prefers the side, then the tip, then the bottom.
   void shortest_gradients(const ToolPose& pose, ContactBuffer& contacts) const noexcept override;

@@ -59,7 +59,7 @@ struct Meridian {
   std::vector<Part> parts;
   /// Upper and lower lines of all parts.
   std::vector<Height> heights;
-  std::vector<HalfPlane> planes;  ///< half planes of the profile's segments if the body is convex, without the discs
+  std::vector<HalfPlane> planes;  ///< half planes of the profile's segments, without the discs; empty if not convex
   bool convex = false;            ///< true if no corner turns inwards by more than 1e-12 rad
   double low, high;               ///< range of s [m], without the ball of a round tip
   double widest = 0.0;            ///< largest rho [m]

@@ -103,9 +103,9 @@ struct FieldValue {
   Vec3 gradient;  ///< gradient with respect to the coordinates of the nodes [m]
 };
 
-/// Evaluates the field phi_h at eight points in the grid. The weights are computed for all points at once, the sums
-/// point by point. Rows of three nodes are contiguous in memory, so a point needs nine loads of four doubles. A
-/// gather instruction would load 27 nodes for each of the eight points.
+/// Evaluates the field phi_h (SignedDistanceGrid) at eight points in the grid. The weights are computed for all points
+/// at once, the sums point by point. Rows of three nodes are contiguous in memory, so a point needs nine loads of four
+/// doubles. A gather instruction would load 27 nodes for each of the eight points.
 class GridSpline {
  public:
   GridSpline(const SignedDistanceGrid& grid, const GridPack& q, const NearestNodes& nearest)
@@ -216,7 +216,7 @@ constexpr double kMinStep = 0.125;
 /// Maximum number of iterations of regula falsi. Ten iterations usually shrink a bracket of some spacings to rounding.
 constexpr int kMaxIterations = 40;
 
-/// The field at eight points anywhere, also outside of the grid; evaluated point by point.
+/// The field phi_h at eight points anywhere, also outside of the grid; evaluated point by point.
 class FieldPack {
  public:
   FieldPack(const SignedDistanceGrid& grid, const GridFrame& frame, const double* x, const double* y, const double* z)
@@ -364,8 +364,11 @@ Box MeshTool::box_near(const ToolPose& pose, double margin, const Box& bounds) c
 }
 
 ToolShape::Cover MeshTool::cover(double margin) const {
-  // With a and e as in mark_near (mesh_tool.hpp), and b the lower bound of the distance that mark_near computes: the
-  // point of the grid closest to a marked point is within b + 3 e of the mesh, and a + b <= sqrt(2) margin.
+  // Grow the box so that it contains all points that mark_near() marks. Let e be the error bound, y the point of the
+  // grid that is closest to a marked point, a the distance of the marked point from y, and b the lower bound that
+  // mark_near() computes for the distance of y from the body. y is at most b + 3 e away from the mesh, and a^2 + b^2 <=
+  // margin^2. So the marked point is at most a + b + 3 e <= sqrt(2) margin + 3 e away from the mesh. box() already is
+  // the mesh's box grown by e.
   // Divide the grown box along its longest side into equal slices, with one ball around each slice.
   const Vec3 extent = grid_->box().size() + Vec3::Constant(3.0 * margin + 4.0 * grid_->error_bound());
   Eigen::Index longest = 0;
@@ -485,7 +488,7 @@ void MeshTool::surface_constraints(const ToolPose& pose, const Vec3& wanted, dou
         const Vec3 local = rotation.transpose() * m;
         contacts.depth[k] = grid_->hull().support(local) - local.dot(x);
         if (m.dot(wanted) > -contacts.depth[k]) {
-          // If the displacement violates the constraint, use the face most flush with the surface.
+          // If the displacement `wanted` violates the constraint, use the face most flush with the surface.
           const Vec3 back = rotation.transpose() * -normal;
           double largest = kFlush;
           for (const SignedDistanceGrid::Face& face : grid_->flat_faces()) {

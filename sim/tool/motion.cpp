@@ -201,7 +201,7 @@ Vec3 RecordedMotion::axis_at(double t) const noexcept {
   const Segment segment = segment_at(t);
   if (segment.from->orientation) return axis_of(orientation_in(segment));
   const Vec3 axis = segment.from->axis + segment.fraction * (segment.to->axis - segment.from->axis);
-  // Between opposite axes the interpolation passes through zero; keep the last direction there.
+  // Between opposite axes the interpolation passes through zero; return the axis of the earlier sample there.
   return unit_or(axis, segment.from->axis);
 }
 

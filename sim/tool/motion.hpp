@@ -15,9 +15,9 @@ namespace hapbench {
 
 /// Pose of the tool in the world frame: position, axis and roll.
 ///
-/// The axis is stored, instead of being computed from an orientation, because scripts define it and solids of
-/// revolution use nothing else; the roll completes it to a rotation. The tool's own frame has its origin at the tip
-/// centre and its axis along -z.
+/// The axis is stored, instead of being computed from an orientation, because scripts define the axis and solids of
+/// revolution use nothing else. The roll completes the axis to a rotation. The tool's own frame has its origin at the
+/// tip centre and its axis along -z.
 struct ToolPose {
   Vec3 position = Vec3::Zero();  ///< centre of the tip [m]
   Vec3 axis = {0.0, 0.0, -1.0};  ///< unit vector along the axis, out of the tip

@@ -365,7 +365,7 @@ void Revolved::surface_constraints(const ToolPose& pose, const Vec3& wanted, dou
     PackVector normal = combined(nearest.vs * scale, axis, nearest.vr * scale, out);
 
     const PackVector surface(&contacts.nx[i], &contacts.ny[i], &contacts.nz[i]);
-    // If the displacement violates the constraint, a convex body uses the face that is flush with the surface
+    // If the displacement `wanted` violates the constraint, a convex body uses the face that is flush with the surface
     // instead.
     const Mask bumps = normal.dot(move) > distance;
     if (m.convex && simd::any(bumps)) {
@@ -449,8 +449,8 @@ ToolShape::Grown Revolved::grown(double margin) const {
     if (!round) corners.push_back({s + margin, rho + margin});
   };
   for (const ProfilePoint& p : profile()) add_square(p.s, p.rho);
-  // No part of the body is wider than the ball, so everything behind the centre of the ball is below the rear
-  // corners of the squares.
+  // Without front corners, the hull still covers a body that ends in a round tip. No part of the body is wider than the
+  // ball, so everything behind the ball's centre is below the rear corners and the corner added here.
   if (round) corners.push_back({0.0, meridian_.ball + margin});
   if (!round && tip() == Tip::round) add_square(meridian_.ball, meridian_.ball);
 

@@ -21,12 +21,12 @@ constexpr std::size_t kCells = 6 * kEdge * kEdge;
 /// Differences of distance below this fraction of the body's size are treated as rounding.
 constexpr double kTie = 1e-9;
 
-/// Returns the cell index along one coordinate in [-1, 1] of a cube face.
+/// Returns the index of the direction cell (SupportTable) along one coordinate in [-1, 1] of a cube face.
 std::size_t cell_along(double coordinate) {
   return std::min(kEdge - 1, static_cast<std::size_t>(0.5 * (coordinate + 1.0) * static_cast<double>(kEdge)));
 }
 
-/// Returns the cell of a direction; cell 0 for a direction that is zero or not finite.
+/// Returns the direction cell that contains a direction; 0 for a direction that is zero or not finite.
 std::size_t cell_of(const Vec3& u) {
   Eigen::Index axis = 0;
   const double largest = u.cwiseAbs().maxCoeff(&axis);

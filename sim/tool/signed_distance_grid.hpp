@@ -53,17 +53,18 @@ class SupportTable {
 /// mesh is smooth with principal curvatures c_1 and c_2, the error is h^2/8 (c_1 + c_2) to leading order; on flat
 /// faces it is 0.
 /// - phi_h >= phi for convex bodies, by Jensen's inequality: the body lies inside the mesh, with edges rounded off.
-/// - phi_h lies between the smallest and the largest value of its 27 nodes, so most points need no evaluation
-/// (kinds()).
+/// - phi_h lies between the smallest and the largest value of its 27 nodes. Therefore kinds() tells for most points
+/// whether they are inside, without an evaluation of phi_h.
 ///
-/// Immutable. Computed on oneTBB's threads; the result does not depend on their number. Each node takes O(log
-/// triangles).
+/// Immutable. Computed on oneTBB's threads; the result does not depend on the number of threads. For a mesh of n
+/// triangles, computing the value of a node takes O(log n) time.
 class SignedDistanceGrid {
  public:
   /// `surface`: in the tool frame [m]; `spacing`: distance between neighbouring nodes [m]. Throws std::invalid_argument
-  /// with the measured values and advice in three cases: the winding number at a node is neither 0 nor 1 (overlapping
-  /// parts; overlaps between nodes are not detected), the body is less than two spacings thick below more than a tenth
-  /// of its surface, or the nodes would take more than 1 GiB.
+  /// with the measured values and advice in three cases:
+  /// - The winding number at a node is neither 0 nor 1 because parts overlap. Overlaps between nodes are not detected.
+  /// - On more than a tenth of its surface, the body is less than two spacings thick, measured along the inward normal.
+  /// - The nodes would take more than 1 GiB.
   SignedDistanceGrid(const ClosedSurface& surface, double spacing);
 
   /// Returns the spacing [m] at which the grid around a mesh has about 128^3 nodes, including the nodes in the margins

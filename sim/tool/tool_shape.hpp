@@ -64,7 +64,7 @@ class ToolShape {
   /// Largest distance [m] between the surface of the body and the exact surface that it approximates, such as a
   /// mesh sampled on a grid; 0 if the body is exact.
   virtual double surface_error() const noexcept { return 0.0; }
-  /// Returns true if the body is convex. Only for a convex body does the proxy keep every point outside of it.
+  /// Returns true if the body is convex. Only for a convex body does the proxy keep every point outside of the body.
   virtual bool convex() const noexcept = 0;
   /// Returns true for a solid of revolution about the axis. A rotation about the axis maps such a body to itself,
   /// so no result depends on the roll of a pose.
@@ -76,8 +76,9 @@ class ToolShape {
 
   // Contact search.
 
-  /// Appends the points of the first `packs` packs that lie in the body or on its surface, in the order of the points.
-  /// Appends nothing if the pose is not finite. Precondition: `contacts` has room for them.
+  /// Looks at the first `packs` packs of `points`. Appends those of their points that lie in the body or on its surface
+  /// to `contacts`, in the order of `points`. Appends nothing if the pose is not finite. Precondition: `contacts` has
+  /// room for the appended points.
   virtual void push_inside(const ToolPose& pose, const PointColumns& points, std::size_t packs,
                            ContactBuffer& contacts) const noexcept = 0;
   /// Marks every point of the ranges within `margin` [m] of the body, and possibly some points slightly farther
@@ -90,14 +91,14 @@ class ToolShape {
   virtual Box box_near(const ToolPose& pose, double margin, const Box& bounds) const noexcept = 0;
   /// Number and radius [m] of balls whose union contains the body and everything that `mark_near` marks with this
   /// margin. Used to bound the number of points that the body can touch (max_points_in, grid_index.hpp); many small
-  /// balls give a tighter bound than one ball. The default is one ball. It is valid if `mark_near` marks no point
-  /// farther away than twice the margin.
+  /// balls give a tighter bound than one ball. The default is one ball, which is valid if `mark_near` marks no point
+  /// farther away from the body than twice the margin.
   struct Cover {
     std::size_t balls;
     double radius;
   };
   virtual Cover cover(double margin) const { return {1, (1.0 + 1e-9) * (reach_ + 2.0 * margin)}; }
-  /// Returns an upper bound of the displacement of all points of the body between two poses [m]. The default is
+  /// Returns an upper bound [m] of the distance by which any point of the body moves between two poses. The default is
   /// valid for a solid of revolution: the shortest rotation from axis a to axis a' moves a point by at most |a' -
   /// a| times its distance from the tip centre, and a rotation about the axis maps the body to itself.
   virtual double displacement_bound(const ToolPose& from, const ToolPose& to) const noexcept {

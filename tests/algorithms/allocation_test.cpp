@@ -107,7 +107,8 @@ std::vector<Instance> instances() {
   return all;
 }
 
-/// Returns the springs of the thesis, or its 2-D peg in a hole. The peg is wide enough to touch many points.
+/// Returns the springs of the thesis if `instance.springs` is true. Otherwise returns the 2-D peg in a hole of the
+/// thesis, with a peg wide enough to touch many points.
 test::Setting setting_of(const Instance& instance) {
   test::Setting setting;
   if (instance.springs) {
@@ -144,7 +145,8 @@ class ContactCounter final : public Observer {
   int rows_with_contact = 0;
 };
 
-/// Returns the number of allocations in a run, a reset and a second run, counted from the first step on.
+/// Returns the number of allocations in a run, a reset and a second run. The allocations of the construction do not
+/// count.
 std::uint64_t allocations_of_two_runs(Simulation& simulation) {
   const AllocationCount count;
   simulation.run();

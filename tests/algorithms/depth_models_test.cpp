@@ -31,12 +31,14 @@ Contact evaluate(const Cylinder& tool, const ToolPose& pose, const Vec3& point, 
   return {contacts.depth[0], contacts.gradient(0)};
 }
 
-// Dyadic sizes and a pose along the axes: every distance below is exact, so equal distances are exactly equal.
+// All lengths are multiples of a power of two, and the tool's axis is a coordinate axis. Therefore every distance below
+// is computed without rounding, and distances that are equal in theory are bitwise equal.
 constexpr double kUnit = 0x1p-13;  // 0.12 mm
 const Vec3 kAxis(0, 0, -1);
 const ToolPose kPose{{0x1p-4, 0x1p-5, 0x1p-6}, kAxis}, kOrigin{Vec3::Zero(), kAxis};
 
-/// Returns the point at s along the axis from the tip and at a along +x, in units of kUnit.
+/// Returns the point at the distance s along the axis from the tip centre of kPose, and at the distance a along +x. s
+/// and a are in units of kUnit.
 Vec3 at(double s, double a) {
   return kPose.position + kUnit * (s * kAxis + Vec3(a, 0, 0));
 }
@@ -142,9 +144,10 @@ class NormalProjectionDepthOf : public testing::TestWithParam<test::ToolKind> {}
 INSTANTIATE_TEST_SUITE_P(Both, NormalProjectionDepthOf, testing::ValuesIn(cylinders().begin(), cylinders().end()),
                          [](const auto& kind) { return kind.param.name; });
 
-/// Checks that the ray from the point against its normal leaves the tool at the distance `depth`. The slack, which is
-/// the distance from the body's surface and positive inside the body, is zero there, not negative before and not
-/// positive after. The rounding of a slack is a few roundings of coordinates up to 1 m.
+/// Checks that the ray from the point against its normal leaves the tool at the distance `depth`. The slack of a point
+/// is its distance from the body's surface, positive inside the body. Along the ray, the slack must be >= 0 before the
+/// distance `depth`, 0 at `depth`, and <= 0 after `depth`. `rounding` is the rounding error of a slack [m]: a few
+/// roundings of coordinates up to 1 m.
 void expect_exit(const test::DefinedTool& tool, const ToolPose& pose, const Vec3& point, const Vec3& normal,
                  double depth) {
   constexpr long double rounding = 2e-15L;
@@ -152,8 +155,8 @@ void expect_exit(const test::DefinedTool& tool, const ToolPose& pose, const Vec3
   const auto slack_at = [&](long double d) { return tool.slack(pose, x + d * u); };
   ASSERT_GE(depth, 0.0);
   ASSERT_LE(std::abs(slack_at(depth)), rounding);
-  // The slack is concave along the ray. Therefore check that the ray is inside half-way, and that it is outside a
-  // little after `depth`.
+  // The slack is concave along the ray. Therefore two points suffice: the ray must be inside at half of `depth`, and
+  // outside a little after `depth`.
   ASSERT_GE(slack_at(0.5L * depth), -rounding);
   ASSERT_LE(slack_at(depth + 0.001L * tool.shape->half_width()), rounding);
 }

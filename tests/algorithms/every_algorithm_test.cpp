@@ -66,13 +66,13 @@ class AlgorithmOnSceneTest : public testing::TestWithParam<AlgorithmOnScene> {
   test::Setting setting = GetParam().scene->setting();
   RenderingConfig config = test::config_for(GetParam().algorithm, *GetParam().scene);
   /// Scale of rounding errors of a force [N]: the sum of all penalty forces, plus the force at a depth of 1 um. The
-  /// second term is needed because coordinates are rounded, not depths.
+  /// second term accounts for the rounding of coordinates, which does not become smaller with the depths.
   double magnitude = config.stiffness * (test::total_depth(setting, config) + 1e-6);
 };
 
-/// Relative rounding error of any law if its inputs are exact but in another order or frame. Coordinates and normals
-/// change by a few 1e-16 of their size, which is 1e-12 of a depth of 0.1 mm. exact_shaping has the worst condition
-/// number: it computes each weight to 2e-16 divided by its epsilon of 1e-6.
+/// Largest relative change of any law's force through rounding, if the same contacts are given in another order or
+/// frame. Coordinates and normals change by a few 1e-16 of their size, which is 1e-12 of a depth of 0.1 mm.
+/// exact_shaping has the worst condition number: it computes each weight to 2e-16 divided by its epsilon of 1e-6.
 constexpr double kAnyLawsRounding = 1e-9;
 
 /// Instantiates a suite derived from AlgorithmOnSceneTest. Its tests have names such as `summation_on_single_spring`.
@@ -118,7 +118,8 @@ TEST_P(ExactAnswer, IsTheForceOfTheLaw) {
   const test::Answer answer = scene().answer();
   const Vec3 expected = config.stiffness * answer.spring_over_K.at(GetParam().algorithm) * answer.direction;
   const Vec3 force = test::Probe(setting, config).force_at(setting.pose).spring;
-  // The laws sum and solve with a few numbers of the size of the depths; the residual of exact_shaping is 1e-14.
+  // The laws compute sums of, and solve equations with, a few numbers of the size of the depths. exact_shaping solves
+  // its equations to 1e-14.
   EXPECT_LE((force - expected).norm(), 1e-13 * magnitude)
       << force.transpose() << " instead of " << expected.transpose();
 }
@@ -193,14 +194,15 @@ TEST_P(Answer, ATurnIsFeltWithAngularDampingOnly) {
   EXPECT_EQ(with == without, feels_nothing);
 }
 
-/// Checks a single contact away from the tip: rotation acts like the velocity of the tool at the contact.
+/// Checks a single contact away from the tip. A rotating tool must get the same force as a tool that does not rotate
+/// and moves with the velocity that the rotating tool has at the contact.
 TEST(AngularDamping, InOneContactATurnIsTheVelocityOfTheToolThere) {
   const Vec3 arm(0.0003, 0.0002, 0.004), turn(0.5, -1.0, 2.0), velocity(0.02, -0.03, 0.01);
   test::Setting setting;
   setting.points = {{arm, Vec3(1.0, 2.0, -2.0) / 3.0}};
   for (const AlgorithmEntry& algorithm : algorithms()) {
     SCOPED_TRACE(algorithm.info->name);
-    // The proxy is held at another position than the tool; the tests of the proxy cover it.
+    // Skip the proxy, because it is held at another position than the tool. proxy_test.cpp tests its angular damping.
     if (std::string_view(algorithm.info->name) == "proxy") continue;
     RenderingConfig config;
     config.algorithm = algorithm.info->name;
@@ -235,9 +237,9 @@ HAPBENCH_FOR_EVERY_ALGORITHM(Invariance, always);
 
 class RigidMotion : public Invariance {
  protected:
-  /// In a slot that is too narrow for the tool, the 3x3 system of the proxy's compromise has the condition number n /
-  /// epsilon = 640 / 1e-6 for n = 640 contacts. The rounding error is the condition number times the rounding 2e-16 of
-  /// the entries.
+  /// In a slot that is too narrow for the tool, no position of the proxy satisfies all contacts, and the proxy takes
+  /// the least-squares compromise. The 3x3 system of the compromise has the condition number n / epsilon = 640 / 1e-6
+  /// for n = 640 contacts. The rounding error is the condition number times the rounding 2e-16 of the entries.
   static constexpr double kCompromiseRounding = 640 / 1e-6 * 2e-16;
   bool is_proxy() const { return GetParam().algorithm == "proxy"; }
   double rounding() const {

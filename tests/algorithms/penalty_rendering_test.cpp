@@ -70,8 +70,9 @@ TEST(PenaltyRendering, WantsTheAngularVelocityForAngularDampingOnly) {
 }
 
 TEST(PenaltyRendering, AngularDampingIsThatOfEveryContactAndFrictionThatOfTheirMean) {
-  // The tool rotates about y at 2 rad/s: omega x (x, y, z) = (2 z, 0, -2 x), u = -z, c = 1 / n, and the points lie z =
-  // 0.3 mm above the tip. So v_n = -2 x_mean along z, and v_t = 2 z along x.
+  // The tool rotates about y at 2 rad/s, so its velocity at a contact (x, y, z) relative to the tip is (2 z, 0, -2 x).
+  // The contacts lie z = 0.3 mm above the tip, with gradients along -z and weights 1 / n. So the mean velocity is v_n =
+  // -2 x_mean along z (normal) and v_t = 2 z along x (tangential).
   RenderingConfig config;
   config.algorithm = "mean";
   config.damping = 10.0;

@@ -129,7 +129,7 @@ TEST(Registry, EveryWedgeHasTheTensorOfItsClosedForm) {
     config.algorithm = name;
     for (const double w : {0.1, 0.2, 0.5, 0.25 * std::numbers::pi, 1.0, 1.4}) {
       for (const std::size_t points : {1u, 3u, 7u}) {
-        // The two faces have the half angle w from the plane x = 0; +y points out of the wedge.
+        // Each of the two faces makes the angle w with the plane x = 0. +y points out of the wedge.
         test::Setting setting;
         setting.springs = SpringSet{std::vector<Vec3>(points, Vec3(std::cos(w), -std::sin(w), 0.0)), false};
         setting.springs->gradients.resize(2 * points, Vec3(-std::cos(w), -std::sin(w), 0.0));

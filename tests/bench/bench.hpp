@@ -36,7 +36,7 @@ bool proved(benchmark::State& state, const std::string& benchmark, const std::fu
 inline constexpr std::size_t kGrowthContacts[] = {10, 100, 1000, 10'000, 100'000};
 
 /// Returns n padded contacts of the task T2, with depths and gradients before the reduction. The contacts come from
-/// poses 0.1 s apart. Throws std::logic_error if T2 has fewer than n contacts (about 2000).
+/// poses 0.1 s apart. These poses have about 2000 contacts. Throws std::logic_error if n is larger than their number.
 ContactBuffer task_contacts(std::size_t n);
 
 // ---- Scenes

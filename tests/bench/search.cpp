@@ -131,8 +131,8 @@ void add_shell() {
 constexpr std::size_t kPoints[] = {10'000, 30'000, 100'000, 300'000};
 constexpr std::size_t kManyPoints[] = {1'000'000, 3'000'000, 7'000'000};
 
-/// Returns the block of T2 with a grid that gives about this number of points, which is the surface area in units of
-/// the grid's cells.
+/// Returns the block of T2 with a grid that gives the surface about `points` points. The number of points is
+/// proportional to 1 / grid^2.
 Scenario block_of(std::size_t points) {
   Scenario scenario = step_scenario("T2").scenario;
   double& grid = std::get<BlockEnvironment>(scenario.environment).grid;

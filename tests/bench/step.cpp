@@ -131,8 +131,8 @@ struct WatchedRun {
 };
 
 /// Returns the scenario of one of kSteps. In `_revolved` the drill is described as a solid of revolution whose side is
-/// divided into eight lines; the shape of its body is the same. In `_grooved` it has grooves of 0.1 um, so that it is
-/// not convex but touches nearly the same points.
+/// divided into eight lines; the shape of its body is the same. In `_grooved` the drill has grooves of 0.1 um, so that
+/// it is not convex but touches nearly the same points.
 Scenario scenario_of(const std::string& name, Skips skips) {
   Scenario scenario = step_scenario(name.substr(0, name.find("_revolved")).substr(0, name.find("_grooved"))).scenario;
   scenario.rendering.skips = skips;
@@ -313,7 +313,8 @@ void rendering_benchmark(benchmark::State& state, RenderingConfig config, std::s
   state.counters["contacts"] = static_cast<double>(contacts);
 }
 
-/// Times a query in free air. The skin of the empty neighbour list answers it, while brute force compares every point.
+/// Times a query in free air. With skips, the query compares no point: the neighbour list is empty, and the tool has
+/// not left its skin. Without skips (brute force), the query compares every point.
 void clearance_benchmark(benchmark::State& state, Skips skips) {
   const TaskScene& scene = task_scene("T1");
   const ToolPose pose{{0.0, 0.0, 0.002}, {0.0, 0.0, -1.0}};

@@ -90,8 +90,9 @@ TEST(VelocityFilter, LowPassesAnswerAStepLikeTheContinuousOnes) {
   }
 }
 
-/// For a slow sine, the power after the sampled filter is |H|^2 = 1 / (1 + (f / f_c)^(2 n)), up to the loss of power
-/// because the filter holds each sample over a period T, a fraction below (pi f T)^2.
+/// For a slow sine of frequency f, a filter of order n with the cut-off f_c passes the fraction |H|^2 = 1 / (1 + (f /
+/// f_c)^(2 n)) of the power. The sampled filter passes less, because it holds each sample over a period T. The loss is
+/// a fraction below (pi f T)^2.
 TEST(SampledLowPass, HasHalfThePowerAtItsCutOffWhateverItsOrder) {
   for (std::size_t order = 1; order <= LowPassFilter::kMaxOrder; ++order) {
     for (const double f : {2.0, 4.0, 6.0}) {
@@ -302,7 +303,8 @@ TEST(ImpedanceDevice, AResetRepeatsEverythingBitForBit) {
   }
 }
 
-// Tests the admittance device and its parts; AdmittanceLoop compares the device with a linear map.
+// Tests the admittance device and its parts. The tests AdmittanceLoop in linear_loops_test.cpp compare the device with
+// a linear map.
 
 constexpr double kStep = 1.0 / 2048;
 

@@ -13,7 +13,8 @@
 namespace hapbench::handle_motion_test {
 namespace {
 
-// Compares motors and handle on an elastic transmission with closed forms and an independent integrator.
+// Compares the motion of motors and handle, which an elastic transmission connects, with closed forms and an
+// independent integrator.
 
 constexpr double kT = 0.001;
 
@@ -66,8 +67,9 @@ TEST(ElasticMotion, StickingMotorsBreakLooseWhereTheClosedFormSays) {
       EXPECT_NEAR(motion.handle().position.x(), swung + speed * after, 1e-15);
       continue;
     }
-    // After the motors have started to move, the spring's force grows as k speed t: v_m = k speed t^2 / (2 m_m), with a
-    // relative error of (w t)^2 / 12.
+    // At the time t = `after` after the motors have started to move, the spring's force has grown by k speed t, with
+    // the handle's `speed`. So the motors have the speed v_m = k speed t^2 / (2 m_m). The relative error of this
+    // formula is (w t)^2 / 12.
     const double v = 0.5 * k * speed * after * after / 0.06;
     EXPECT_NEAR(motion.motor().velocity.x(), v, (after < 1e-6 ? 1e-3 : 0.02) * v) << after;
   }

@@ -41,7 +41,7 @@ TEST(ImpedanceHand, IsASpringAndADamperFromTargetToHandle) {
 }
 
 /// Checks the mean square over ten minutes. For eight tones it equals the sum of the mean squares of the tones to 1 %:
-/// beats between tones are faster than one in ten seconds, or contribute less than 1 %.
+/// a beat between two tones either has a period below ten seconds, or contributes less than 1 %.
 TEST(Tremor, HasItsStandardDeviationInItsBandAlone) {
   const Tremor tremor({{20e-6, 0.0, 5e-6}, 8.0, 12.0}, 3);
   constexpr double kStep = 0.005;
@@ -214,7 +214,8 @@ TEST_F(DragOnPlane, AxisLeansFromTheNormalTowardsTheTravel) {
   };
   EXPECT_LT((axis(0.0, 0.0) - Vec3(0, 0, -1)).norm(), 1e-12);
   EXPECT_LT((axis(0.3, 0.0) - Vec3(-std::sin(0.3), 0, -std::cos(0.3))).norm(), 1e-12);
-  // A quarter turn about the normal is right-handed: the axis leans to the left of the direction of travel.
+  // The azimuth turns the lean about the normal by the right-hand rule: at a quarter turn, the rear end of the tool
+  // leans to the left of the direction of travel.
   EXPECT_LT((axis(0.3, std::acos(0.0)) - Vec3(0, -std::sin(0.3), -std::cos(0.3))).norm(), 1e-12);
 }
 

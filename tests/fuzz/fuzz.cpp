@@ -126,7 +126,8 @@ void read_trace(std::string_view text) {
   require(trace.max_contacts() <= trace.contacts.size(), "more contacts at a time than there are");
 }
 
-/// Checks that the reader accepts or rejects the bytes as the rows of a finished table.
+/// Opens the bytes as a finished table. The table must be rejected, or must count no more rows than it has passed to
+/// the function that decides which rows are kept.
 void read_table(std::string_view text) {
   const fs::path folder = file_with("").parent_path(), name = file_with("").filename();
   const fs::path file = folder / (name.string() + ".csv"), part = folder / (name.string() + ".csv.part");

@@ -11,8 +11,9 @@ from physics import PLAIN, SPRING, UP, Phases, nearest_rank, step_matrix
 
 @scene
 def sampled_finer(bench):
-    """Checks the errors of step and point spacing that compare estimates for laws on a plane. Single runs at half and a
-    quarter of the step and of the spacing give the known values, measured at the same times."""
+    """Checks the errors due to the time step and due to the point spacing that `compare` estimates for laws on a plane.
+    Single runs with a half and a quarter of the step or of the spacing give the known values, measured at the same
+    times."""
     laws, by, scene_name = (
         ["summation", "proxy", "shaped_stiffness", "highest_depth"],
         ["force_step_p99_N", "force_max_N"],
@@ -132,8 +133,8 @@ def verdict_on(f):
 
 @scene
 def convergence_in_thirds(bench):
-    """Checks converge for leapfrog on one damped spring, with time steps that are divided by r = 3 from level to level.
-    With the differences d_1 and d_2 of successive results f, the order is p = log(d_1 / d_2) / log r. Richardson's
+    """Checks `converge` for leapfrog on one damped spring. The time step is divided by r = 3 from level to level. With
+    the differences d_1 and d_2 of successive results f, the order is p = log(d_1 / d_2) / log r. Richardson's
     value is f + (f - f_before) / (r^p - 1)."""
     K, M, dt, n, r = 1500.0, 0.1, 0.002, 40, 3
     B = 2 * 0.2 * math.sqrt(K * M)
@@ -180,7 +181,7 @@ def convergence_in_thirds(bench):
 
 @scene
 def convergence(bench):
-    """Checks converge for leapfrog on one damped spring with five time steps. The results of all time steps are
+    """Checks `converge` for leapfrog on one damped spring with five time steps. The results of all time steps are
     evaluated at the same time. Orders and extrapolated value follow from a recurrence."""
     K, M, dt, n = 1500.0, 0.1, 0.002, 40
     B = 2 * 0.2 * math.sqrt(K * M)
@@ -280,7 +281,8 @@ def convergence(bench):
 
 
 def error_of_step(bench, base, f, fine, metric, printed):
-    """Checks the error of the time step that compare assigns to a number: the error of the coarsest of three levels."""
+    """Checks the error due to the time step that `compare` states for a number. This error is the error of the coarsest
+    of three levels."""
     error = verdict_on(f[:3])[2][0]
     (compared,) = bench.json(
         "compare",

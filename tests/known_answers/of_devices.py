@@ -1,4 +1,4 @@
-"""Known answers for the comparison of devices by limit: the motion of linear recurrences."""
+"""Known answers for the comparison of devices by `limit`, from the motion of linear recurrences."""
 import math
 
 import numpy as np
@@ -244,8 +244,8 @@ def names_of_devices(bench, number, runs, table):
 
 
 def limits_of_both_ends(bench, fine, how, max_vibration, resolution, vibration):
-    """Checks the limits at both ends of a preset's unpublished parameters: mass divided and multiplied by 1.3, viscous
-    friction of 0.5 and of 5 N s/m."""
+    """Checks the stiffness limits at both ends of the ranges of a preset's unpublished parameters. The ends are the
+    mass divided and multiplied by 1.3, and a viscous friction of 0.5 and 5 N s/m."""
     # Without dry friction, encoder and saturation, the only estimated parameters of an omega.3 are its mass and viscous
     # friction.
     bare = [

@@ -1,4 +1,4 @@
-"""Known answers for the tables of limit and stress: eigenvalues and motion of linear recurrences."""
+"""Known answers for the tables of `limit` and `stress`, from eigenvalues and the motion of linear recurrences."""
 import math
 
 import numpy as np

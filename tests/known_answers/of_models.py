@@ -1,4 +1,4 @@
-"""Known answers for the comparison of laws with a reference force by converge --over."""
+"""Known answers for the comparison of laws with a reference force by `converge --over`."""
 import math
 
 import numpy as np

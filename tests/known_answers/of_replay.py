@@ -1,4 +1,4 @@
-"""Known answers for compare --replay: the log of a haptic loop on one spring is rendered again along its motion."""
+"""Known answers for `compare --replay`: the log of a haptic loop on one spring is rendered again along its motion."""
 import json
 
 import numpy as np
@@ -59,8 +59,8 @@ def replay_of_a_log(bench):
     force = np.clip(spring, -LIMIT, LIMIT)
     status[np.abs(spring) > LIMIT] = CLAMPED
     time_ns = 1_000_000 * (calls + np.where(calls >= GAP, 20, 0))
-    # A zero force has the sign of its product: of -K times 0 perpendicular to the spring, or of 0 times the last force
-    # before the force turned off.
+    # A zero force is +0 or -0, depending on the product that gives it. Perpendicular to the spring, the product is -K
+    # times 0. While the force is off, the product is 0 times the last force before the force turned off.
     recorded = force.copy()
     fallen = np.isin(status, (STALE, IS_FAULT))
     recorded[GAP] *= np.sign(force[GAP - 1])

@@ -1,4 +1,4 @@
-"""Known answers for the table of sweep, recomputed from the summaries of single runs."""
+"""Known answers for the table of `sweep`, recomputed from the summaries of single runs."""
 import math
 
 from answers import EXACT, Table, scene

@@ -1,4 +1,5 @@
-"""Known answers for the tables of run time: compare --time, and run time against error by converge --over."""
+"""Known answers for the tables of run time: run times by `compare --time` and `sweep --time`, and run time against
+error by `converge --over`."""
 import math
 
 import numpy as np

@@ -8,8 +8,8 @@ from answers import EXACT, ROUNDING, Within, norms, profile, rms, scene
 from physics import BINNED, FILTERED, STEPPED, Phases, high_pass, nearest_rank, settled_high_pass
 
 
-# Two nearly parallel springs, of which the reduction keeps the deeper spring, one perpendicular spring, and five
-# springs that are never reached.
+# The first two springs are nearly parallel, and the reduction keeps only the deeper of them. The third spring is tilted
+# by about 37 degrees from them. The last five springs are never reached.
 NEAR = 0.03
 DIRECTIONS = np.array(
     [
@@ -102,8 +102,8 @@ class Touches:
 
 @scene
 def touches(bench):
-    """Checks the metrics of a tool that moves onto springs three times, with a vibration of 100 Hz perpendicular to
-    them. Two of the touches begin a landing, because they follow a sufficiently long time without contact.
+    """Checks the metrics of a tool that moves onto springs three times and vibrates along x with 100 Hz. Two of the
+    touches begin a landing, because they follow a sufficiently long time without contact.
     """
     run, r = bench.run(bench.scenario("touches", **TOUCHES)), Touches()
     F, settled, landing, touching = norms(r.f), r.phases.settled, r.phases.landing, r.contact

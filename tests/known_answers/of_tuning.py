@@ -1,4 +1,4 @@
-"""Known answers for the tables of tune: the eigenvalues of the sampled loop of a handle on one spring."""
+"""Known answers for the tables of `tune`, from the eigenvalues of the sampled loop of a handle on one spring."""
 import json
 import math
 
@@ -65,7 +65,7 @@ def tuned(bench):
         near,
         ("without the margin", limit_at(B)),
     )
-    # Damping B at the stiffness K. At constant zeta, B grows with the square root of the gain.
+    # `at_K` is the damping at the stiffness K. If a gain g multiplies K at constant zeta, the damping grows by sqrt(g).
     at_K = 2 * zeta * math.sqrt(K * m)
     gain = limit_of(lambda g: loop(g * K, math.sqrt(g) * at_K), 1.0, 64.0)
     bench.add(
@@ -181,8 +181,8 @@ def tuned_order(bench, law, printed, runs, table):
 
 
 def tuned_words(bench, law, m):
-    """Checks fields of the answer for a law whose stiffness only the stability of its loop limits, and fields that
-    repeat the options."""
+    """Checks fields of the answer for a law whose stiffness is limited only by the stability of its loop. Also checks
+    fields that repeat the options."""
     for name, known, naive in (
         ("feasible", True, False),
         ("lambda_max", 1.0, 2.0),

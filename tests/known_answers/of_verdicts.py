@@ -4,8 +4,8 @@ from answers import scene
 
 @scene
 def verdicts(bench):
-    """Checks that a test in C++ covers each verdict on claims. The test gives the rules of claims numbers on both sides
-    of their thresholds."""
+    """Checks that a test in C++ covers each verdict on claims. The test applies the rules of the claims to numbers on
+    both sides of the thresholds of the rules."""
     for word, accepted, rejected in (
         ("replicated", '{"T4", costs, {{"", replicated}', "not_replicated"),
         ("not replicated", '"1.reduced_mean=1.1 1.reduced_max=2", not_replicated', "replicated"),

@@ -83,7 +83,7 @@ def bisected(holds, low, high, width=0.0):
 
 
 def radius(matrix):
-    """Returns the spectral radius of a matrix. The motion decays if it is below 1."""
+    """Returns the spectral radius of a matrix. The motion decays if the spectral radius is below 1."""
     return np.abs(np.linalg.eigvals(matrix)).max()
 
 

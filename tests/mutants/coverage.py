@@ -20,8 +20,8 @@ from pathlib import Path
 SOURCE = Path(__file__).resolve().parent.parent.parent
 FOLDERS = ("sim", "algorithms", "device_model", "results/observe")
 # Selections of tests, as options of ctest. The names of GoogleTest suites contain no dot. The names of tests that are
-# scripts contain a dot. The test Library inspects the libraries, which the counters of coverage change, and is
-# excluded.
+# scripts contain a dot. The test Library is excluded, because it inspects the libraries, which contain counters of
+# coverage in this build.
 TESTS = (
     ["-L", "^fast$", "-E", "^Library[.]"],
     ["-L", "^slow$", "-E", "[.]"],

@@ -73,8 +73,8 @@ class ActiveCall {
   ActiveCall& operator=(const ActiveCall&) = delete;
 };
 
-/// Raises the error that stop_work_by() has stored, if any. Preconditions: a call is counted, and the
-/// interpreter lock is held.
+/// Raises the error that stop_work_by() has stored, if any. Preconditions: an ActiveCall exists, and the interpreter
+/// lock is held.
 void raise_python_error() {
   if (python_error == nullptr) return;
   PyErr_SetObject(reinterpret_cast<PyObject*>(Py_TYPE(python_error)), python_error);
@@ -135,8 +135,8 @@ void stop_calls_at_exit() {
   }
 }
 
-/// Prevents loading of laws while another thread computes, and computing while a law is loaded (LoadingGuard).
-/// Throws InputError while another thread computes.
+/// LoadingGuard for Python. Throws InputError while another thread computes. Otherwise returns an object that holds the
+/// interpreter lock, so that no other thread can start to compute before the law is loaded.
 std::shared_ptr<void> guard_loading() {
   auto held = std::make_shared<py::gil_scoped_acquire>();  // starting work requires this lock
   if (active_calls > 1) throw InputError("a law cannot be loaded while another thread computes");

@@ -59,7 +59,8 @@ def numbers_in(lines, columns, wanted):
 
 
 def fault_of(file, names):
-    """Returns the error message for a table in which a field of the columns `names` is not a number."""
+    """Returns the error message for a table that numbers_in() rejects: it names the first field of the columns `names`
+    that is not a number. If there is no such field, it says that the table has an empty line."""
     every, rows = read_rows(file)
     for line, row in enumerate(rows, start=2):
         for name in names:

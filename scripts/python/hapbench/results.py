@@ -188,8 +188,9 @@ class Run(_WithTables):
     def plot(
         self, y: str | Iterable[str] = (), metric: str | Iterable[str] = (), width: str = "double"
     ) -> Any:
-        """Returns the matplotlib Figure that `hapbench plot` draws of this run. `y`: names of quantities. `metric`:
-        names of metrics. `width`: "single" or "double" (column width of a journal), or "slide"."""
+        """Returns the matplotlib Figure that `hapbench plot` draws of this run. Each argument has the meaning of the
+        option of the same name: `y` names the quantities over time, `metric` names metrics, and `width` is "single",
+        "double" (the column widths of a journal) or "slide"."""
         from .pictures import plot
 
         return plot(self, metric=metric, y=y, width=width)
@@ -230,10 +231,10 @@ class Run(_WithTables):
 class Folder(_WithTables):
     """Results in a folder that a command such as sweep, compare or limit wrote.
 
-    `tables` contains the CSV files of the folder by path, except the files of its runs. `runs` contains the runs below
-    the folder by path. `json` contains the JSON files of the folder. `folder.sweep` is the table of sweep.csv. A
-    comparison of several scenarios has one table for each scenario; `folder.comparison` joins these tables and adds a
-    column with the name of the scenario.
+    `tables` contains the CSV files below the folder by path, except the files of single runs. `runs` contains the runs
+    below the folder by path. `json` contains the JSON files in the folder by name. `folder.sweep` is the table of
+    sweep.csv. A comparison of several scenarios has one table for each scenario; `folder.comparison` joins these tables
+    and adds a column with the name of the scenario.
     """
 
     def __init__(self, folder: str | os.PathLike[str]) -> None:
@@ -274,16 +275,16 @@ class Folder(_WithTables):
         where: str | Iterable[str] = (),
         width: str = "double",
     ) -> Any:
-        """Returns the matplotlib Figure that `hapbench plot` draws of this folder. `metric`: metrics of the laws, or
-        one column of a sweep. `y`: quantities over time. `where`: conditions that select rows of a sweep. `width`: see
-        Run.plot()."""
+        """Returns the matplotlib Figure that `hapbench plot` draws of this folder. `metric`: names of the metrics that
+        are drawn for each law, or one column of sweep.csv. `y`: names of the quantities that are drawn over time.
+        `where`: conditions that select rows of sweep.csv. `width`: see Run.plot()."""
         from .pictures import plot
 
         return plot(self, metric=metric, y=y, where=where, width=width)
 
     def _repr_html_(self) -> str:
-        """Returns the ranking as HTML for a notebook, or the first table if there is no ranking. The names of the other
-        tables follow."""
+        """Returns HTML for a notebook: the folder, the names of its tables, its number of runs, and one table. This
+        table is the ranking, otherwise the comparison, otherwise the first table."""
         first = next(
             (name for name in (RANKING, COMPARISON, *self.tables) if name in self.tables), None
         )
@@ -362,9 +363,9 @@ def _columns_of(file):
 
 
 def _reader(file, described=None):
-    """Returns a function that reads the table of `file`. `described`: name, unit and meaning of each column, or a
-    function that returns them for a file. If `described` is a list, all columns must contain numbers; otherwise the
-    table may also contain texts."""
+    """Returns a function that reads the table of `file`. `described`: a list with name, unit and meaning of each
+    column, or a function that returns this list for a file, or None. If `described` is a list that is not empty, all
+    columns must contain numbers; otherwise columns may also contain texts."""
 
     def read():
         if not described or callable(described):

@@ -118,7 +118,8 @@ class Table(Mapping[str, Column]):
         return frame
 
     def plot(self, *y: str, x: str | None = None, width: str = "double") -> Any:
-        """Returns a matplotlib Figure of the columns `y` over the column `x` (default: the first column of numbers)."""
+        """Returns a matplotlib Figure of the columns `y` over the column `x`. The default of `x` is time_s, or
+        the first column of numbers if there is no column time_s."""
         from .pictures import plot_table
 
         return plot_table(self, y, x, width)

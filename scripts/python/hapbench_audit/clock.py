@@ -6,7 +6,7 @@ from .log import LONG_INTERVALS
 # Largest plausible rate of a haptic or contact loop [Hz]. Above this rate, the times of the log are probably not in
 # seconds.
 FASTEST_HZ = 1e5
-# Largest standard deviation of the time steps without a warning, as a fraction of the mean interval.
+# If the standard deviation of the time steps exceeds this fraction of the mean interval, the audit prints a warning.
 JITTER = 0.05
 
 

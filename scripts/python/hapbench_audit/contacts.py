@@ -110,7 +110,7 @@ def between(values, low, high):
 
 def runs_of(flags, gap):
     """Returns the first row, and the row after the last row, of each sequence of consecutive True flags. A gap between
-    two rows ends a sequence. `flags`: one for each row. `gap`: one for each interval between rows.
+    two rows ends a sequence. `flags`: one boolean for each row. `gap`: one boolean for each interval between two rows.
     """
     edges = np.diff(np.concatenate([[False], flags, [False]]).astype(int))
     starts, ends = np.flatnonzero(edges == 1), np.flatnonzero(edges == -1)

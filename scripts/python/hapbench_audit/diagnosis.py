@@ -15,11 +15,12 @@ from .text import HAMMERS, expected_text
 AT_LIMIT = 0.999  # fraction of the log's largest force from which a force may be saturated
 CONSTANT = 0.9  # fraction of saturated rows from which the force counts as constant instead
 FLAT = 20  # smallest number of saturated rows for which the largest force counts as a limit
-# Ratio of the rms vibration to the mean force above which the force vibrates; equals kMaxBuzz of the program.
+# If the rms vibration exceeds this fraction of the mean force, the force counts as vibrating. Equals kMaxBuzz of the
+# program.
 HAS_BUZZ = 0.1
-GAIN_MARGIN = 2.0  # linear limit divided by the stiffness that the advice recommends
-# Smallest force of a reversal, in standard deviations of the noise. On average, one of 16 000 normally distributed
-# errors is larger.
+GAIN_MARGIN = 2.0  # the advice recommends the linear limit of the stiffness divided by this number
+# The forces before and after a reversal must exceed this many standard deviations of the noise. On average, one of
+# 16 000 normally distributed errors is larger.
 NOISE = 4.0
 
 
@@ -230,8 +231,8 @@ def share_of_largest(log, row):
 def motion_at(log, stiffness, row):
     """Returns the motion that can cause the force step at `row`: (largest displacement from one row to the next [m],
     largest force change that the stiffness causes by such a displacement [N]). Considers `row` and the rows before it,
-    over the longest delay that the log allows plus the rows of a held position. The force change is None without a
-    stiffness."""
+    as many as the longest delay that the log allows and one held position last. The force change is None if
+    `stiffness` is None."""
     delay = 0 if not stiffness else round(stiffness["delay_interval_s"][1] / log.interval)
     held = 1 if log.held is None else round(log.held.rows)
     steps = np.diff(log.position[max(row - delay - held, 0) : row + 1], axis=0)

@@ -21,8 +21,8 @@ class Port:
         self._last = np.abs(f) @ (0.5 * log.quantum_m)
 
     def error(self, first, after):
-        """Returns the largest error of the held work from row `first` to row `after` [J]. The cause is the resolution
-        of positions and forces in the log."""
+        """Returns the largest error [J] that the resolution of positions and forces in the log can cause in the sum of
+        `held` over the rows from `first` to before `after`."""
         last = min(after, len(self._last) - 1)
         return float(
             self._of_positions[first + 1 : after].sum()
@@ -37,9 +37,9 @@ def work(force, displacement):
 
 
 def stored_at(log, contacts, row, spring):
-    """Returns the energy [J] in the contact's spring at a row. It is not zero only if the touch is unknown: at the
-    first row of the log, or at the first row after a gap of the clock, if the row is in contact. Returns None if the
-    stiffness is unknown."""
+    """Returns the energy [J] in the contact's spring at a row. The energy is 0 if the log contains the touch. The log
+    does not contain the touch if a row in contact is the first row of the log or the first row after a gap of the
+    clock. Returns None if the log does not contain the touch and the stiffness is unknown."""
     if not contacts.in_contact[row] or (row > 0 and not contacts.gap[row - 1]):
         return 0.0
     stiffness = (spring or {}).get("stiffness_N_per_m", 0.0)
@@ -74,11 +74,12 @@ def energy_of(log, port, stored):
 
 def contact_energy(port, first, after, stored):
     """Returns the energies of the contact in the rows from `first` to before `after`, for the JSON. `stored`: energy in
-    the contact's spring at the first row [J]. Work given to the hand beyond `stored`, at any time, is created
-    energy."""
+    the contact's spring at the first row [J]. The created energy is the largest amount by which the accumulated work on
+    the tool exceeds `stored`."""
     last = min(after, len(port.held))
     given = np.cumsum(port.held[first:last]) if last > first else np.zeros(1)
-    # The trapezoidal rule begins at the row before the contact and ends at the row after it, where the force is zero.
+    # The trapezoidal rule also includes the interval before the first row and the interval after the last row of the
+    # contact, in which the force rises and falls.
     path = np.cumsum(port.path[max(first - 1, 0) : last]) if last > first else np.zeros(1)
     return {
         "work_J": float(given[-1]),

@@ -27,8 +27,8 @@ def metrics_of(audit):
 
 
 def expectations(words, audit):
-    """Returns for each bound, "metric=max" or "metric=min:max", the metric, its value, the bounds, and True if the
-    value is within the bounds. A missing value does not meet a bound."""
+    """Returns a dict for each of `words`: the metric, its value, the bounds, and True if the value is within the
+    bounds. Each word is "metric=max" or "metric=min:max". A missing value is not within the bounds."""
     metrics, found = metrics_of(audit), []
     for word in words:
         name, equals, bound = word.partition("=")

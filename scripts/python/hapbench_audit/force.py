@@ -18,9 +18,11 @@ LOWEST_PEAK = 10.0  # lowest frequency of a peak [Hz]; voluntary motion of a han
 HARMONIC = 0.02
 MIN_PEAK = 0.01  # smallest amplitude of the strongest peak, as a fraction of the mean force
 SHORTEST_SPECTRUM = 64  # smallest number of rows from which a spectrum is computed
-# Smallest number of periods of an oscillation in a contact, which leaves two periods in its middle third.
+# Smallest number of periods of an oscillation in the rows of longest_stretch(). The middle third of these rows then
+# contains two periods.
 MIN_PERIODS = 6.0
-# Smallest amplitude in the middle third of a contact, as a fraction of the amplitude in the whole contact.
+# Smallest amplitude of an oscillation in the middle third of the rows of longest_stretch(), as a fraction of its
+# amplitude in all these rows.
 LASTING = 0.5
 FALSE_ALARM = 0.01  # probability that noise alone causes a peak in a log
 
@@ -170,17 +172,17 @@ def spectrum_of(log, contacts):
 
 
 def is_same(frequency, other, resolution):
-    """Returns True if a frequency equals the other frequency, or a multiple of it, within the resolution [Hz] or within
-    HARMONIC."""
+    """Returns True if a frequency equals the other frequency, or a multiple of the other frequency. The allowed
+    difference is `resolution` [Hz] or HARMONIC times the frequency, whichever is larger."""
     times = max(round(frequency / other), 1)
     return abs(frequency - times * other) <= max(resolution, HARMONIC * frequency)
 
 
 def peaks_of(log, contacts, spectrum, mean):
     """Returns frequency [Hz] and amplitude [N] of the strongest oscillations above LOWEST_PEAK, strongest first. A peak
-    is at least 4 times as large as the median amplitude of its neighbourhood. Its frequency is no multiple of the
-    frequency of a stronger peak. The oscillation persists in the middle third of longest_stretch(). `mean`: mean force
-    in contact [N]."""
+    is more than 4 times as large as the median amplitude of its neighbourhood, and so large that noise alone causes a
+    peak in a log only with the probability FALSE_ALARM. Its frequency is no multiple of the frequency of a stronger
+    peak. The oscillation persists in the middle third of longest_stretch(). `mean`: mean force in contact [N]."""
     if spectrum is None or not mean:
         return []
     frequency, amplitude, seconds = spectrum

@@ -16,7 +16,7 @@ from hapbench_import.stroke import resolution_of
 
 FEWEST = 20  # smallest number of samples of a log
 LONG_INTERVALS = 10.0  # number of mean intervals; a longer time step is a gap, which ends a contact
-LATEST_START = 1e6  # start of a log [s] from which on its times are counted from its first row
+LATEST_START = 1e6  # if the first time of a log [s] is at least this large, times count from the first row
 FASTEST = 5.0  # largest plausible speed of a hand [m/s]
 # Largest error of a time step [intervals] at which the number of missing rows in the step is unambiguous. At an error
 # of 0.5, two numbers of missing rows fit equally well.
@@ -24,7 +24,9 @@ CLEAR = 0.25
 SEVERAL = 20  # number of time steps over which the mean interval is measured
 # Largest number of missing rows that are counted between two rows; equals the longest delay of a model [rows].
 MAX_MISSING = 50
-FOLLOWED = 0.05  # at each time stamp, the mean clock is shifted by at least this fraction of the stamp's error
+# At each time stamp, of_mean_clock() shifts the mean clock towards the stamp by at least this fraction of the
+# difference.
+FOLLOWED = 0.05
 # Usual names of the first column of each quantity. Names are in lower case, without units and without any character
 # other than letters and digits.
 USUAL = {
@@ -106,8 +108,8 @@ def read_log(options):
 
 
 def layout_of(options):
-    """Returns (options of an import; names of the columns that the user gave for quantities of EXTRA; force above which
-    a row is in contact [N], or None)."""
+    """Returns (Options of `import stroke` that read the log; names of the columns that the user gave, by quantity of
+    EXTRA; force above which a row is in contact [N], or None)."""
     touches = [word for word in options.set if word.startswith(TOUCH)]
     extra = [word for word in options.columns if word.partition("=")[0] in EXTRA]
     requested = SimpleNamespace(
@@ -178,8 +180,8 @@ def is_large(values):
 
 
 def log_of(recording, options, wanted):
-    """Returns the Log of a recording. `options`: the options of an import. `wanted`: names of the columns that the user
-    gave for quantities of EXTRA."""
+    """Returns the Log of a recording. `options`: Options of `import stroke`. `wanted`: names of the columns that the
+    user gave, by quantity of EXTRA."""
     recording, axes = with_usual_columns(recording, options)
     read = read_samples(recording, options)
     samples, kept = read.samples, read.kept
@@ -240,8 +242,8 @@ def missing_rows(steps):
 
     There are two models of jitter. In the first model, each interval has an independent error. In the second model,
     each time stamp of a regular clock has an independent error. The errors of the second model do not add up over the
-    steps; each step is therefore measured from the mean clock of the earlier rows. The function uses the model with the
-    smaller mean square error."""
+    steps; each step is therefore measured from the mean clock, a regular clock that follows the earlier time stamps.
+    The function uses the model with the smaller mean square error."""
     interval = float(np.median(steps))
     found = np.maximum(np.rint(steps / interval).astype(int) - 1, 0)
     errors = steps / interval - found - 1.0
@@ -267,8 +269,8 @@ def missing_rows(steps):
 
 
 def of_mean_clock(steps):
-    """Returns (number of missing rows, error [intervals]) of each step. Each step is measured from the mean clock of
-    the earlier rows. `steps`: time steps in intervals."""
+    """Returns (number of missing rows, error [intervals]) of each step. Each step is measured from the mean clock, a
+    regular clock that follows the earlier time stamps. `steps`: time steps in intervals."""
     # `lag`: last time stamp minus the mean clock, in intervals.
     found, errors, lag = [], [], 0.0
     for row, step in enumerate(steps):
@@ -291,8 +293,8 @@ def held_of(log, values):
 
 
 def times_of(read):
-    """Returns the times of the rows [s]. If the clock starts long before the log, the times are relative to the first
-    row."""
+    """Returns the times of the rows [s]. If the first time is LATEST_START or later, as in times since 1970, the times
+    are relative to the first row."""
     start = read.origin + read.samples.time[0]
     if start < LATEST_START:
         return read.origin + read.samples.time
@@ -387,8 +389,8 @@ def of_one_axis(usual):
 
 
 def alone_columns(names, options, parts):
-    """Returns the column of each quantity of `parts` that has only one column, by quantity. The value is None for a
-    quantity with three columns."""
+    """Returns, by quantity, the column of each quantity of `parts` that the options name. The value is None if the
+    quantity has three columns instead of one."""
     found = {
         quantity: names.find(
             "", options.columns[quantity], ("_x", ".x", "x", "[0]", "_0", ".0", "0")

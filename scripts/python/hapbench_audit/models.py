@@ -26,9 +26,10 @@ LOOP = "loop "
 # state of a filter decays.
 BEFORE = MAX_DELAY + 10 * max(LOW_PASSES)
 BLOCKS = 10  # number of blocks of the jackknife
-# Largest number of values per column that are processed together, so that they fit in the processor's cache.
+# Largest number of values of one array that are processed together, so that they fit in the processor's cache.
 AT_ONCE = 20_000
-# Smallest fraction of a column that is independent of the other columns. Below it, the columns are collinear.
+# Smallest fraction of a column of a fit's matrix that is linearly independent of the other columns. If the fraction is
+# smaller, the columns count as collinear.
 COLLINEAR = 1e-9
 
 
@@ -98,14 +99,15 @@ class Motion:
         if kind == "logged":
             return 0.0
         backward = self.speeds["backward"][within]
-        # At touch, the acceleration changes between two rows. The error is then half the difference between the central
-        # and the backward velocity.
+        # At touch, the acceleration changes between two rows. The error of the velocity is then half the difference
+        # between the central and the backward velocity.
         change = np.abs(self.speeds["central"][within] - backward).max()
         found = (0.5 * change) ** 2 / len(backward)
         constant = low_pass_of(kind)
         if constant:
-            # The time constant of the engine differs by at most half the distance to the next modelled time constant.
-            # The fit of position and velocity absorbs most of this error; only the remaining error counts.
+            # The time constant of the engine differs from the modelled time constant by at most half the distance to
+            # the next modelled time constant. The fit of position and velocity absorbs most of the resulting error of
+            # the velocity; only the remaining error counts.
             kinds = (f"{LOW_PASS}{constant // 2}" if constant > 1 else "backward", kind)
             near, modelled = (self.speeds[one][within] for one in kinds)
             position = self.position[within]
@@ -184,8 +186,8 @@ def low_pass_of(kind):
 
 
 def speeds(log, part, position, direction):
-    """Returns the velocities [m/s] along the direction in the rows `part`, by kind: the method by which an engine may
-    compute them. `position`: positions of these rows along the direction [m]."""
+    """Returns a dict from kind to the velocities [m/s] along the direction in the rows `part`. A kind is a method by
+    which an engine may compute velocities. `position`: positions of these rows along the direction [m]."""
     time = log.time[part]
     fresh = np.arange(len(position)) if log.held is None else np.flatnonzero(log.held.fresh[part])
     if len(fresh) < 3:
@@ -368,9 +370,9 @@ def fit_of(motion, model, with_sign=False):
 def new_fit(motion, model, with_sign):
     """Computes the Fit that fit_of() returns.
 
-    Each interval is the larger of two intervals: the least-squares interval with the memory() of the residuals, and the
-    interval of a jackknife over consecutive blocks. The jackknife also covers residuals that are correlated with the
-    motion."""
+    The interval of each coefficient is the larger of two intervals: the least-squares interval with the memory() of the
+    residuals, and the interval of a jackknife over consecutive blocks. The jackknife also covers residuals that are
+    correlated with the motion."""
     matrix, target = motion.columns(model, with_sign)
     found = factors(matrix)
     if found is None:

@@ -18,7 +18,8 @@ SEARCHED = ("logged", "backward", "central", "low-pass 4")
 # the largest force of the log.
 FEWEST_NEW = 15
 BLOCKS = 10  # number of residuals of normal_by_friction() that count as independent
-# A second normal is better than a first normal if it reduces the unexplained fraction to less than this factor.
+# A second normal is better than a first normal if its unexplained fraction is less than this factor times the
+# unexplained fraction of the first normal.
 AS_GOOD = 0.5
 # Fraction of the median speed below which the direction of sliding is uncertain.
 SLOW = 0.2
@@ -134,9 +135,10 @@ def sliding_velocity(log, rows):
 
 
 def gradient_of(log, rows, normal, space, model):
-    """Returns (direction, Model), or (None, None). The direction is the unit vector of the gradient of the force
-    component along `normal`, with the sign of `normal`. `space`: three Motions, along the x, y and z axes. `model`:
-    Model of the fit; None searches the best Model."""
+    """Returns (direction, Model). The direction is the unit vector of the gradient of the force component along
+    `normal`, with the sign of `normal`. Returns (None, None) if there are fewer than FEWEST_NEW usable rows, if the
+    tool hardly moves, or if the gradient is zero. `space`: three Motions, along the x, y and z axes. `model`: Model of
+    the fit. If `model` is None, the best Model is searched."""
     keep = space[0].usable()
     force = (log.force[rows] @ normal)[keep]
     some = np.linspace(0, keep.sum() - 1, min(keep.sum(), MAX_ROWS)).astype(int)

@@ -6,9 +6,9 @@ MIN_CHANGE = 0.01  # smallest significant change of the force, as a fraction of 
 
 
 def no_travel_text(travel, resolution, force, noise):
-    """Returns the reason why a contact has no stiffness if the tool does not move along the force. If the force
-    changes, the text gives a lower bound of the stiffness. `travel` and `resolution` of the position [m]; `noise`:
-    standard deviation of the noise of the force [N]."""
+    """Returns the reason why a contact, in which the tool does not move along the force, does not determine a
+    stiffness. If the force changes, the text gives a lower bound of the stiffness. `travel`, `resolution`: travel and
+    resolution of the position [m]. `noise`: standard deviation of the noise of the force [N]."""
     moves = f"moves by {travel:.3g} m only" if travel > 1e-12 else "does not move"
     if resolution:
         moves += f", {travel / resolution:.3g} steps of its resolution"

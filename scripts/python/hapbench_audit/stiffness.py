@@ -28,19 +28,22 @@ EXPLAINED = 0.5  # smallest fraction of the variance of the force that a spring 
 UNSURE = 0.05  # fraction of 95 % intervals that do not contain the true value
 # Largest half-width of an interval, as a fraction of the value. Values with wider intervals are not reported.
 WELL_KNOWN = 0.25
-# Log-likelihood of the best model minus the log-likelihood of another model, up to which both count as equally good.
+# Another model counts as equally good as the best model if their log-likelihoods differ by at most this value.
 UNLIKELY = 5.0
 # Relative change of a coefficient that the sampling of the motion may cause: (2 pi f T)^2 / 6 for a motion of f = 17 Hz
 # at the sampling period T = 1 ms.
 SAMPLED = 2e-3
 MAX_TRIED = 60  # largest number of models in the search for a model without negative damping
 CERTAIN = 20.0  # largest log-likelihood difference that one contact contributes
-# Relative difference of mean squares that does not count, because the residuals are not white noise.
+# Relative differences between the mean square residuals of two models up to this value do not count, because the
+# residuals are not white noise.
 SIMILAR = 0.1
-# The sampling of a velocity explains a mean square residual of at most this factor times the smallest mean square.
+# The sampling error of a velocity explains a mean square residual of at most this factor times the mean square residual
+# of the best model.
 MAX_EXCUSED = 2.0
-NEGLIGIBLE = 1e-12  # fraction of the variance that rounding may leave unexplained
-# Largest unexplained fraction of a well explained contact, divided by the median unexplained fraction of all contacts.
+NEGLIGIBLE = 1e-12  # fraction of the variance of the force that counts as rounding error of the computation
+# A contact is well explained if its unexplained fraction is at most this factor times the median unexplained fraction
+# of all contacts.
 TYPICAL = 10.0
 DRY_GAIN = 0.7  # dry friction must reduce the sum of squared residuals below this fraction
 DRY_SHARE = 0.02  # smallest dry friction, as a fraction of the mean force
@@ -172,8 +175,9 @@ def likelihoods(motion, found, best):
     """Returns for each Model the log-likelihood of the best Model minus the log-likelihood of this Model.
 
     If rounding and sampling explain the residual of a model, the model counts as equally good as the best model,
-    although its sum of squares may be larger. An engine that renders the rounded positions themselves leaves smaller
-    residuals than rounding would: `share` is the measured fraction of the expected residuals.
+    although its sum of squares may be larger. If the engine itself renders the rounded positions, rounding causes no
+    residual. The effects of rounding and sampling are therefore multiplied by `share`: the mean square residual of the
+    best model, divided by the mean square that rounding and sampling can cause; at most 1.
     """
     smallest = found[best]
     floor = NEGLIGIBLE * smallest.total
@@ -266,7 +270,8 @@ def is_negative(log, evidences, model):
 
 
 def well_explained(evidences):
-    """Returns the contacts that a spring and a damper explain about as well as the median contact."""
+    """Returns the contacts whose force a spring and a damper explain at least about as well as the force of the median
+    contact."""
     usual = float(np.median([unexplained(one) for one in evidences])) if evidences else 0.0
     return [one for one in evidences if unexplained(one) <= TYPICAL * usual + NEGLIGIBLE]
 
@@ -274,8 +279,8 @@ def well_explained(evidences):
 def with_shared_normal(log, evidences):
     """Returns the evidences. Two normals are candidates for all contacts, because most logs have one flat surface: the
     normal of the contact whose force a spring explains best, and the normal that follows from the friction in all
-    contacts. A contact uses a candidate if it leaves less of the contact's force unexplained than the contact's own
-    normal does."""
+    contacts. A contact uses a candidate if this candidate leaves less of the contact's force unexplained than the
+    contact's own normal does."""
     known = [one for one in evidences if one is not None and one.likelihood]
     if log.axes == 1 or len(known) < 2:
         return evidences
@@ -403,7 +408,8 @@ def widened(motion, fit, with_sign):
     if fit.explained < 1.0 - EXACTLY:
         halves = halves + SAMPLED * np.abs(fit.values)
     if distances:
-        # The time constant of a filter differs by at most half the distance to the next time constant.
+        # The time constant of the engine differs from the modelled time constant by at most half the distance to the
+        # next modelled time constant.
         share = 0.5 if low_pass_of(fit.model.kind) else 1.0
         halves = halves + share * np.max(distances, axis=0)
     return replace(fit, halves=halves)

@@ -38,7 +38,8 @@ PAIR = re.compile(r"success(?: rate)? (.+?) vs ([^;(]+)")
 
 
 def manuals():
-    """Returns every Markdown file of the source tree."""
+    """Yields every Markdown file of the source tree, except hidden files and files in hidden folders and in the folders
+    NOT_OURS."""
     for file in sorted(ROOT.rglob("*.md")):
         where = file.relative_to(ROOT)
         hidden = any(part.startswith(".") for part in where.parts)
@@ -193,7 +194,8 @@ def robustness(_old=""):
 
 
 def controls(_old=""):
-    """Returns a table with a row for each claim: the wrong laws of controls.json that change its verdict."""
+    """Returns a list of the wrong laws in controls.json with their meanings, and a table with a row for each claim: the
+    wrong laws that change the verdict of the claim."""
     changes, judged, meanings = {}, {}, []
     for control in read("controls.json")["controls"]:
         meanings.append(f"- `{control['name']}`: {control['meaning']}.")
@@ -214,9 +216,10 @@ def controls(_old=""):
 
 
 def pairs(_old=""):
-    """Returns a table with a row for each claim that several assumptions decide. The row sorts the pairs of these
-    assumptions by the verdict that both changes together cause: the recorded verdict, the verdict of one change alone,
-    or another verdict. Pairs with the verdict of one change alone are counted, all other pairs are listed.
+    """Returns a table with a row for each claim that several assumptions decide. The row groups the pairs of these
+    assumptions by the verdict after both assumptions of a pair were changed: the recorded verdict, the verdict after
+    only one of them was changed, or another verdict. The pairs of the second group are counted; the pairs of the other
+    groups are listed.
     """
     lines = [
         "| claim | verdict | pairs | recorded verdict | verdict of one of both | another verdict |",
@@ -240,9 +243,9 @@ def pairs(_old=""):
 
 def six_dof(_old=""):
     """Returns the table of the study six_dof, whose sweep.csv is stored as six_dof.csv. Each scene has a row with the
-    default hand, grip and pivot; the scenes edge and slot also have a row for each other hand, grip and pivot. The
-    columns are the reference force of the device with torque, the lost torque, the unresisted rotation, and for each
-    law the force error and the energy that the law creates in a cycle."""
+    default hand, grip and pivot; the scenes edge and slot also have a row for each case with another hand, grip or
+    pivot. The columns are the reference force of the device with torque, the lost torque, the unresisted rotation, and
+    for each law the force error and the energy that the law creates in a cycle."""
     with open(REFERENCE / "six_dof.csv", newline="", encoding="utf-8") as lines:
         rows = list(csv.DictReader(lines))
     laws = list(dict.fromkeys(row["six_dof.law"] for row in rows))
@@ -329,7 +332,7 @@ class Program:
 
     def provenance(self):
         """Returns version, date and processor, such as "hapbench 0.3.0, 2026-11-21, AMD EPYC". The commit is omitted,
-        because a comparison needs only the version."""
+        because stamped() compares only the version."""
         return f"{self.version()}, {datetime.date.today()}, {processor()}"
 
     def version(self):

@@ -87,7 +87,7 @@ def draw_distributed(ax, sweep):
 
 
 def wall_damping(ax, results):
-    """Draws the damping coefficient for a motion along the normal of the wall against the tilt. The unit is B, the
+    """Draws, over the tilt, the damping coefficient for a motion along the normal of the wall. The unit is B, the
     damping coefficient of the rendering."""
     dp, hs = scene.Sweep(results, DP), scene.Sweep(results, HS)
     pick = np.arange(1, len(dp.tilt))

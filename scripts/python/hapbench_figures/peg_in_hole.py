@@ -30,7 +30,8 @@ RUNS = (("original_averaging", "original algorithm"), ("shaped_stiffness", "stif
 
 
 def draw_snapshots(axes, scenario, rows, colour):
-    """Draws the peg at equally spaced times, one in each of `axes`, with the path of its tip up to this time."""
+    """Draws in each of `axes` the peg at one time, with the path of its tip up to this time. The times are equally
+    spaced."""
     steps = np.linspace(0, len(rows["px_m"]) - 1, len(axes)).astype(int)
     for ax, step in zip(axes, steps):
         scene.draw_hole(ax, scenario["environment"])

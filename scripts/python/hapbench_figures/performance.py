@@ -63,7 +63,7 @@ LARGEST_ERROR_MM = 10
 
 @dataclass(frozen=True)
 class Setting:
-    series: str  # common part of the names of several settings; "" if a name has one part
+    series: str  # name without its last word, which the settings of a series share; "" if the name has one word
     short: str
     time: float
     error: float

@@ -1,5 +1,5 @@
-"""Figures of this project: the force of laws on a device without torque, compared with the force of a device with
-torque."""
+"""Figure of this project: the force that each law renders on a device without torque, compared with the force of a
+device with torque."""
 import json
 
 import numpy as np

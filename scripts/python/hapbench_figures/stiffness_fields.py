@@ -21,7 +21,7 @@ TITLES = {
 PEG_TILT = 0.12  # tilt of the peg in figure 2 and in the figure of all algorithms [rad]
 DIRECTIONS = np.linspace(0, 2 * np.pi, 73)
 FRAME = (-1.3, 1.3), (-4.2, 0.9)  # drawn region of the contacts: x and y from and to [mm]
-# Half width of a panel of k(e) and positions of its ticks, in units of K.
+# Half width of a panel with the curve k(e) of field(), and positions of its ticks, in units of the stiffness K.
 REACH, TICKS = 1.6, (-1, 0, 1)
 SUMMATION_REACH, SUMMATION_TICKS = 45, (-40, 0, 40)
 

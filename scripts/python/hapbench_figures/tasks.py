@@ -23,7 +23,7 @@ def trajectory(results, task, density="signed_distance"):
 
 def ratios(results, task, iteration, density="signed_distance"):
     """Returns the rows of ratios.csv with `iteration` iterations and at least one rendered contact. `density`: the
-    depth model, which is the end of the run's name."""
+    depth model, "signed_distance" or "binary", which is the end of the run's name."""
     table = results.table(f"thesis/{task}_{density}/ratios.csv")
     selected = (table["iteration"] == iteration) & (table["rendered"] > 0)
     return {name: column[selected] for name, column in table.items()}

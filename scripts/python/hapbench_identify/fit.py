@@ -449,8 +449,9 @@ def slow_part(log, cost, x, residual):
 
 
 def without_unknown_start(log):
-    """If the handle moves at the start, returns the log without its first positions, because forces from before the log
-    still act on the handle there. The initial speed accounts for these forces. Otherwise returns the log.
+    """If the handle moves at the start of a log that is not short, returns the log without its first LONGEST positions,
+    because delayed forces from before the log still act on the handle at these samples. The fitted initial speed
+    accounts for these forces. Otherwise returns the log.
     """
     speed = first_speed(log.position[np.isfinite(log.position)][:200], log.step, log.encoder_step)
     if speed == 0.0 or len(log.time) < 20.0 * LONGEST:

@@ -97,7 +97,7 @@ def read_log(options):
 
 
 def _bad_rows(recording, time, force, position):
-    """Returns the reason why a row is not a sample, by row number, for all bad rows."""
+    """Returns a dict from the number of each bad row to the reason why the row is not a sample."""
     bad, last = recording.problems(), -math.inf
     usual = not bad and np.isfinite((time, force, position)).all() and (np.diff(time) > 0.0).all()
     for row in () if usual else range(len(time)):

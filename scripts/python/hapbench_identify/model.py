@@ -102,9 +102,10 @@ def design(kind, force, travel, rate, duration, mass):
 
 
 def _steps(steps, rate, slowest, fastest):
-    """Returns sequences of pushes: + for n samples, - for 2 n, + for n, with growing n. Without friction, a sequence
-    brings the handle back to rest at its start. With friction, the first push moves the handle farthest, so that the
-    handle drifts. Each sequence is therefore followed by the sequence of opposite sign, which compensates the drift.
+    """Returns sequences of pushes: + for n samples, - for 2 n, + for n, 0 for n, with growing n. Without friction, a
+    sequence brings the handle back to rest at its start. With friction, the first push moves the handle farthest, so
+    that the handle drifts. Each sequence is therefore followed by the sequence of opposite sign, which compensates the
+    drift.
     """
     values = []
     lengths = np.geomspace(rate / (4.0 * fastest), rate / (4.0 * slowest), 8)

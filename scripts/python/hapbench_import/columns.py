@@ -210,7 +210,8 @@ _ANGLES = ("angle", "theta", "a", "Angle", "phi")
 
 
 def _between(names):
-    """Returns the first name with a mark in place of the component: ["axis_\0"] for axis_x, axis_y, axis_z."""
+    """Returns a list with the first name, in which a NUL character replaces the component: "axis_" and NUL for the
+    names axis_x, axis_y, axis_z."""
     at = next(i for i, pair in enumerate(zip(*names)) if len(set(pair)) > 1)
     return [names[0][:at] + "\0" + names[0][at + 1 :]]
 

@@ -38,9 +38,9 @@ def hold_of(values):
 
 def _rhythm(runs):
     """Returns the number of rows of each sample. `runs`: numbers of rows between changes. The result is an integer if
-    nearly all runs are multiples of it. Otherwise it is the mean of the runs, which may differ by at most one row (the
-    rates are not multiples of each other) or by two rows (a clock with jitter). Returns None if the runs have no
-    rhythm."""
+    nearly all runs are multiples of it. Otherwise the result is the mean of the runs if nearly all runs differ from
+    each other by at most one row (the rates are not multiples of each other) or by at most two rows (the clock has
+    jitter). Otherwise returns None."""
     largest = min(MAX_ROWS, int(np.median(runs)))
     for n in range(largest, 1, -1):
         if np.mean(runs % n == 0) >= ALL:

@@ -257,8 +257,8 @@ def _scale(options, value):
 
 
 def _frame(_, words):
-    """Returns the rotation matrix for three words, such as x, -z, y. They are the directions of the recording that
-    become the scenario's x, y and z."""
+    """Returns the rotation matrix for three words, such as x, -z, y. The words are the directions of the
+    recording that become the scenario's x, y and z."""
     rows = [
         [
             0.0 if word.removeprefix("-") != letter else -1.0 if word.startswith("-") else 1.0

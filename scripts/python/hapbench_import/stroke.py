@@ -17,8 +17,8 @@ LONG_INTERVALS = 10.0  # duration in median intervals above which an interval is
 USUAL_RATES = (1.0, 1e5)  # usual rates of recordings [Hz]
 LONGEST, SHORTEST = 3.0, 1e-5  # largest and smallest plausible length of a hand's stroke [m]
 FASTEST = 5.0  # largest plausible speed of a hand [m/s]
-# Plausible numbers of days in the time column of a recording whose times are dates: 1982 to 2091 as days since 1900,
-# and the same as days since the year 0.
+# Plausible numbers of days in the time column of a recording whose times are dates: the years 1982 to 2091 as
+# days since 1900, and the same years as days since the year 0.
 DAYS = ((3e4, 7e4), (7e5, 8e5))
 MAX_GAPS = 5  # largest number of gaps that are listed one by one
 MAX_NOT_READ = 12  # largest number of unread columns that the table names

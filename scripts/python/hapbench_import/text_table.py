@@ -269,7 +269,7 @@ def _names_in_header(lines, separator, notes):
         block.append(words)
     if not block:
         return [], lines[0][0], lines
-    # If no row of numbers follows these lines, only the first of these lines is the header.
+    # If no row of numbers follows the lines of `block`, only the first line of `block` is the header.
     if len(lines) <= len(block) or not is_row(split(lines[len(block)][1], separator)):
         block = block[:1]
     numbers, below = [number for number, _ in lines[: len(block)]], lines[len(block) :]
@@ -278,7 +278,8 @@ def _names_in_header(lines, separator, notes):
         notes.append(f"line {numbers[len(block) - 1]} has the units of the columns")
         block.pop()
     elif len(block) == 2 and not _are_distinct(block[1]) and _are_distinct(block[0]):
-        # The caller that reads the column requests the scale of an unknown unit.
+        # The second line has repeated words and the first line has not. The second line therefore has units, even if a
+        # unit is unknown. scale_of() reports an unknown unit when its column is read.
         units = block.pop()
         notes.append(f"line {numbers[1]} is read as the units of the columns")
     else:

@@ -16,8 +16,9 @@ ORDERS, LEVELS, TIMES = "converge.csv", "converge_levels.csv", "converge_levels_
 
 
 def draw_converge(files, sheet=SHEET):
-    """Draws the relative error of each metric over the refined field, with a line of the formal order, and over the run
-    time. Filled marks: metrics whose order is known. Hollow marks: metrics without a known order.
+    """Draws the relative error of each metric in two panels: over the refined field, with a line whose slope is the
+    formal order, and over the run time. Filled marks: metrics whose order was observed. Hollow marks: metrics without
+    an observed order.
     """
     orders, levels, times = (
         files.records(ORDERS),

@@ -43,7 +43,8 @@ def looks_of(rows):
 
 def linear(rows):
     """Returns the linear limit of each row: the limit of the contact loop, or if the row has no such limit, the
-    theoretical limit of bilateral springs. The value is NaN if the row has neither limit."""
+    theoretical limit of bilateral springs. The value is NaN if the row has neither limit, or if the
+    limit is not positive."""
     linear_limit, theory = numbers(rows, "linear_limit"), numbers(rows, "theoretical_limit")
     values = np.where(np.isfinite(linear_limit), linear_limit, theory)
     return np.where(np.isfinite(values) & (values > 0), values, np.nan)
@@ -64,8 +65,8 @@ def alternate(rows):
 
 def simulated_kinds(rows):
     """Returns three arrays with the simulated limits of the rows: limits that separate stable from unstable runs,
-    limits at which they alternate, and limits at the end of the range. A value is NaN in the arrays of the other two
-    kinds."""
+    limits of rows in which stable and unstable runs alternate, and limits at the end of the searched range. The limit
+    of a row is in one of the arrays; the other two arrays have NaN for this row."""
     values, ends = simulated(rows)
     alternating = alternate(rows) & ~ends
     return [np.where(of, values, np.nan) for of in (~ends & ~alternating, alternating, ends)]

@@ -27,10 +27,10 @@ NO_NUMBER = math.inf  # size of a difference if one of the two values is not a f
 
 
 def differences(a, b):
-    """Returns the differences by run or sweep, which are named by their path below the folders `a` and `b`. The keys of
-    a run are "field", "result", "state hash" and the names of tables; the key of a sweep is the name of its table.
-    Values are lists of (name, value in A, value in B, difference, relative difference). The name "" has the runs and
-    sweeps that only one of both folders has."""
+    """Returns a dict of dicts. The outer key is the path of a run or sweep below the folders `a` and `b`. The inner
+    keys of a run are "field", "result", "state hash" and the names of tables; the inner key of a sweep is the name of
+    its table. The values are lists of (name, value in A, value in B, difference, relative difference). The outer key ""
+    has the runs and sweeps that only one of the two folders has."""
     in_a, in_b = results_below(a), results_below(b)
     pairs = [path for path in in_a if path in in_b]
     if not pairs:

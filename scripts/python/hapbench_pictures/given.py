@@ -82,15 +82,16 @@ def compared(folder):
 
 
 def labels(runs):
-    """Returns a distinct name for each run: the scene, the algorithm and the fields, each only if it differs between
-    the runs. If these are equal for some runs, the names also contain the seeds, or if necessary the folders.
+    """Returns a distinct name for each run. A name consists of the scene, the algorithm and fields of the scenario,
+    each only if it differs between the runs. If some of these names are equal, all names also contain the seed. If some
+    names are still equal, all names contain the folder instead of the seed.
     """
     return named(runs)[0]
 
 
 def named(runs):
-    """Returns (labels of the runs, labels without the seed). Runs that differ only in the seed have equal labels
-    without the seed."""
+    """Returns (labels() of the runs, labels without the seed). Runs that differ only in the seed have equal labels
+    without the seed. If the labels need the folders, both lists are equal."""
     parts = [
         part
         for part in ([run.name for run in runs], [plain(run) for run in runs])

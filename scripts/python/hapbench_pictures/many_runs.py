@@ -277,8 +277,8 @@ def group_text(alike, names_scene):
 
 
 def curves(scene, is_titled):
-    """Returns drawings of each quantity over time, as HTML. A curve is the mean over the runs of a law that did not
-    fail. Its band reaches from the smallest to the largest value."""
+    """Returns drawings of each quantity over time, as HTML. The curve of a law is the mean over those of its runs that
+    did not fail. The band of the curve reaches from the smallest to the largest value."""
     quantities = [SHORT[name] for name in USUAL if name in SHORT]
     laws, light, samples = [], [], []
     for law in scene.laws:

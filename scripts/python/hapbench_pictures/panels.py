@@ -1,5 +1,5 @@
-"""Draws runs into the axes of matplotlib: quantities over time, and the scene in a section with the path of the tip and
-the tool. A run has the look of its algorithm. If runs share an algorithm, their line styles differ."""
+"""Draws runs into the axes of matplotlib: quantities over time, and a cross-section of the scene with the path of the
+tip and the tool. A run has the look of its algorithm. If runs share an algorithm, their line styles differ."""
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,7 +17,7 @@ LIGHT = ("#1d2126", "#ffffff", "#e6e6e6", "#EFE8DC", "#8C7A58")
 DARK = ("#e7e9ea", "#1c2024", "#383e44", "#4a4438", "#b5a27c")
 THIN = 0.6  # line width of the single runs of a group of runs [points]
 SPANS = 600  # number of time spans of a curve; a page hardly shows more
-# Largest ratio of the largest to the smallest peak of the runs at which the runs share a linear axis.
+# The runs share a linear axis if the largest peak of a run is at most this factor times the smallest peak of a run.
 LARGEST_RATIO = 30
 # A run does not influence the axis if its peak is above a gap between two consecutive sorted peaks whose ratio exceeds
 # THROWN_RATIO. A failed run does not influence the axis if its peak exceeds FAILED_RATIO times the largest peak of the
@@ -270,8 +270,8 @@ def framed(samples):
 
 
 def plane_of(samples):
-    """Returns (axis to the right, axis up) of the section: x and y for a planar scene. Otherwise up is z, and right is
-    the horizontal axis along which the paths are longer."""
+    """Returns (axis to the right, axis up) of the cross-section, as column numbers of a position: x and y for a planar
+    scene. Otherwise up is z, and right is the horizontal axis along which the paths are longer."""
     if all(np.all(s.trajectory["pz_m"] == 0) for s in samples):
         return (0, 1)
     tips = np.vstack([tip_of(s)[framed(s)] for s in samples])
@@ -279,9 +279,9 @@ def plane_of(samples):
 
 
 def draw_section(ax, samples, looks, profile=None, surface=None, paper=LIGHT):
-    """Draws the scene with equal axes, in the plane through the middle of the tips' paths: the filled solid, the paths,
-    and the tool of the first run at four times. `profile`: result of tool_profile() [m]. `surface`:
-    hapbench_report.replay.Surface."""
+    """Draws a cross-section of the scene with equal scales on both axes, in the plane through the middle of the tips'
+    paths: the filled solid, the paths, and the tool of the first run at four times. `profile`: result of tool_profile()
+    [m]. `surface`: hapbench_report.replay.Surface."""
     plane, radius = plane_of(samples), max((radius for _, radius in profile or ()), default=0.0)
     tips = np.vstack([tip_of(s)[framed(s)][:, plane] for s in samples])
     low, high = tips.min(0) - 1.3 * radius, tips.max(0) + 0.7 * radius

@@ -1,5 +1,5 @@
-"""`hapbench plot`: writes a picture. Runs are drawn as the scene in a section and quantities over time. Sweeps, limits,
-tunings and convergence studies have other pictures."""
+"""`hapbench plot`: writes a picture. The picture of runs has cross-sections of the scenes and quantities over time.
+Sweeps, limits, tunings and convergence studies have other pictures."""
 import math
 from pathlib import Path
 

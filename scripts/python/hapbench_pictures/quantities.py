@@ -43,7 +43,8 @@ class Quantity:
         return f"{title} [{self.unit or 1}]"
 
     def of(self, table):
-        """Returns (lower bound, upper bound) of the quantity in every row. For a curve, both are the same array."""
+        """Returns (lower bound, upper bound) of the quantity in every row. Both are the same array, except for
+        a quantity of the kind "band"."""
         parts = [table[name] * self.factor for name in self.columns]
         if self.kind == "norm":
             parts = [np.sqrt(sum(part * part for part in parts))]

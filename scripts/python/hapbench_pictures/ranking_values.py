@@ -112,9 +112,9 @@ class Scene:
 
     @cached_property
     def seeds(self):
-        """Repetitions (seeds) over which means are computed: the repetitions in which no law failed, except laws that
-        failed in all repetitions. If there is no such repetition: the repetitions that all laws without any failure
-        have in common. If there is still none: the repetitions of all laws."""
+        """Repetitions (seeds) over which means are computed. Laws that failed in all repetitions are ignored, and the
+        repetitions in which no other law failed are used. If there is no such repetition: the repetitions that all laws
+        without any failure have in common. If there is still none: the repetitions of all laws."""
         succeeding = [law for law in self.laws if len(law.failures) < len(law.runs)]
         for laws in (succeeding, [law for law in self.laws if not law.failures]):
             shared = [set(law.runs) - set(law.failures) for law in laws]

@@ -1,4 +1,4 @@
-"""Picture of runs: the scene in a section, and quantities over time."""
+"""Picture of runs: cross-sections of the scenes, and quantities over time."""
 import math
 from collections import Counter
 from textwrap import fill
@@ -45,8 +45,8 @@ def draw_runs(runs, quantities, with_path, window, sheet=SHEET):
 
 
 def figure_of(runs, shown, quantities, samples, groups, surfaces, sheet=SHEET):
-    """Returns the figure. `groups`: for each section, the numbers of its runs. `surfaces`: for each section, the
-    surface that the tools touch, or None."""
+    """Returns the figure. `groups`: for each cross-section of a scene, the indices in `runs` of its runs. `surfaces`:
+    for each cross-section, the surface that the tools touch, or None."""
     entries = legend_of(shown)
     columns = legend_columns(list(entries), sheet.width)
     head = 0.3 + (LINE * math.ceil(len(entries) / columns) if len(runs) > 1 else 0)
@@ -134,7 +134,7 @@ def width_of(rows, sheet):
 
 
 def draw_scenes(axes, groups, runs, shown, samples, surfaces, width):
-    """Draws the scene of each group of runs in one section. `width`: width of a panel [inch]."""
+    """Draws one cross-section of the scene for each group of runs. `width`: width of a panel [inch]."""
     for ax, group, surface in zip(axes, groups, surfaces):
         of_samples, of_looks = ([entries[i] for i in group] for entries in (samples, shown))
         draw_section(ax, of_samples, of_looks, profile_of(runs[group[0]]), surface)
@@ -144,7 +144,7 @@ def draw_scenes(axes, groups, runs, shown, samples, surfaces, width):
 
 
 def texts_of(groups, runs, surfaces):
-    """Returns a text for each section that explains its marks."""
+    """Returns, for each cross-section, a text that explains its marks."""
     texts = []
     for group, surface in zip(groups, surfaces):
         phrases = [PATH_MARKS, *surface_text(surface)]
@@ -155,8 +155,8 @@ def texts_of(groups, runs, surfaces):
 
 
 def explain_scenes(figure, axes, texts, sheet, rows):
-    """Writes the explanation of the marks below each section, or only once if all sections have the same
-    explanation."""
+    """Writes the explanation of the marks below each cross-section. An explanation that equals the explanation of the
+    first cross-section is not repeated. If the sheet has a fixed height, one explanation stands below all panels."""
     if sheet.height and texts:
         every = dict.fromkeys("; ".join(texts).split("; "))
         figure.supxlabel(fill("; ".join(every), int(sheet.width / LETTER)), fontsize=7)
@@ -168,8 +168,8 @@ def explain_scenes(figure, axes, texts, sheet, rows):
 
 
 def scene_groups(runs, samples):
-    """Returns the groups of runs that share a section, as lists of run numbers. A run joins a group of runs of the same
-    scene if its bounding box is near the bounding box of the group, by are_near()."""
+    """Returns the groups of runs that share a cross-section, as lists of indices in `runs`. A run joins a group of runs
+    of the same scene if its bounding box is near the bounding box of the group, by are_near()."""
     groups = []
     for i, (run, of) in enumerate(zip(runs, samples)):
         box = box_of(of)

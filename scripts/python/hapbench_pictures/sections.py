@@ -1,4 +1,4 @@
-"""Sections with texts and tables of the page about runs."""
+"""Builds those sections of the page about runs that consist of texts and tables."""
 import json
 from pathlib import Path
 
@@ -175,8 +175,9 @@ def commands_section(runs, words):
 
 
 def note_on_modules(runs):
-    """Returns a note that the commands need the paths of the modules. A summary records only the name of a module that
-    has a force law."""
+    """Returns a note that asks the reader to replace the names of modules in the commands by their paths, because a
+    summary records the name but not the path of a module with a force law. Returns an empty text if no name must be
+    replaced."""
     files = (Path(file) for run in runs for file in module_files(run))
     names = sorted({file.name for file in files if len(file.parts) == 1})
     if not names:
@@ -185,8 +186,8 @@ def note_on_modules(runs):
 
 
 def module_options(runs):
-    """Returns the options --module that load the modules of runs, each module once: force laws, and sources of
-    contacts."""
+    """Returns the options --module that load the modules of the runs, each module once. A module contains a force law
+    or a source of contacts."""
     files = dict.fromkeys(file_word(file) for run in runs for file in module_files(run))
     return "".join(f" --module {shell_line(file)}" for file in files)
 

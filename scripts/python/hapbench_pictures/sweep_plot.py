@@ -1,5 +1,6 @@
-"""Picture of a sweep: a metric over one varied field, or over two fields as curves or as a heat map. A sample, or more
-than two fields, is drawn as points over each field, with the influence of each field."""
+"""Picture of a sweep: a metric over one varied field, or over two fields as curves or as a heat map. A sweep that
+samples the ranges of several fields, or a sweep over more than two fields, is drawn as points over each field. For a
+sampled sweep, the picture also states the influence of each field."""
 import textwrap
 from dataclasses import dataclass
 
@@ -24,7 +25,7 @@ FAILURES = ("diverges", "error")
 NO_VALUE = {"facecolor": "#F4F4F4", "edgecolor": "#C8C8C8", "lw": 0.5}
 WIDTH = 100  # width of the printed table [characters]
 MAX_COSINES, ROWS_PER_COSINE = 6, 10
-# Smallest number of rows of a sample for which the influence of a field is computed.
+# Smallest number of rows of a sampled sweep for which the influence of a field is computed.
 MIN_ROWS = 20
 # If the ratio of the largest to the smallest value of a positive metric exceeds this number, the Sobol index of the
 # logarithm is also computed.
@@ -304,8 +305,8 @@ def on_grid(over, values):
 
 
 def sensitivity_table(sweep):
-    """Returns the lines of a printed table: the influence of each field of a sample, largest first, and the method.
-    Returns an empty list for sweeps that are not drawn as points."""
+    """Returns the lines of a printed table: the influence of each field of a sampled sweep, largest first, and the
+    method. Returns an empty list for a sweep that is not sampled or is not drawn as points."""
     if not (sweep.sampled and sweep.is_cloud):
         return []
     found, runs = sweep.sensitivities(), np.isfinite(sweep.values).sum()

@@ -26,8 +26,8 @@ QUANTITIES = {
 
 class Trials:
     """Trials of one law for which the vibration was computed. `values`: the QUANTITIES of each trial, in the units of
-    the plot. `feasible`: for each trial, True if the trial is
-    feasible. `chosen`: for each trial, True if the trial is the recommended trial."""
+    the plot. `feasible`: for each trial, True if the trial is feasible. `chosen`: for each trial, True if the trial is
+    the recommended trial."""
 
     def __init__(self, law, trials):
         self.name = law["algorithm"]
@@ -69,7 +69,8 @@ def draw_tune(files, sheet=SHEET):
 
 
 def bounds_of(laws):
-    """Returns for each of QUANTITIES the values of --bound. They are empty for a table of an older version."""
+    """Returns for each of QUANTITIES the list of its bounds from --bound. All lists are empty if the table does not
+    have the column `bounds`, which older versions did not write."""
     given = json.loads(laws[0].get("bounds") or "{}")
     return [
         [factor * value for value in given.get(name, {}).values()]

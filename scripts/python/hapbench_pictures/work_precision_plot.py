@@ -36,9 +36,10 @@ MODEL_ERRORS, MODEL_TIMES = "convergence_model.csv", "convergence_model_timing.c
 
 def draw_model_errors(files, sheet=SHEET):
     """Draws the errors of laws against a reference over the time of a step. Panels show the errors of the force's
-    direction, of the force and, where a hand moves the tool, of the tip's position. A mark is the median; a line
-    reaches to the 99.9th percentile. A grey line is the deadline of a step. A hollow mark is a law that renders by the
-    constraints of the reference. Marks are not joined, because laws have no order. Laws whose runs failed are omitted.
+    direction, of the force and, where a hand moves the tool, of the tip's position. A mark is at the median of the step
+    times; a line reaches from the mark to their 99.9th percentile. A grey line is the deadline of a step. A hollow mark
+    is a law that has the same constraints as the reference. Marks are not joined, because laws have no order. Laws
+    whose runs failed are omitted.
     """
     errors, times = files.records(MODEL_ERRORS), files.records(MODEL_TIMES)
     median, p99_9 = (1e6 * numbers(times, name) for name in ("step_median_s", "step_p99_9_s"))

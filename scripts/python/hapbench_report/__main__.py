@@ -37,8 +37,8 @@ REPLAYED = (
         ("original_averaging", "shaped_stiffness", "summation", "mean", "exact_shaping"),
     ),
 )
-# Settings that record every step, for the sound and the peaks. They remove the expectations, which apply only to the
-# scenario's own algorithm.
+# Settings that record every step, because the sound and the drawn peaks of the replay need every step. The settings
+# remove the expectations, which apply only to the scenario's own algorithm.
 RECORDED = (
     "record.contacts=true",
     "record.stiffness_tensor=true",

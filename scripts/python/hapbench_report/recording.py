@@ -1,5 +1,5 @@
-"""A recorded run for the replay: the tool, the shown rows, and the times of extreme values. Also provides the rendered
-force above 30 Hz, which a hand feels as vibration, as a sound."""
+"""A recorded run for the replay: the tool, the shown rows, and the times of extreme values. Also provides a sound:
+the part of the rendered force above 30 Hz, which a hand feels as vibration."""
 import base64
 import math
 import sys
@@ -46,7 +46,7 @@ ARC_POINTS = 48
 SPANS = 500
 SETTLING_S = 0.05
 CUTOFF_HZ = 30.0
-# Largest number of rows of a sound: two minutes at 2 kHz, which take half a megabyte in the page.
+# Largest number of recorded rows in a sound: two minutes at 2 kHz, which take half a megabyte in the page.
 LONGEST = 1 << 18
 MIN_SETTLED_S = (
     1 / 30
@@ -56,8 +56,8 @@ MIN_SETTLED_S = (
 def tool_profile(scenario, summary):
     """Returns the tool as a solid of revolution: pairs (s, r) [m] of the position s along the axis, relative to the tip
     centre, and the radius r there, from the far end to the tip. The profile of a cylinder follows from the scenario;
-    the profile of another tool is in the run's summary. For a mesh it is the silhouette. Returns None if neither the
-    summary nor the scenario determines the profile."""
+    the profile of another tool is in the run's summary. The profile of a mesh is its silhouette. Returns None if
+    neither the summary nor the scenario determines the profile."""
     outline = at(summary, "/tool/outline_m")
     if outline is not None:
         pairs = (
@@ -172,14 +172,14 @@ class Recording:
         tensors = self.rows_of("stiffness_tensor", TENSOR_COLUMNS)
         self.tensors = (
             [of_row[0] for of_row in tensors] if all(tensors) else None
-        )  # None if they were not recorded
+        )  # None if the stiffness tensors were not recorded
         self.contacts = self.rows_of(
             "contacts", (*CONTACT_COLUMNS, *NORMAL_COLUMNS)
-        )  # for every shown row, with their normals
+        )  # contacts of every shown row, with their normals
 
     def rows_of(self, table, columns):
-        """Returns for each shown row the list of its rows in another table, in the order of the file. All lists are
-        empty if the table was not recorded."""
+        """Returns for each shown row the list of the rows of `table` with the same step, in the order of the file. All
+        lists are empty if the table was not recorded."""
         steps = self.columns["step"][self.shown]
         rows = {step: [] for step in steps.tolist()}
         if table in self.run.tables:
@@ -212,8 +212,8 @@ class Recording:
 
 
 def base64_of(code, values):
-    """Encodes numbers as base64 text, little-endian. Raises OverflowError for a number outside of the range of the
-    array's type."""
+    """Encodes numbers as base64 text, little-endian. `code`: type of the numbers, as for Python's array. Raises
+    OverflowError for a number outside of the range of this type."""
     packed = array(code, values)
     if sys.byteorder == "big":
         packed.byteswap()
@@ -221,10 +221,10 @@ def base64_of(code, values):
 
 
 def sound(columns):
-    """Returns the samples of a sound for the page, or None if the rate of the samples is too low or their times do not
-    increase. The samples are the force
-    above 30 Hz, projected on the direction in which this force is strongest. The magnitude of the force would hide a
-    change of sign."""
+    """Returns the sound of a run for the page. Its samples are the rendered force above 30 Hz, projected on the
+    direction in which this filtered force is strongest. The magnitude of the force would hide a change of sign. Returns
+    None if there are fewer than three rows, if their times do not increase, if their rate is below 120 Hz, or if the
+    filtered force is zero or too large."""
     times = columns["time_s"][:LONGEST]
     if len(times) < 3 or not times[-1] > times[0]:
         return None

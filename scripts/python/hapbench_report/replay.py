@@ -1,6 +1,6 @@
 """Interactive replay of recorded runs: its data and its markup. The replay shows at most as many recorded rows and
-surface points as a browser can draw in a frame. The numbers are encoded as base64: the numbers of contacts as 16-bit
-integers, the numbers of rows in single precision."""
+surface points as a browser can draw in a frame. The data are encoded as base64: contacts as 16-bit integers, rows in
+single precision."""
 import json
 import subprocess
 import tempfile
@@ -50,7 +50,7 @@ class Surface:
 
 
 def replays(runs, labels):
-    """Returns one packed scene for each combination of environment and tool that occurs in the runs."""
+    """Returns one scene, encoded for the page, for each combination of environment and tool that occurs in the runs."""
     scenes = {}
     for run, label in zip(runs, labels):
         key = json.dumps(
@@ -87,13 +87,13 @@ def scene(i, runs, labels):
     try:
         return about | packed_scene(recordings, shell, labels)
     except (ValueError, OverflowError) as error:
-        # Numbers that hapbench never writes, such as empty cells or normals far from unit length.
+        # The files contain values that hapbench never writes, such as empty cells or normals far from unit length.
         raise InputError(f"{runs[0].folder}: not what hapbench records: {error}") from error
 
 
 def packed_scene(recordings, shell, labels):
-    """Returns the packed scene of these recordings. `shell`: surface points with their normals; all of these points are
-    drawn. `labels`: name of each recording."""
+    """Returns the scene with these recordings, encoded for the page. `shell`: surface points with their normals; all of
+    these points are drawn. `labels`: name of each recording."""
     scale = float(np.abs(shell[:, :3]).max(initial=0.0)) / 32767 or 1.0
     scenario = recordings[0].run.scenario
     orientation = at(scenario, "/motion/orientation") or {}
@@ -154,8 +154,8 @@ def packed_recording(recording, label):
 
 
 def points_of(run, recordings):
-    """Returns (points of the surface, remark about the points). The program provides the points. If it does not, the
-    recorded contact points are used."""
+    """Returns (drawn points of the surface, note about the drawing). The points come from the program hapbench. If it
+    provides no points, the recorded contact points are used."""
     surface, failure = shell(run)
     every = surface and surface.points
     if every is None:
@@ -233,8 +233,8 @@ def shell_of(scenario):
         )
     with tempfile.TemporaryDirectory(prefix="hapbench-report-") as scratch:
         file = Path(scratch) / "shell.csv"
-        # Replaces the algorithm, because it may belong to a module that is not available. The surface does not depend
-        # on it.
+        # Replaces the algorithm, because the algorithm may belong to a module that is not available. The surface does
+        # not depend on the algorithm.
         plain = ["--set", "rendering.algorithm=mean", "--set", "rendering.parameters={}"]
         line = [program, "validate", str(scenario), "--points", str(file), "--json", *plain]
         try:

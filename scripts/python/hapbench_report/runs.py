@@ -34,7 +34,7 @@ class Run(results.Run):
         return number_or_none(self.metrics.get(key))
 
     def tolerance(self, section, key):
-        """Returns by how much a metric may be wrong at most, in the unit of the metric. Returns None if this is not
+        """Returns the largest possible error of a metric, in the unit of the metric. Returns None if this error is not
         known."""
         return number_or_none(
             self.summary.get("tolerances", {}).get(
@@ -44,7 +44,8 @@ class Run(results.Run):
 
     @cached_property
     def sections(self):
-        """Returns the metrics of summary.json as a dict by section. columns.json documents the sections."""
+        """Returns the sections of summary.json that contain metrics, as a dict: "metrics", and each section with an
+        entry in columns.json."""
         file = self.folder / "columns.json"
         documented = (
             {entry["name"] for entry in results.read_json(file).get("summary.json", ())}

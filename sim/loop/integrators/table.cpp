@@ -36,7 +36,7 @@ double leapfrog_margin(const SpringDamper& s) {
 /// Stability on one spring-damper, with k = K dt^2 / M, b = B dt / M and c = 1 - b/2: b < 4 and k (1 + c) < 4 (1 +
 /// c^2). For B = 0 the condition is k < 4, as for leapfrog. For K = 0 the condition is b < 4, twice the limit of
 /// leapfrog. Symplectic on undamped springs: the energy oscillates by up to the fraction k/4 and does not drift.
-/// Needs two forces in each step, because the next step needs the force at the final velocity.
+/// Evaluates the force twice in each step, because the next step needs the force at the final velocity.
 void velocity_verlet(ToolState& tool, const Vec3& force, double mass, double dt, ForceField& field, double) noexcept {
   const Vec3 half = tool.velocity + force / mass * (0.5 * dt);
   tool.pose.position += half * dt;
@@ -79,7 +79,7 @@ void rk4(ToolState& tool, const Vec3& force, double mass, double dt, ForceField&
 /// such an event, the energy error of other explicit integrators is proportional to the step size; the energy error
 /// of this method is proportional to the tolerance. f_in is held over the step.
 ///
-/// Each event costs about 10 log2(dt / tolerance) forces. After kMaxIntervals intervals, the step continues
+/// Each event costs about 10 log2(dt / tolerance) force evaluations. After kMaxIntervals intervals, the step continues
 /// without locating events.
 void event(ToolState& tool, const Vec3& force, double mass, double dt, ForceField& field, double tolerance) noexcept {
   constexpr int kMaxIntervals = 10'000;
@@ -112,8 +112,8 @@ void event(ToolState& tool, const Vec3& force, double mass, double dt, ForceFiel
   }
 }
 
-/// B dt / M at which the method becomes unstable: the end of the stability region |1 + z + z^2/2 + z^3/6 +
-/// z^4/24| <= 1 on the negative real axis.
+/// B dt / M at which rk4 becomes unstable on a damper without a spring: the end of the stability region
+/// |1 + z + z^2/2 + z^3/6 + z^4/24| <= 1 on the negative real axis.
 constexpr double kRk4DamperLimit = 2.785293563405282;
 
 // The implicit integrators solve for the velocity at the end of the step with a linearised force, f(p + dp, v + dv) =

@@ -81,7 +81,7 @@ struct LinearForce {
 /// step.
 Eigen::Matrix<double, 6, 9> step_map(const IntegratorEntry& integrator, double M, double dt, const LinearForce& force);
 
-/// The linear system that defines the stability of an integrator (thesis A.3): one spring-damper on a mass, M
+/// The linear system that defines the stability of an integrator (thesis section A.3): one spring-damper on a mass, M
 /// x'' = -lambda (K x + B x'). Each step is a linear map of (x, v).
 struct SpringDamper {
   double K = 0.0;       ///< stiffness [N/m]

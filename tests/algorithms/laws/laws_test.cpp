@@ -11,11 +11,11 @@
 namespace hapbench::laws_test {
 namespace {
 
-// Relative rounding error of sums of n <= 300 products: below 2 n eps times the sum of magnitudes.
+// Rounding error of a sum of n <= 300 products, divided by the sum of the magnitudes of the products: below 2 n eps.
 constexpr double kRounding = 600 * std::numeric_limits<double>::epsilon();
 
-/// Checks the weights, force and tensor of the law on random sets of all distributions. The weights must be c(n); force
-/// and tensor are computed from them with dense matrices.
+/// Checks the weights, force and tensor of the law on random contacts from all gradient distributions. All weights of n
+/// contacts must be `c_of_n`(n). The expected force and tensor are computed from these weights with dense matrices.
 void expect_constant_weights(const char* name, double (*c_of_n)(double), const RenderingConfig& config = {}) {
   test::for_random_contacts([&](ContactBuffer contacts, const char* family) {
     const LawForce force = make_law(name, config)->evaluate(contacts);
@@ -179,8 +179,8 @@ RenderingConfig config_of(double coupling, double saturation = 1e9) {
   return config;
 }
 
-// Returns the rounding error: sums of n <= 300 terms, amplified by the condition number of K_vc I + K S, which is at
-// most 1 + n K / K_vc.
+// Returns the rounding error of sums of n <= 300 terms, amplified by the condition number of K_vc I + K S_sum, which is
+// at most 1 + n K / K_vc.
 double rounding(const test::Dense& dense, double coupling) {
   const double n = static_cast<double>(dense.n());
   return 4 * n * kEps * (1 + n * kK / coupling);
@@ -238,8 +238,9 @@ TEST(StaticCoupling, BalancesACopyBetweenTheCouplingAndTheContactsItIsStillIn) {
         for (Eigen::Index i = 0; i < pressed.size(); ++i)
           if (pressed[i] * dense.d[i] <= 0.0) pressed[i] = 0.0;
         const Vec3 pushed = -kK * (dense.U * pressed);
-        // The law finds the equilibrium to 1e-13 K |pressed|. The inverse divides by 1 - (f / F)^2, which loses the
-        // digits that saturation removes. The contacts multiply the remaining error by up to n K / K_vc.
+        // The law finds the equilibrium to 1e-13 K |pressed|. displacement() computes the difference 1 - (f / F)^2,
+        // which loses digits if the force f is close to the saturation F. The contacts multiply the error of the
+        // displacement by up to n K / K_vc.
         const double kept = 1.0 - (felt / saturation).squaredNorm();
         const double n = static_cast<double>(dense.n());
         const double lost = 1e-15 / kept * (1.0 + n * kK / coupling) * felt.norm() + 1e-12 * kK * dense.d.norm();
@@ -249,16 +250,17 @@ TEST(StaticCoupling, BalancesACopyBetweenTheCouplingAndTheContactsItIsStillIn) {
   });
 }
 
-/// Returns the rounding error of S, and of the force relative to K times the sum of depths: sums of n <= 300 terms,
-/// amplified by the condition number of eps I + S_sum, at most 1 + n / eps, and by the inverse, at most 1 / eps.
+/// Returns the rounding error of S, which is also the rounding error of the force divided by K times the sum of the
+/// depths. The error of sums of n <= 300 terms is amplified by the condition number of eps I + S_sum, at most 1 + n /
+/// eps, and by the norm of the inverse of this matrix, at most 1 / eps.
 double rounding_of(const test::Dense& dense, double regularisation) {
   const double n = static_cast<double>(dense.n());
   return 4 * n * kEps * (1 + n / regularisation) * (1 + 1 / regularisation);
 }
 
 TEST(LeastSquares, IsVirtualCouplingOfPenaltySpringsOverEps) {
-  // Penalty springs K / eps act in series with a coupling spring K. S of a coupling is in units of the stiffness of its
-  // penalty springs.
+  // Penalty springs of stiffness K / eps act in series with a coupling spring of stiffness K. virtual_coupling returns
+  // its S in units of the stiffness K / eps of its penalty springs.
   test::for_random_contacts([](ContactBuffer contacts, const char* family) {
     for (const double eps : {1e-4, 0.01, 1.0, 10.0}) {
       RenderingConfig resolved = config_of(kK), in_series = resolved;

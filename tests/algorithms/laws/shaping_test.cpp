@@ -20,10 +20,11 @@
 namespace hapbench::shaping_test {
 namespace {
 
-// Without iterations, 20 roundings of a tensor with a norm below n = 100 give an error of 2e-13 in the ratios, which
-// are at least 1. With iterations, the norm of the tensor is about 1, and a ratio has an error of some 1e-15. An update
-// of the weights does not amplify relative errors: in logarithms it is I minus a matrix with eigenvalues in [0, 1].
-// After 20 updates, the errors have at most added up.
+// Relative tolerance of the weights and stiffness ratios. Without iterations, 20 roundings of a tensor with a norm
+// below n = 100 give an error of 2e-13 in the ratios, which are at least 1. With iterations, the norm of the tensor is
+// about 1, and a ratio has an error of some 1e-15. An update of the weights does not amplify relative errors: in
+// logarithms of the weights, its derivative is I minus a matrix with eigenvalues in [0, 1]. Therefore the error after
+// 20 updates is at most the sum of the errors of the updates.
 constexpr double kTolerance = 1e-12;
 
 ContactBuffer random_contacts(const test::GradientDistribution& family, Random& random) {
@@ -149,8 +150,9 @@ const std::pair<const char*, std::vector<std::uint64_t>> kHardSets[] = {
     // stops at a distance of 1e-9 from the optimum.
     {"nearly_parallel", {10976, 534807, 863432}},
     {"clusters", {2020649}},
-    // For these sets, the rounding of a_i . w is small because |w| is small. A tolerance chosen for |w| = 1/eps ignores
-    // gradients and stops at a distance of 0.1 from the optimum.
+    // For these sets, the dual point w has a small norm, so the rounding error of the products a_i . w with the tensors
+    // a_i = u_i u_i^T is small, too. A solver whose tolerance is chosen for |w| = 1/eps ignores gradients and stops at
+    // a distance of 0.1 from the optimum.
     {"mixture", {1943, 3501, 90246, 118655, 184124, 189569}},
     // For these sets, contacts become inactive one by one.
     {"clusters", {166086, 1300902, 2093822}},

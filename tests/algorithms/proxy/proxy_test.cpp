@@ -35,8 +35,8 @@ double violation(const ContactBuffer& contacts, std::size_t i, const Vec3& x) {
   return contacts.depth[i] + contacts.gradient(i).dot(x);
 }
 
-/// Random contacts and a wanted move. At least one move satisfies all contacts. About 30 % of the contacts hold with
-/// equality for this move.
+/// Random contacts and a wanted move. The contacts are built around a random move, `allowed`, which satisfies all of
+/// them, about 30 % with equality.
 struct Problem {
   ContactBuffer contacts;
   Vec3 wanted;
@@ -113,8 +113,9 @@ TEST(NearestAllowed, SharesWhatOppositeWallsLackInEqualSquares) {
     EXPECT_NEAR(allowed.move.x(), x, 1e-4 * 1e-16 * (N + M) / kCompromiseEpsilon);
     EXPECT_NEAR(allowed.move.y(), wanted.y(), 1e-12);
     EXPECT_NEAR(allowed.move.z(), wanted.z(), 1e-12);
-    // The weight of each contact is its violation. `share` divides the remainder of t - x among all N + M contacts, so
-    // that the sum below is t - x up to epsilon.
+    // The weight of each contact is its violation by the allowed move x. The gradients times the weights do not sum to
+    // t - x, where t is the wanted move. `share` divides the remainder of t - x among all N + M contacts, so that the
+    // sum below is t - x up to epsilon.
     Vec3 sum = Vec3::Zero();
     for (std::size_t i = 0; i < contacts.size(); ++i) {
       EXPECT_NEAR(contacts.weight[i], i < n ? a + x : b - x, 1e-10);
@@ -153,8 +154,9 @@ TEST(NearestAllowed, FindsTheLeastSquaresOfContradictingContacts) {
   EXPECT_GT(contradicting, 1'000);
 }
 
-/// Checks that the multipliers of a compromise are the derivatives of the stored energy 1/2 |x - t|^2 + 1/2 sum w^2
-/// with respect to the depths. Also checks that t - x is the derivative of this energy with respect to t.
+/// Checks the stored energy 1/2 |x - t|^2 + 1/2 sum w^2 of a compromise, with the wanted move t, the allowed move x and
+/// the weights w of the contacts. The multipliers must be the derivatives of this energy with respect to the depths,
+/// and t - x its derivative with respect to t.
 TEST(NearestAllowed, StoresInACompromiseWhatItsMultipliersTakeIn) {
   const std::vector<Vec3> gradients = {Vec3::UnitX(),  Vec3(0.6, 0.8, 0.0),  Vec3(0.6, -0.8, 0.0),
                                        -Vec3::UnitX(), Vec3(-0.8, 0.0, 0.6), Vec3(0.0, 0.6, -0.8)};
@@ -170,7 +172,8 @@ TEST(NearestAllowed, StoresInACompromiseWhatItsMultipliersTakeIn) {
   };
   ContactBuffer contacts = test::contacts_of(gradients, depths);
   const AllowedMove here = nearest_allowed(wanted, contacts);
-  // Take central differences of a function that is quadratic while the same walls are violated; epsilon is 1e-6.
+  // Take central differences, which are exact while the same walls are violated, because the energy is then quadratic.
+  // The multipliers equal the derivatives up to the order of epsilon = 1e-6.
   constexpr double h = 1e-8, kLengths = 3e-4;
   for (std::size_t i = 0; i < gradients.size(); ++i) {
     std::vector<double> more = depths, less = depths;
@@ -380,8 +383,9 @@ TEST(ProxyRendering, HoldsAToolThatIsPulledThroughAPlane) {
 constexpr double kHalfWidth = 0.0005;
 /// Largest motion [m] in one step of a proxy that starts inside: 40 half widths per second.
 const double kRecovery = 40.0 * kHalfWidth * Scene{}.dt;
-/// Factor by which a move of the proxy may exceed kRecovery. The limit is exact only for moves in proportion to the
-/// depths; points that the proxy has not entered make the proportion approximate.
+/// Factor by which a move of the proxy may exceed kRecovery. The proxy shortens its move by reducing the depths of the
+/// points inside it. The limit would be exact if the move were proportional to these depths. Points near the proxy, but
+/// not inside it, make the proportion approximate.
 constexpr double kNearly = 1.1;
 
 TEST(ProxyRendering, LeavesAPlaneItStartsInSlowlyAndThenForGood) {

@@ -15,10 +15,10 @@
 #include "sim/mesh/marching_cubes.hpp"
 #include "sim/tool/cylinder.hpp"
 
-// Tests predictions about the force of a 6-DOF device, which is the reference for the force of a 3-DOF device, each
-// with its closed form. Symbols as in algorithms/six_dof: F is the force of the 6-DOF device and f the force of the
-// 3-DOF device. K_t and K_r are the translational and rotational stiffness of the coupling, and K_h and K_phi are the
-// translational and rotational stiffness of the hand. K' and K_r' are the translational and rotational stiffness of
+// Tests predictions about the force of a 6-DOF device, which is the reference for the force of a 3-DOF device. Each
+// prediction has a closed form. Symbols as in algorithms/six_dof: F is the force of the 6-DOF device and f the force of
+// the 3-DOF device. K_t and K_r are the translational and rotational stiffness of the coupling, and K_h and K_phi are
+// the translational and rotational stiffness of the hand. K' and K_r' are the translational and rotational stiffness of
 // coupling and hand in series. c is the distance from the force point to the grip, l the distance from the force point
 // to the contact, both positive towards the tip.
 namespace hapbench::six_dof {
@@ -41,8 +41,8 @@ RenderingConfig proxy(double stiffness, double rotation) {
   return config;
 }
 
-/// Returns the pose that a hand intends when it displaces an upright drill and tilts it about +y, so that the tip moves
-/// towards -x.
+/// Returns the pose that a hand intends for a drill that is tilted from upright by `tilt` [rad] about +y, so that the
+/// tip moves towards -x. The point of the drill's axis at the distance `pivot` [m] behind the tip lies at `tip` [m].
 Intent intent_of(const HandAndCoupling& springs, const Vec3& tip, double tilt, double pivot = 0.0) {
   Intent intent;
   intent.orientation = turn_by({0.0, tilt, 0.0});
@@ -522,8 +522,8 @@ TEST(SixDofDevice, LeavesASaddle) {
 }
 
 // Checks two points 1 um apart, which form a notch. The drill rests in the notch at any force, because each point
-// blocks the motion in one direction. Their normals differ by only 2e-3 rad, and the energy decreases again beyond a
-// fraction of a micrometre.
+// blocks the motion in one direction. The normals of the points differ by only 2e-3 rad. The energy increases only for
+// sideways displacements of up to a fraction of a micrometre, and decreases for larger displacements.
 TEST(SixDofDevice, RestsInAShallowNotch) {
   const double angle = 1e-3;
   std::vector<SurfacePoint> points;

@@ -88,7 +88,7 @@ TEST(ActuatorLimitedPassivity, WithoutLimitsOwesNothing) {
       if (f.dot(v) * kDt <= before) {
         ASSERT_EQ(given, f);  // a passive force is unchanged
       }
-      // Damping along the force is sufficient here, so there is no damping perpendicular to it.
+      // Damping along the force is sufficient here, so there is no damping perpendicular to the force.
       ASSERT_LE(given.cross(f).norm(), 1e-9 * f.squaredNorm());
     }
   }

@@ -32,7 +32,7 @@ class Watch final : public Observer {
   double smallest = std::numeric_limits<double>::infinity();
   double turnover = 0.0;
   double force_max = 0.0;
-  /// Returns a bound of the rounding error of one step [J], from the scale s, the force and its work.
+  /// Returns a bound of the rounding error of one step [J].
   double rounding() const { return 50 * kEpsilon * turnover; }
 
  private:
@@ -60,8 +60,9 @@ SimulationParts controlled(SimulationParts parts, const RenderingConfig& config 
   return parts;
 }
 
-/// Checks any law under any hand: renders forces of all sizes that do not depend on the tool, under a hand with random
-/// forces. The observed energy must stay above zero and the force within its limit.
+/// Checks that the controller keeps any law under any hand passive. The law renders random forces that are independent
+/// of the tool; their largest magnitude is 1e-3 … 1e5 N. The force of the hand is a sine of random amplitude and period
+/// along each axis. The observed energy must stay above zero and the rendered force within its limit.
 TEST(PassivityController, KeepsAnyForceUnderAnyHandPassive) {
   for (std::uint64_t seed = 1; seed <= 200; ++seed) {
     SCOPED_TRACE(seed);
@@ -112,8 +113,9 @@ class Lever final : public ForceAlgorithm {
   Vec3 moment_ = Vec3::Zero();
 };
 
-/// Motion whose tilt is random in 0 … 0.01 rad in each step. The first tilts, 0, 0.005 and 0, change the rotation by
-/// 0.01 rad. Later changes are at most 0.02 rad, so no change exceeds twice the largest earlier change.
+/// Motion whose tilt is random in 0 … 0.01 rad in each step. The rotation from step to step is at first 0.005 rad and
+/// then -0.005 rad, which is a change of the rotation by 0.01 rad. Later, the rotation changes by at most 0.02 rad from
+/// step to step. Therefore no change of the rotation exceeds twice the largest earlier change.
 class Trembling final : public Motion {
  public:
   explicit Trembling(std::uint64_t seed) {

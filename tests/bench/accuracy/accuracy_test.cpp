@@ -56,8 +56,9 @@ TEST(Integrators, TellWhichKeepTheEnergyOfUndampedSprings) {
   const auto of = [&](const char* integrator, const char* what) {
     return value(panel, std::string("integrators/") + integrator + " ", what);
   };
-  // At 1 ms, w dt is at most sqrt(2 K dt^2 / M) = 0.45 (lambda_max = 2). The energy of leapfrog oscillates by up to w
-  // dt / 2 about a constant value; a step of rk4 loses (w dt)^6 / 72.
+  // At the time step dt = 1 ms, the largest angular frequency w of the springs gives w dt = sqrt(2 K dt^2 / M) = 0.45
+  // (lambda_max = 2). The energy of leapfrog oscillates about a constant value by up to w dt / 2 of this value. A step
+  // of rk4 loses (w dt)^6 / 72 of the energy.
   EXPECT_GT(of("leapfrog", "undamped_energy_swing_relative"), 0.05);
   EXPECT_LT(of("leapfrog", "undamped_energy_swing_relative"), (1.0 + 0.225) / (1.0 - 0.225) - 1.0);
   EXPECT_LT(of("rk4", "undamped_energy_gain_relative"), 0.0);
@@ -101,8 +102,8 @@ TEST(Merging, DependsOnTheOrderOfTheContactsOnlyWhereTheyAreReduced) {
     const accuracy::Errors errors = setting.errors();
     const bool reduced = setting.name.find("reduced") != std::string::npos;
     EXPECT_EQ(errors["kept_mean"] < errors["contacts_mean"], reduced) << setting.name;
-    // Another order changes sums of up to a thousand contacts by rounding. exact_shaping computes weights to rounding
-    // divided by epsilon.
+    // Another order of the contacts changes sums over up to a thousand contacts only by rounding. exact_shaping
+    // computes weights with the error of rounding divided by epsilon.
     EXPECT_EQ(errors["order_spread_relative"] > 1e-9, reduced) << setting.name;
     if (setting.name.starts_with("merging/exact_shaping of all")) {
       EXPECT_EQ(errors["force_error_relative"], 0.0);

@@ -27,7 +27,7 @@ constexpr double kThresholds[] = {0.9, 0.95, 0.99, 0.995, 0.999, 0.9999};
 constexpr double kMergedSpacings[] = {0.0001, 0.00005, 0.000025};
 constexpr int kOrders = 4;
 
-/// A force law, and the reduction of the contacts before it; no reduction if empty.
+/// A force law. If `reduction` has a value, the contacts are reduced before the law is evaluated.
 struct Method {
   std::string name;
   const char* law;

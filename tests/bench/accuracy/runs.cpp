@@ -209,8 +209,8 @@ Panel algorithms(const Scenario& drill) {
   return panel;
 }
 
-// Panels of a free tool whose contacts are found too late: only in some steps, or at an arbitrary time between two
-// steps.
+// Panels of a free tool whose contacts are found too late, either because contacts are searched only in some steps, or
+// because a contact begins at a time between two steps.
 
 namespace {
 

@@ -5,9 +5,9 @@
 
 #include "tests/bench/peers/contact_library.hpp"
 
-/// Bullet in double precision: its cylinder against a quantised tree of boxes over static triangles, in millimetres
-/// because its margins and thresholds assume lengths of about 1. Each triangle that the cylinder meets is a contact,
-/// with the depth that GJK and EPA find for the pair.
+/// Bullet in double precision. Its cylinder is tested against static triangles in a quantised tree of boxes. Lengths
+/// are in millimetres, because Bullet's margins and thresholds assume lengths of about 1. Each triangle that the
+/// cylinder meets is a contact, with the depth that GJK and EPA find for cylinder and triangle.
 namespace hapbench::bench {
 namespace {
 

@@ -4,9 +4,9 @@
 
 #include "tests/bench/peers/contact_library.hpp"
 
-/// FCL: its cylinder against triangles in a tree of oriented boxes with rectangle swept spheres, its default for
-/// meshes. Each triangle that the cylinder meets is a contact. Its depth is the length of the shortest translation that
-/// separates triangle and cylinder, as libccd approximates it (EPA).
+/// FCL. Its cylinder is tested against triangles in a tree of oriented boxes with rectangle swept spheres, which is
+/// FCL's default for meshes. Each triangle that the cylinder meets is a contact. The depth of the contact is the length
+/// of the shortest translation that separates triangle and cylinder, as libccd approximates it (EPA).
 namespace hapbench::bench {
 namespace {
 

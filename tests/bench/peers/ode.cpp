@@ -4,8 +4,8 @@
 
 #include "tests/bench/peers/contact_library.hpp"
 
-/// ODE: its triangle mesh (OPCODE) against its cylinder, in millimetres. ODE returns contacts until the given array is
-/// full.
+/// ODE. Its cylinder is tested against its triangle mesh (OPCODE). Lengths are in millimetres. ODE returns contacts
+/// until the given array is full.
 namespace hapbench::bench {
 namespace {
 

@@ -311,9 +311,10 @@ std::string summary_without_work(Json summary) {
   return summary.dump();
 }
 
-// Checks that results do not change by a byte in another process, from the scenario that the run wrote, with the scalar
-// build, and with brute force instead of skips. Scenarios of many steps are shortened. Only every 16th scenario is
-// tested, except in a soak test, because brute force is slow.
+// Checks that the second run of a scenario gives the same bytes as the first run. The second run is made by another
+// process of the scalar build, with brute force instead of skips, from the effective scenario that the first run wrote.
+// Scenarios of many steps are shortened. Only every 16th scenario is tested, except in a soak test, because brute force
+// is slow.
 TEST_F(BundledScenarios, GiveTheSameBytesInTheScalarBuildWithoutSkipsFromTheirEffectiveScenarios) {
   const fs::path first = *directory_ / "first", again = *directory_ / "again",
                  effective = *directory_ / "effective" / "scenes";
@@ -345,8 +346,8 @@ TEST_F(BundledScenarios, GiveTheSameBytesInTheScalarBuildWithoutSkipsFromTheirEf
       EXPECT_EQ(run.status, 0) << bundled.name << ": " << run.err;
       warnings.merge(warnings_in(run.err));
     }
-    // The file has the scenario's name, because it becomes the name of the directory. Its folder has the same depth as
-    // the folder of the run, because its paths are relative.
+    // The file has the scenario's name, because the directory of results gets its name from the file. The file's folder
+    // has the same depth as the folder of the run, because the paths in the file are relative.
     arguments.push_back((effective / (bundled.name + ".json")).string());
     fs::create_hard_link(out / "scenario.effective.json", arguments.back());
   }

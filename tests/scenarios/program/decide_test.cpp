@@ -22,7 +22,7 @@ using test::lines_of;
 using test::ProgramRun;
 using test::read_file;
 
-// Tests the results and files of hapbench limit, tune and converge. tests/data/golden/studies.txt has their printed
+// Tests the results and files of `limit`, `tune` and `converge`. tests/data/golden/studies.txt has their printed
 // texts.
 
 using Words = std::vector<std::string>;
@@ -86,7 +86,7 @@ TEST_F(LimitCommand, GivesTheSameBytesWhateverTheJobs) {
 
 class TuneCommand : public Decide {
  protected:
-  /// Runs tune with a smaller range of zeta than the default, which halves the time.
+  /// Runs `tune` with a smaller range of zeta than the default, which halves the time.
   ProgramRun tune(const Words& more, const std::string& out = "out") const {
     return ask({"tune", "tap_wall", "--damping-ratio", "0.3:0.6"}, more, out);
   }
@@ -122,8 +122,8 @@ TEST_F(TuneCommand, ItsScenarioGivesTheMetricsThatWerePrinted) {
   EXPECT_GT(lines_of(read_file(file("out/tune_trials.csv"))).size(), 30u);
 }
 
-/// Checks that tune, limit and the device table print the same recommended stiffness, linear limit and simulated limit
-/// for one scene and device.
+/// Checks that `tune`, `limit` and the device table print the same recommended stiffness, linear limit and simulated
+/// limit for one scene and device.
 TEST_F(TuneCommand, PrintsTheLimitsThatLimitPrints) {
   const Json law = tune({"--device", "touch", "--json"}).json()["algorithms"][0];
   ASSERT_TRUE(law["simulated_limit_N_per_m"].is_number() && law["linear_limit_N_per_m"].is_number()) << law.dump(1);
@@ -202,8 +202,8 @@ TEST_F(ConvergeCommand, WritesTheSameBytesHoweverManyJobs) {
     EXPECT_EQ(read_file(directory_ / "one" / name), read_file(directory_ / "three" / name)) << name;
 }
 
-/// Checks which time step converge prints as the coarsest with a sufficiently small error. The error of a largest value
-/// includes its spread over the choices of the first counted step (Metric::sampling_spread).
+/// Checks which time step `converge` prints as the coarsest with a sufficiently small error. The error of a largest
+/// value includes its spread over the choices of the first counted step (Metric::sampling_spread).
 TEST_F(ConvergeCommand, NamesTheCoarsestLevelThatIsEnough) {
   for (const auto& [to, expected] :
        {std::pair{"0.03", "\nerror below 3 %: time.step_s = 0.00025 ("},
@@ -375,7 +375,8 @@ TEST(RobustnessOnRecord, OfTheAssumptionsOnRecordIsTheLedger) {
   EXPECT_EQ(verdicts_under(assumptions, {assumptions.recorded_values()}), on_record);
 }
 
-/// Checks that the ledger contains the sensitivity record: a claim with a complete record is not "not sampled".
+/// Checks that the ledger uses the sensitivity record: if the record of a claim is complete, the ledger states another
+/// robustness than "not sampled", and the number of cases of the record.
 TEST(RobustnessOnRecord, IsInTheLedger) {
   const SensitivityRecord record(kReference / "sensitivity.json");
   const Json ledger = read_json(kReference / "claims.json");

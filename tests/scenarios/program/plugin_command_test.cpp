@@ -97,7 +97,8 @@ TEST_F(PluginCommand, FailsWhenASourceOfContactsFails) {
     const ProgramRun refused = hapbench({name, "plane_wiped_round", "--set", source});
     EXPECT_EQ(refused.status, 2) << name;
     const bool names_file = refused.err.find("allowed: with --module ") != std::string::npos;
-    // limit rejects a tool on a prescribed path before it reads the library.
+    // Two commands stop before they read the library: `sweep` because it gets no --vary, and `limit` because the tool
+    // is on a prescribed path.
     const bool refuses_before = name == std::string("sweep") || name == std::string("limit");
     EXPECT_TRUE(names_file || refuses_before) << name << refused.err;
   }
@@ -109,8 +110,8 @@ TEST_F(PluginCommand, FailsWhenASourceOfContactsFails) {
   EXPECT_NE(run.err.find("a law or source of contacts from outside failed once"), std::string::npos) << run.err;
 }
 
-/// Checks the proxy, which finds its contacts itself. Neither its force nor its metrics use the contacts of a module,
-/// and compare reports this.
+/// Checks the proxy, which finds its contacts itself. The contacts of a module change neither its force nor its
+/// metrics, and `compare` warns that the proxy does not use them.
 TEST_F(PluginCommand, LeavesContactsOfAModuleOutWhereTheLawFindsItsOwn) {
   const std::string sphere =
       R"(rendering.contact_source={"type":"plugin","file":")" + plugin("sphere") + R"(","config":{"radius_m":0.002}})";

@@ -13,7 +13,8 @@
 #include "tests/scenarios/support/scenarios.hpp"
 #include "tests/support/meshes.hpp"
 
-/// Tests hapbench new, point-shell export and effective scenarios, whose files the program reads again.
+/// Tests the files that the program writes and can read again: scenarios of `hapbench new`, exported point shells and
+/// effective scenarios.
 namespace hapbench::start_and_shell_test {
 namespace {
 
@@ -244,7 +245,7 @@ TEST_F(NewOnASheet, PlaysAStrokeBackOverAMesh) {
   EXPECT_EQ(json["motion"]["position"]["file"], "stroke.csv");
 }
 
-/// Returns the warnings of validate about mesh_molar, the bundled scene of a tooth 10 mm long, with these fields.
+/// Returns the warnings of `validate` about mesh_molar, the bundled scene of a tooth 10 mm long, with these fields.
 std::string warnings_of_tooth(std::vector<std::string> fields) {
   std::vector<std::string> words = {"validate", "mesh_molar"};
   for (const std::string& field : fields) words.insert(words.end(), {"--set", field});
@@ -273,7 +274,7 @@ TEST(ValidateCommand, NamesPointsThatTheToolFeelsOneByOne) {
   EXPECT_EQ(warnings_of_tooth({"environment.spacing_m=0.00016"}).find("apart"), std::string::npos);
 }
 
-/// Checks that bundled scenes cause no warning, because it would be a false alarm.
+/// Checks that bundled scenes cause none of these warnings. In a bundled scene, such a warning would be a false alarm.
 TEST(ValidateCommand, FindsNoUnitsWrongInBundledScenes) {
   for (const test::NamedScenario& scenario : test::bundled_scenario_files()) {
     const ProgramRun run = test::hapbench_in_process({"validate", scenario.name});

@@ -66,7 +66,7 @@ TEST_F(SweepCommand, StartsNoFurtherRunsWhereTheyCannotBeKept) {
   EXPECT_EQ(table("a"), table("b"));
 }
 
-/// Checks a soft law that lets the tool through. Runs that fail are results; only an unmet expect is an error.
+/// Checks a soft law that lets the tool through. Runs that fail are results; only an unmet `expect` is an error.
 TEST_F(SweepCommand, CountsRunsThatFailAndEndsThemEarly) {
   const auto sweep_of = [this](const std::string& out, const Words& more) {
     Words all = {"sweep",  "mesh_molar",
@@ -260,8 +260,8 @@ TEST_F(CompareCommand, EqualsARunOfEachAlgorithmAlone) {
   const std::string scene = "peg_in_hole_2d_shaped_stiffness";
   hapbench({"compare", scene, "--algorithms", "mean", "--out", at("out")});
   hapbench({"run", scene, "--set", "rendering.algorithm=mean", "--out", at("run")});
-  // Only summary.json differs. `run` checks the scenario's expectations, which are for another algorithm; compare does
-  // not check them. The numbers are the same.
+  // Only summary.json differs: `run` checks the scenario's expectations, which are for another algorithm, and `compare`
+  // does not check them. The numbers are the same.
   test::expect_same_files(directory_ / "out/mean", directory_ / "run", {"summary.json"});
 }
 

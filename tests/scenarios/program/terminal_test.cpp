@@ -101,7 +101,7 @@ TEST(Terminal, ListsNoOptionOfACommandAsOneOfTheProgram) {
   EXPECT_GE(lines_below(help, shared).size(), 9u);
 }
 
-/// Checks the number of option names, because users cannot remember more names.
+/// Checks that there are at most 85 option names, because users could not remember more.
 TEST(Terminal, HasNoMoreThanEightyFiveNamesOfOptions) {
   static const std::regex kNames("\n  (--[a-z-]+(, --[a-z-]+)*)"), kName("--[a-z-]+");
   std::set<std::string> names;
@@ -353,7 +353,8 @@ std::string trimmed(const std::string& text) {
   return begin == std::string::npos ? "" : text.substr(begin, text.find_last_not_of(' ') - begin + 1);
 }
 
-/// Adds the titles above the rule under a table's header; a title has one or two lines.
+/// Adds the titles of a table's columns to `titles`. `rule` is the line of dashes below the titles, `lower` the line
+/// above `rule`, and `upper` the line above `lower`. The title of a column has one line (lower) or two lines.
 void add_titles(const std::string& upper, const std::string& lower, const std::string& rule,
                 std::set<std::pair<std::string, std::string>>& titles) {
   static const std::regex kColumn("-+");
@@ -430,7 +431,7 @@ TEST(Headings, OfEveryTableAreKnownToDescribeAndFitATerminal) {
   }
   for (const auto& file : std::filesystem::recursive_directory_iterator(directory.path())) {
     const std::string name = file.path().filename().string();
-    // The scenario that tune writes is not a result.
+    // The scenario that `tune` writes is not a result.
     if (!file.is_regular_file() || name.ends_with("_tuned.json")) continue;
     EXPECT_TRUE(is_described(name)) << file.path();
   }

@@ -95,8 +95,8 @@ TEST(Converge, EstimatesTheSpreadOfExtremesOverTheChoiceOfRows) {
   const Study study = convergence_study(scene, 4);
   const auto levels = study.levels_of("speed_max_m_per_s");
   EXPECT_EQ(levels.front().spread, 0.0) << "every row counts";
-  // Speed that is gained in a step of 1 ms at 1 m/s^2 [m/s]. The last counted step before the landing is up to one such
-  // step before the landing.
+  // Speed [m/s] that is gained in 1 ms at 1 m/s^2. Counted steps are 1 ms apart, so the last counted step before the
+  // landing is at most 1 ms before the landing.
   const double gain = 1e-3;
   for (std::size_t i = 1; i < levels.size(); ++i) {
     EXPECT_GT(levels[i].spread, 0.5 * gain) << i;

@@ -51,7 +51,8 @@ TEST(ObservedOrder, IsThatOfAPureErrorTerm) {
       const Convergence c =
           judged(levels_of([p](double h) { return 3.0 - 0.25 * std::pow(h, p); }, 3, ratio), 4.0, ratio);
       ASSERT_TRUE(c.order) << p << " " << ratio << ": " << c.reason;
-      // The differences are known to 3 * 2.2e-16 * 2; the smallest difference is 2e-9, at p = 4.
+      // The difference of two results near 3 has a rounding error of 2 * 3 * 2.2e-16. The smallest difference is
+      // 2.5e-5, at p = 4 and ratio = 10.
       EXPECT_NEAR(*c.order, p, 1e-6);
       EXPECT_NEAR(*c.extrapolated, 3.0, 1e-13);
       // The expected error of the finest level, with Roache's factor.
@@ -120,8 +121,8 @@ TEST(ObservedOrder, CountsLevelsThatEndAsTheFinest) {
 
 constexpr MetricTraits kExtreme{.smooth = false, .either_sign = false};
 
-/// Checks the speed before a landing. For some levels its error looks of first order, until the landing moves to
-/// another step.
+/// Checks results like the speed before a landing. Over some levels, their error decreases as at first order, until the
+/// landing moves to another step.
 TEST(ObservedOrder, OfExtremesNeedsFiveLevelsAndCountsTheirScatter) {
   const std::vector<double> halving = {1.0 + 1.0 / 4, 1.0 + 1.0 / 8, 1.0 + 1.0 / 16, 1.0 + 1.0 / 32, 1.0 + 1.0 / 64};
   for (const std::size_t count : {std::size_t{3}, std::size_t{4}}) {

@@ -34,7 +34,7 @@ TuneQuestion question(const char* scene, const Words& overrides) {
 constexpr double kWithin = 0.03;
 
 /// Checks a handle that a hand holds: with the worst of the typical hands, its loop is stable up to twice the tuned K.
-/// A known answer for a handle without a hand tests that tune finds the largest K over damping ratios.
+/// A known answer for a handle without a hand tests that `tune` finds the largest K over damping ratios.
 TEST(Tune, OfAHeldHandleIsTheLimitOfTheWorstHand) {
   constexpr double kMass = 0.1;  // mass of the scene, which defines zeta [kg]
   const Words device = {
@@ -108,9 +108,9 @@ TEST(Tune, KeepsLimitsAndNamesTheBindingConstraint) {
   for (const auto& [name, value] : quiet.choice->metrics) EXPECT_EQ(number_of(run.metrics, name), value) << name;
 }
 
-/// Checks that the search passes stiffnesses at which a hand is too soft. A trial with the stiffness K also runs with 2
-/// K. If K is at least 33,000 N/m, a hand of 100 N/m cannot pull the tool on in this run. Only settings with such a K
-/// keep both bounds.
+/// Checks that the search accepts a stiffness at which a hand is too soft to pull the tool on. A trial with the
+/// stiffness K also makes runs with the stiffness 2 K. If K is at least 33,000 N/m, a hand of 100 N/m cannot pull the
+/// tool on in the run with 2 K. Only settings with such a K keep both bounds.
 TEST(Tune, IsNotBoundByAHandThatIsTooSoftToPullTheToolOn) {
   TuneQuestion asked = question("drag_molar", {});
   asked.threads = 2;
@@ -146,8 +146,8 @@ bool grid_is_feasible(const TuneQuestion& asked, const std::string& algorithm) {
   return false;
 }
 
-/// Checks that a looser bound never makes a question infeasible, and that tune finds a setting if a grid finds a
-/// setting.
+/// Checks that a looser bound never makes a question infeasible, and that `tune` finds a setting if a grid has a
+/// feasible setting.
 TEST(Tune, IsFeasibleIfAGridIsAndForEveryLooserBound) {
   struct Bounds {
     const char* scene;
@@ -236,8 +236,8 @@ TEST(Tune, EvaluatesATrialOnlyAsFarAsAnAnswerNeedsIt) {
   }
 }
 
-/// Checks a run that friction makes unstable. With 340 s/m, explicit integration of friction is unstable above 1.2 N.
-/// The hand presses with up to 2 N, and with less at the end of the run, where the linear loop is stable.
+/// Checks a run that friction makes unstable. With mu_f = 340 s/m, explicit integration of friction is unstable above
+/// 1.2 N. The hand presses with up to 2 N, and with less at the end of the run, where the linear loop is stable.
 TEST(Tune, RecommendsNoRunThatIsAnArtefactOfFriction) {
   TuneQuestion asked = question("poke_plane", {"rendering.friction.mu_f_s_per_m=340"});
   const std::string law = "shaped_stiffness";  // must outlive the trials
