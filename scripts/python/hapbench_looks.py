@@ -226,7 +226,8 @@ def oklab(colour):
 
 def in_hue(hue, luminances=LUMINANCES[0]):
     """Returns two colours of a hue (0 to 1): the lightest colour whose relative luminance is at most luminances[0], for
-    white, and the darkest colour whose relative luminance is at least luminances[1], for the dark page."""
+    white, and the darkest colour whose relative luminance is at least luminances[1], for the dark page.
+    """
     shades = [colorsys.hls_to_rgb(hue, percent / 100, 0.65) for percent in range(101)]
     light = max((s for s in shades if luminance(s) <= luminances[0]), key=luminance)
     dark = min((s for s in shades if luminance(s) >= luminances[1]), key=luminance)

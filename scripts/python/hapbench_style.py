@@ -132,7 +132,8 @@ def panels(rows, columns, height, **keywords):
 
 def number_ticks(axis, subs=()):
     """Labels more ticks than the powers of ten on a logarithmic axis that shows too few powers of ten. If `subs` is
-    not empty, labels instead these multiples of each power of ten on a logarithmic axis of any range."""
+    not empty, labels instead these multiples of each power of ten on a logarithmic axis of any range.
+    """
     low, high = axis.get_view_interval()
     if axis.get_scale() == "log" and (subs or high / low < 60):
         axis.set_major_locator(LogLocator(subs=subs or ((1, 2, 5) if high / low < 20 else (1, 3))))

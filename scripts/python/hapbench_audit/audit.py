@@ -169,7 +169,8 @@ def doubts(log, audit):
 
 def disagreement(springs):
     """Returns a list with a warning if no stiffness lies in the stiffness intervals of more than three quarters of the
-    contacts. Otherwise returns an empty list. `springs`: springs of the contacts that determine a stiffness."""
+    contacts. Otherwise returns an empty list. `springs`: springs of the contacts that determine a stiffness.
+    """
     if len(springs) < 2:
         return []
     ends = np.array([one["stiffness_interval"] for one in springs])

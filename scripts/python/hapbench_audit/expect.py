@@ -28,7 +28,8 @@ def metrics_of(audit):
 
 def expectations(words, audit):
     """Returns a dict for each of `words`: the metric, its value, the bounds, and True if the value is within the
-    bounds. Each word is "metric=max" or "metric=min:max". A missing value is not within the bounds."""
+    bounds. Each word is "metric=max" or "metric=min:max". A missing value is not within the bounds.
+    """
     metrics, found = metrics_of(audit), []
     for word in words:
         name, equals, bound = word.partition("=")

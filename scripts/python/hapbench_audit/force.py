@@ -182,7 +182,8 @@ def peaks_of(log, contacts, spectrum, mean):
     """Returns frequency [Hz] and amplitude [N] of the strongest oscillations above LOWEST_PEAK, strongest first. A peak
     is more than 4 times as large as the median amplitude of its neighbourhood, and so large that noise alone causes a
     peak in a log only with the probability FALSE_ALARM. Its frequency is no multiple of the frequency of a stronger
-    peak. The oscillation persists in the middle third of longest_stretch(). `mean`: mean force in contact [N]."""
+    peak. The oscillation persists in the middle third of longest_stretch(). `mean`: mean force in contact [N].
+    """
     if spectrum is None or not mean:
         return []
     frequency, amplitude, seconds = spectrum

@@ -16,7 +16,9 @@ from hapbench_import.stroke import resolution_of
 
 FEWEST = 20  # smallest number of samples of a log
 LONG_INTERVALS = 10.0  # number of mean intervals; a longer time step is a gap, which ends a contact
-LATEST_START = 1e6  # if the first time of a log [s] is at least this large, times count from the first row
+LATEST_START = (
+    1e6  # if the first time of a log [s] is at least this large, times count from the first row
+)
 FASTEST = 5.0  # largest plausible speed of a hand [m/s]
 # Largest error of a time step [intervals] at which the number of missing rows in the step is unambiguous. At an error
 # of 0.5, two numbers of missing rows fit equally well.

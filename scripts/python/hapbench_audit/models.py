@@ -187,7 +187,8 @@ def low_pass_of(kind):
 
 def speeds(log, part, position, direction):
     """Returns a dict from kind to the velocities [m/s] along the direction in the rows `part`. A kind is a method by
-    which an engine may compute velocities. `position`: positions of these rows along the direction [m]."""
+    which an engine may compute velocities. `position`: positions of these rows along the direction [m].
+    """
     time = log.time[part]
     fresh = np.arange(len(position)) if log.held is None else np.flatnonzero(log.held.fresh[part])
     if len(fresh) < 3:

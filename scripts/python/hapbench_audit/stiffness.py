@@ -41,7 +41,9 @@ SIMILAR = 0.1
 # The sampling error of a velocity explains a mean square residual of at most this factor times the mean square residual
 # of the best model.
 MAX_EXCUSED = 2.0
-NEGLIGIBLE = 1e-12  # fraction of the variance of the force that counts as rounding error of the computation
+NEGLIGIBLE = (
+    1e-12  # fraction of the variance of the force that counts as rounding error of the computation
+)
 # A contact is well explained if its unexplained fraction is at most this factor times the median unexplained fraction
 # of all contacts.
 TYPICAL = 10.0

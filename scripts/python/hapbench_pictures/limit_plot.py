@@ -59,7 +59,8 @@ class Limits:
 
     def along(self, rows):
         """Returns the values of the last field of --over in these rows. If the values are texts, returns instead
-        the number of each text: texts are numbered from 0 in the order of their first row in the table."""
+        the number of each text: texts are numbered from 0 in the order of their first row in the table.
+        """
         field = self.over[-1]
         names = list(dict.fromkeys(row[field] for row in self.rows))
         if all(map(is_number, names)):
@@ -164,7 +165,8 @@ def draw_limits(files, sheet=SHEET, folder=""):
 
 def draw_strip(found, sheet):
     """Draws one line of marks for each algorithm: the class of every run over the searched field. Bars mark the
-    theoretical limit, the simulated limit, and the limit that the program recommends to quote (column quoted_limit)."""
+    theoretical limit, the simulated limit, and the limit that the program recommends to quote (column quoted_limit).
+    """
     names = found.algorithms
     runs = [
         (

@@ -156,7 +156,8 @@ def texts_of(groups, runs, surfaces):
 
 def explain_scenes(figure, axes, texts, sheet, rows):
     """Writes the explanation of the marks below each cross-section. An explanation that equals the explanation of the
-    first cross-section is not repeated. If the sheet has a fixed height, one explanation stands below all panels."""
+    first cross-section is not repeated. If the sheet has a fixed height, one explanation stands below all panels.
+    """
     if sheet.height and texts:
         every = dict.fromkeys("; ".join(texts).split("; "))
         figure.supxlabel(fill("; ".join(every), int(sheet.width / LETTER)), fontsize=7)
