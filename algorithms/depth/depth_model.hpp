@@ -42,8 +42,8 @@ const DepthModelEntry* find_depth_model(std::string_view name);
 std::unique_ptr<DepthModel> make_depth_model(std::string_view name);
 
 /// Contact source of a shell: a search finds the colliding points, and a depth model computes their depths and
-/// gradients. With Skips::on, the depth model is called only in the first of consecutive steps without contacts. With
-/// Skips::off, it is called in every step.
+/// gradients. With Skips::off, the depth model is called in every step. With Skips::on, it is not called in a step
+/// without contacts that follows another step without contacts.
 class ShellSource final : public ContactSource {
  public:
   /// Shell and tool must outlive the source. `search` must refer to this shell and this tool.

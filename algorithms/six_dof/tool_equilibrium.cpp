@@ -286,7 +286,8 @@ ToolEquilibrium::Outcome ToolEquilibrium::solve(const PoseSprings& springs, Coup
     if (length > margin_) z *= margin_ / length;
     out.moved += std::min(length, margin_);
     move(pose, model, z);
-    // Points leave the tool over many steps, so one pass in each step is enough.
+    // With a finite recovery length, surface points that are deep in the tool come out over many steps, so one pass in
+    // each step is enough.
     if (std::isfinite(recovery_) && (!feasible_ || leaving_)) return out;
   }
 }

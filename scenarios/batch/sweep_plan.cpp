@@ -56,7 +56,8 @@ void add_names(Names& names, const MetricList& metrics) {
 }
 
 /// Reads the files that the scenarios of `runs` name, and returns their hashes. Adds their warnings to the
-/// plan, and the metrics of a measured force to `metrics`.
+/// plan. If a scenario replays a recorded motion, adds the metrics of such a run to `metrics`; they depend on whether
+/// the recording has a force.
 Json check_files(SweepPlan& plan, const std::vector<std::size_t>& runs, Names& metrics) {
   Json hashes = Json::array();
   for (const std::size_t run : runs) {

@@ -223,8 +223,8 @@ Finding judge_density(const Measured& measured, const PublishedNumbers& p) {
 }
 
 // ---- T6: relative change of the spring force in task 2 by the reduction: the rms of the force difference with and
-// without the reduction, divided by the rms of the force without the reduction. Stiffness shaping makes the thesis's
-// three updates. The local average is off.
+// without the reduction, divided by the rms of the force without the reduction. Stiffness shaping updates its weights
+// three times in a step, as in the thesis. The local average is off.
 
 MeasuredValues measure_information(const Evidence& e) {
   const LoadedScenario loaded = e.load("task2_rotate_signed_distance", {"rendering.local_average=false"});

@@ -57,7 +57,7 @@ def first_value(schema, name, key):
 
 
 def choices(schema):
-    """Returns the choices of the page's menus: the names of laws, devices and force stages in the schema."""
+    """Returns the choices of the page's menus: laws and force stages by their names in the schema, and devices."""
     stages = [
         kind["const"] for kind in values_of(first_value(schema, "force_stage", "anyOf"), "type")
     ]

@@ -189,8 +189,8 @@ def from_rows(bench):
 
 @scene
 def too_coarse(bench):
-    """Checks that metrics without a value are empty, not 0. The run has a step of 20 ms, which contains no frequencies
-    above 30 Hz, and a contact of one row."""
+    """Checks that metrics without a value are empty, not 0. The time step of 20 ms has a Nyquist frequency of 25 Hz,
+    so the run has no band above 30 Hz. Its contact lasts for a single time step."""
     run = bench.run(
         bench.scenario(
             "too_coarse",

@@ -33,7 +33,8 @@ struct IntervalSearchOptions {
   double value_at(double t) const;
   /// Returns the parameter of the current value; empty if `current` is empty.
   std::optional<double> current_parameter() const;
-  /// Returns true if the values at two parameters differ by more than the resolution (`whole`: by more than 1).
+  /// Returns true if the values at two parameters differ by more than the resolution. If `whole` is
+  /// true, returns true if they differ by more than 1.
   bool needs_bisection(double a, double b) const;
 };
 

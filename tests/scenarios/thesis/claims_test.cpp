@@ -200,9 +200,9 @@ TEST(Claims, AreJudgedByTheirThresholds) {
       {"T1",
        "raw_mean=40 raw_deviation=10 reduced_mean=1 reduced_deviation=0 reduced_max=1 outside_taps=1 |",
        {{"", replicated}, {"1.reduced_mean=1.1 1.reduced_max=2", not_replicated}}},
-      // Published: raw 37.8 ± 17.7 and 34.1 ± 19.5, reduced 6.21 ± 1.7 and 5.5 ± 1.9. Numbers within 3.7, 1.8, 0.71 and
-      // 0.2 of the means are therefore near. The raw counts of one recording do not match the reduced counts of the
-      // other recording.
+      // Published: raw 37.8 ± 17.7 and 34.1 ± 19.5, reduced 6.21 ± 1.7 and 5.5 ± 1.9. The two recordings
+      // differ by 3.7, 1.8, 0.71 and 0.2. A number is near if it differs from the published number by at most this
+      // difference. Raw and reduced counts must be near those of the same recording.
       {"T2",
        counts,
        {{"", replicated},

@@ -153,8 +153,8 @@ std::pair<double, double> bounce(const IntegratorEntry& integrator, double dt, d
 }
 
 /// Checks a bounce: contact lasts half a period, and the tool leaves with the speed of its arrival. With steps of 0.1
-/// ms, w h is 0.045: Runge-Kutta loses (w h)^6 / 144 of the energy in each of 70 steps, 4e-9, and is late by (w h)^4 /
-/// 120 = 3e-8.
+/// ms, w h is 0.045. Between the events, kEvent makes Runge-Kutta steps. They lose (w h)^6 / 144 of the energy in each
+/// of 70 steps, 4e-9, and make the contact longer by the fraction (w h)^4 / 120 = 3e-8.
 TEST(Event, FindsContactOnAndOffWithinAStep) {
   const auto [gain, duration] = bounce(kEvent, 1e-4, 1e-12);
   EXPECT_NEAR(gain, 0.0, 1e-8);
