@@ -258,6 +258,7 @@ const CorePassage::Segment* CorePassage::continued_by(const Segment& next) noexc
 
 /// Detects a passage. Matches each segment that is inside now with a segment of the last check, from which it
 /// inherits the face of entry.
+// NOLINTNEXTLINE(readability-function-cognitive-complexity): one case after the other for each segment.
 void CorePassage::compare(const Vec3& position, const Vec3& axis, double time) noexcept {
   const auto through = [this, time](const Vec3& entered, const Vec3& left, bool at_once) {
     if (!event_) event_ = {time, entered, left, at_once};

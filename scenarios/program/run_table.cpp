@@ -122,6 +122,7 @@ void report_fidelity(std::span<const Result> reports, const Layout& layout, Repo
   report.show(columns.table(with_reference, caption, layout.in_full()));
 }
 
+// NOLINTNEXTLINE(readability-function-cognitive-complexity): the cases of merging share the list.
 std::vector<std::string> run_warnings(std::span<const Result> reports) {
   /// A warning of one or more algorithms. `others`: number of further runs of the same algorithm whose warnings differ
   /// from `text` in their numbers.

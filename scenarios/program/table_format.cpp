@@ -233,6 +233,7 @@ std::string latex_number_column(const std::vector<Quantity>& quantities) {
       integer_digits, decimals, error_digits, exponent);
 }
 
+// NOLINTNEXTLINE(readability-function-cognitive-complexity): the parts of the table, from top to bottom.
 std::string latex(const Table& table, bool /*captioned*/) {
   constexpr std::size_t kMaxTextWidth = 40;  // a wider column of text is wrapped [characters]
   std::vector<std::string> types, upper, lower;

@@ -545,6 +545,7 @@ CheckedMesh mesh_from_triangles(const TriangleSoup& soup) {
   return result;
 }
 
+// NOLINTNEXTLINE(readability-function-cognitive-complexity): one search over the faces.
 TriangleSoup largest_component(const HalfEdgeMesh& mesh) {
   // Find the components by depth-first search over the faces.
   std::vector<bool> seen(mesh.n_faces(), false);

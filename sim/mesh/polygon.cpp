@@ -99,6 +99,7 @@ bool PolygonDivider::project(std::span<const Vec3> corners) {
 
 /// Tests the fan by the directions from the first corner to the other corners. These directions must turn
 /// counter-clockwise only, and by less than a full turn in total.
+// NOLINTNEXTLINE(readability-function-cognitive-complexity): the cases of a corner share one walk.
 PolygonDivider::Fan PolygonDivider::fan() const {
   const Point &first = points_[0], *start = nullptr, *last = nullptr;
   bool is_past_half = false, has_flat = false;

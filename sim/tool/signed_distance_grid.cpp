@@ -279,10 +279,11 @@ void SignedDistanceGrid::fill(const ClosedSurface& surface, const TriangleTree& 
            " m apart");
 }
 
-// NOLINTNEXTLINE(readability-function-cognitive-complexity): one flood fill, axis by axis.
+// NOLINTNEXTLINE(readability-function-cognitive-complexity): one loop over the nodes and their neighbours.
 void SignedDistanceGrid::classify() {
   // Nodes on the border of the grid stay `outside`, because the body is at least kMarginNodes away.
   kinds_.assign(nodes_.size(), outside);
+  // NOLINTNEXTLINE(readability-function-cognitive-complexity): nested loops over the axes.
   parallel_for(std::size_t{1}, nodes_.count[0] - 1, [&](std::size_t i) {
     for (std::size_t j = 1; j + 1 < nodes_.count[1]; ++j) {
       for (std::size_t k = 1; k + 1 < nodes_.count[2]; ++k) {

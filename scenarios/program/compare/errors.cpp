@@ -60,6 +60,7 @@ std::vector<NumberWithError> numbers_of(const Ranking& ranking, const FinerRuns&
 
 }  // namespace
 
+// NOLINTNEXTLINE(readability-function-cognitive-complexity): one pass over the metrics fills table, JSON and sentences.
 void report_errors(const Ranking& ranking, const FinerRuns& finer, std::size_t scenario, bool all, Report& report,
                    const Layout& layout) {
   Table table{{{"algorithm", false}}};

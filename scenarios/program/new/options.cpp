@@ -31,6 +31,7 @@ double parse_length(const char* option, const std::string& text) {
                  fmt::format("got \"{}\"; allowed: a length above 0 with its unit, mm, cm, m or in: 12mm", text));
 }
 
+// NOLINTNEXTLINE(readability-function-cognitive-complexity): one line for each rule of the options.
 void check_options(const NewOptions& options, const StartKind& kind) {
   const std::string &name = kind.name, &from = options.from;
   // `lands`: the tool starts above a surface. `drags`: it also moves along the surface.

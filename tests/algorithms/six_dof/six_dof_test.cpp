@@ -358,6 +358,7 @@ TEST(TightPeg, HasNoForceButATorqueAndPenaltyLawsRenderAGhost) {
 
 // ---- Prediction 5: a cycle of pressing by 1 mm, rotating by 0.1 rad, releasing, and rotating back
 
+// NOLINTNEXTLINE(readability-function-cognitive-complexity): checks every pivot and angle.
 TEST(OneContact, CreatesEnergyUnderEveryStiffness) {
   const double l = 0.03, press = 1e-3, angle = 0.1;
   // The hand is nearly rigid, so that the handle follows the pose that the hand intends.

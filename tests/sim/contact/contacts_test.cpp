@@ -209,6 +209,7 @@ INSTANTIATE_TEST_SUITE_P(Some, MultiRateContactsOfEverySchedule,
                                          Case{{.every = 5, .delay = 5, .linear = true}, true},
                                          Case{{.every = 7, .delay = 2, .dropout = 1.0}, true}));
 
+// NOLINTNEXTLINE(readability-function-cognitive-complexity): checks every step of each schedule.
 TEST_P(MultiRateContactsOfEverySchedule, AreTheFreshOnesOfTheQueryMovedAsTheToolWas) {
   const auto& [schedule, rolls] = GetParam();
   constexpr std::size_t kRows = 300;

@@ -112,6 +112,7 @@ TEST(Polygon, IsAFanIfItIsConvex) {
 
 /// Checks corners on a line. A flat triangle on an edge would repeat the corners of the neighbour's triangle on the
 /// same edge.
+// NOLINTNEXTLINE(readability-function-cognitive-complexity): checks every polygon and its variants.
 TEST(Polygon, HasNoFlatTrianglesIfItsCornersAreOnALine) {
   Random random(5);
   const Polygon square = {{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}};
