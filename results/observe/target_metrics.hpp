@@ -7,9 +7,9 @@
 
 namespace hapbench {
 
-/// Measurements of one target (thesis D.4). Model force and speed are means over the steps in which the tip was within
-/// TargetRules::logged (if empty: TargetRules::tolerance) of the target. These steps count whether or not the force was
-/// large enough to count as pressing.
+/// Measurements of one target (thesis D.4). `model_force` and `speed` are means over the steps with the tip on the
+/// target, that is, within TargetRules::logged (if empty: TargetRules::tolerance) of the target. Steps in which the
+/// force is smaller than TargetRules::min_press_force are included.
 struct TargetRow {
   std::size_t subject = 0;  ///< number of the subject; the numbers of subject, trial and target start at 0
   std::size_t trial = 0;

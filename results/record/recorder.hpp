@@ -84,8 +84,8 @@ RowSource contact_trace_rows();
 /// Returns the source of stiffness_tensor.csv: one line per recorded step.
 RowSource stiffness_rows();
 
-/// Stiffness shaping as two operations on padded contacts. The caller passes the operations in, because the folder
-/// results/ does not depend on any force law.
+/// Stiffness shaping as two operations on contacts that were padded to whole SIMD packs (ContactBuffer::pad). The
+/// caller passes the operations in, because the folder results/ does not depend on any force law.
 struct ShapingOperations {
   /// Sets all weights to 1; returns the stiffness tensor S.
   Mat3 (*start)(ContactBuffer& contacts) noexcept = nullptr;
@@ -94,25 +94,27 @@ struct ShapingOperations {
 };
 
 /// Returns the source of ratios.csv: how the stiffness ratios of the rendered contacts converge with the number of
-/// shaping updates (thesis 3.4, Fig. 5). The table does not depend on the force law of the run. The table has, for each
-/// recorded step with contact, one line for each number m >= 0 of updates. The first update starts from equal weights
-/// of 1. `iterations`: the numbers m in any order; duplicates are ignored. `capacity`: largest number of contacts in a
-/// step. Cost of a step: the largest m updates, each proportional to the number of contacts.
+/// shaping updates (thesis 3.4, Fig. 5). The table does not depend on the force law of the run. For each recorded step
+/// with contact, the table has one line for each number of updates m in `iterations`. The first update starts from
+/// equal weights of 1. `iterations`: numbers >= 0 in any order; duplicates are ignored. `capacity`: largest number of
+/// contacts in a step. A step costs as many updates as the largest m; the cost of one update is proportional to the
+/// number of contacts.
 RowSource ratio_rows(std::vector<int> iterations, ShapingOperations shaping, std::size_t capacity);
 
 /// Returns the source of energy.csv: the energy balance, one line per recorded step. Precondition: the recorder
 /// observes after `ledger`.
 RowSource energy_rows(const EnergyLedger& ledger);
 /// Returns the source of ideal_trajectory.csv: one line per step that `observer` compares with the ideal trajectory.
-/// Steps without an ideal trajectory at their tilt have no line (thesis Fig. 7). Precondition: the recorder observes
-/// after `observer` and records every step.
+/// A step has no line if the ideal trajectory does not exist at the tilt of the tool in this step (thesis Fig. 7).
+/// Precondition: the recorder observes after `observer` and records every step.
 RowSource ideal_trajectory_rows(const IdealTrajectoryObserver& observer);
 /// Returns the source of force_reference.csv: reference force and error of the rendered force. Precondition: the
 /// recorder observes after `observer`.
 RowSource force_reference_rows(const ForceFidelityObserver& observer);
 
-/// Returns the source of six_dof.csv: force and torque of a 6-DOF device, and the force of the law. `row` compares the
-/// two devices in the recorded step. Precondition: the recorder observes after the observer that writes `row`.
+/// Returns the source of six_dof.csv: force and torque of a 6-DOF device, and the force of the law on a 3-DOF device.
+/// `row` has the equilibria of both devices in the recorded step. Precondition: the recorder observes after the
+/// observer that writes `row`.
 RowSource six_dof_rows(const SixDofRow& row);
 
 /// Writes targets.csv: one line for each target in `rows`, in the same order. `rows` are the results of all subjects

@@ -10,7 +10,8 @@ inline constinit thread_local std::uint64_t allocations_of_thread = 0;
 
 /// Counts the heap allocations of this thread since its construction: malloc, calloc, realloc and the aligned
 /// allocations. These include operator new and Eigen's allocator. summary.json reports the count of the step loop
-/// (which is zero). Always 0 in programs that do not link hapbench::counting_malloc; hapbench and its tests do.
+/// (which is zero). Always 0 in programs that do not link hapbench::counting_malloc. The program hapbench and its tests
+/// link it.
 class AllocationCount {
  public:
   std::uint64_t value() const noexcept { return allocations_of_thread - start_; }

@@ -21,7 +21,8 @@ const int hooks_installed = __sanitizer_install_malloc_and_free_hooks(
 
 #else
 
-// The internal names of glibc's allocator. free is not replaced, because all blocks still come from glibc.
+// Declarations of glibc's own allocation functions, which the replacements call. free is not replaced, because all
+// blocks still come from glibc.
 extern "C" {
 // NOLINTBEGIN(bugprone-reserved-identifier,readability-identifier-naming)
 void* __libc_malloc(std::size_t size);

@@ -31,7 +31,8 @@ struct OutcomeInfo {
   std::string_view name;    ///< name in files, such as "completes"
   const char* meaning;      ///< one sentence without a full stop
   bool is_failure = false;  ///< true if the metrics of such a run do not characterise the algorithm
-  /// Condition under which compare and sweep end a run with this outcome before its last step; null if they never do.
+  /// Condition under which the commands `compare` and `sweep` end a run with this outcome before its last step; null if
+  /// they never end such a run early.
   const char* ends_early = nullptr;
 };
 

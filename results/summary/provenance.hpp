@@ -10,7 +10,7 @@ namespace hapbench {
 /// tree, and timing.json contains the instruction set. Unknown fields are "unknown".
 struct Provenance {
   std::string version;     ///< version of hapbench
-  std::string commit;      ///< commit of the source tree at build time; ends in "-dirty" if tracked files differ
+  std::string commit;      ///< commit of the built source tree; ends in "-dirty" if tracked files differ from it
   std::string compiler;    ///< name and version
   std::string build_type;  ///< CMake build type
   std::string flags;       ///< compiler flags that can change numbers

@@ -32,7 +32,7 @@ ordered_json divergence_json(const RunEnd& result) {
   return json;
 }
 
-/// Returns an object that maps the full name of each metric with a tolerance to this tolerance.
+/// Returns a JSON object with the tolerance of each metric that has a tolerance, by the full name of the metric.
 ordered_json tolerances_json(const MetricList& list) {
   ordered_json json = ordered_json::object();
   for (const Metric& metric : list)

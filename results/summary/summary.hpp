@@ -88,8 +88,8 @@ struct Result {
   /// as "final_position_m.x"; then the metrics of the sections, such as "energy.created_sum_J" or
   /// "targets.0.success_rate.mean".
   MetricList metrics;
-  /// The sections: passivity, and the sections that the scenario requests. Each section is a JSON object that has only
-  /// the members that are not metrics, such as the events of the section energy. Null without sections.
+  /// The sections of summary.json: passivity, and the sections that the scenario requests. Each section is a JSON
+  /// object that has only the members that are not metrics, such as the events of the section energy.
   nlohmann::ordered_json sections;
   std::uint64_t state_hash = 0;                     ///< MetricsObserver::state_hash
   nlohmann::ordered_json tool;                      ///< tool_json of a tool that is not a cylinder; null for a cylinder

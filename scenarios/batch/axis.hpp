@@ -33,7 +33,8 @@ struct Axis {
   bool whole = false;                    ///< true: numbers of the range are rounded to integers
   bool named = false;                    ///< true: values are labels for the caller and do not override a field
 
-  /// Further changes to the cases with one value of the axis: overrides, and a factor `stride` on TimeFields::stride.
+  /// Further changes to all cases that have a given value of the axis: overrides, and a factor `stride` by which
+  /// TimeFields::stride is multiplied.
   struct Along {
     std::vector<std::string> overrides;
     std::int64_t stride = 1;

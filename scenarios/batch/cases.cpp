@@ -18,8 +18,8 @@ void append_new(std::vector<std::string>& texts, const std::vector<std::string>&
 }
 
 /// Throws InputError if two axes have the same path, or if the path of one axis lies within the path of another axis,
-/// so that one axis would override the other. The latter is allowed if the outer axis comes first and all its values
-/// are objects.
+/// so that one axis would override the other. An axis within another axis is allowed if the outer axis comes first and
+/// all values of the outer axis are objects.
 static void check_paths(const std::vector<Axis>& axes) {
   const auto is_object = [](const std::string& value) { return value.starts_with("{"); };
   for (auto outer = axes.begin(); outer != axes.end(); ++outer) {

@@ -54,8 +54,8 @@ class Cases {
   /// Loads the scenario of case i. Thread-safe. Throws InputError.
   LoadedScenario load(std::size_t i) const;
   /// Returns the case at a position of the execution order. In this order, scenes vary slowest, then fields of
-  /// the environment, so that consecutive runs can share a point shell. Otherwise cases are in the order of
-  /// their numbers.
+  /// the environment, so that consecutive runs can share a point shell. Cases with equal scene and environment
+  /// are in the order of their numbers.
   std::size_t at(std::size_t position) const { return sorted_.empty() ? position : sorted_[position]; }
 
  private:

@@ -54,9 +54,9 @@ struct Comparison {
   std::vector<std::filesystem::path> run_folders(const std::filesystem::path& out) const;
 };
 
-/// Loads every scene with every algorithm and reads the files that they name. Throws the InputError of the first scene
-/// with an error. Also throws InputError if two scenes have the same name, if there are more than kMaxRuns runs, or if
-/// `jitter` is given although a scene prescribes the position.
+/// Loads every scene with every algorithm and reads the files that the scenes name. Throws the InputError of the first
+/// scene with an error. Also throws InputError if two scenes have the same name, if there are more than kMaxRuns runs,
+/// or if `jitter` is given although a scene prescribes the position.
 Comparison planned(const ComparisonQuestion& question);
 
 /// Removes the files of an earlier comparison of these scenes from a folder: its tables, and the files of runs

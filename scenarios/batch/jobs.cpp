@@ -45,8 +45,8 @@ class JobQueue {
   /// Records an error that kept a thread from starting. Precondition: the lock of hold() is held.
   void fail_to_start(const std::string& text) { errors_.emplace(0, std::make_exception_ptr(std::runtime_error(text))); }
 
-  /// If a job failed, rethrows the exception of the failed job with the lowest number. Otherwise, throws Stopped if
-  /// not all jobs were done because of an interruption. Precondition: no thread is working any more.
+  /// If a job failed, rethrows the exception of the failed job with the lowest number. Otherwise, if a signal stopped
+  /// the work before all jobs were done, throws Stopped. Precondition: no thread is working any more.
   void rethrow() const {
     if (!errors_.empty()) std::rethrow_exception(errors_.begin()->second);
     if (done_ < count_) throw_if_stopped();

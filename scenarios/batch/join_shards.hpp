@@ -5,9 +5,9 @@
 /// Joins the tables of the shards of a sweep.
 namespace hapbench {
 
-/// Joins the tables of all shards in a folder into sweep.csv. Returns false if there is nothing to join: no
-/// shards, or some shards are missing and sweep.csv already exists. Throws InputError if shards are missing
-/// without sweep.csv, or if tables are damaged, incomplete or from different sweeps. Throws IoError.
+/// Joins the tables of all shards in a folder into sweep.csv. Returns false if the folder has no table of a shard, or
+/// if some tables are missing and sweep.csv already exists. Throws InputError if some tables are missing and sweep.csv
+/// does not exist, or if tables are damaged, incomplete or from different sweeps. Throws IoError.
 bool join_shards(const std::filesystem::path& folder);
 
 }  // namespace hapbench

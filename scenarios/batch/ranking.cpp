@@ -26,8 +26,8 @@ std::vector<std::size_t> seeds_without_failure(const Ranking& ranking, std::size
   return seeds;
 }
 
-/// Returns how runs ended: "completes", or with counts "completes 3; diverges 2". Outcomes are in the order of
-/// their first appearance.
+/// Returns how runs ended. If all outcomes are equal, returns the outcome, such as "completes". Otherwise returns each
+/// outcome with its count, such as "completes 3; diverges 2", in the order of their first appearance.
 std::string outcomes_text(std::span<const Result> runs) {
   std::vector<std::string_view> outcomes;
   for (const Result& run : runs) outcomes.push_back(outcome_name(run.end.outcome));

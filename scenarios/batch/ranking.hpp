@@ -23,7 +23,8 @@ inline constexpr std::string_view kSharesReference = "proxy";
 struct RankingEntry {
   std::string scenario, algorithm, metric;
   std::uint64_t seeds = 1, failed = 0;
-  std::string outcome;              ///< outcome of its runs: "completes", or with counts "completes 3; diverges 2"
+  std::string outcome;              ///< how its runs ended: "completes" if all outcomes are equal, otherwise the
+                                    ///< outcomes with counts, such as "completes 3; diverges 2"
   std::optional<double> mean = {};  ///< mean of the metric; empty if all runs failed or no run has the metric
   /// Sample standard deviation of the metric over the seeds; empty for a single seed, or if the seed does not affect
   /// the run.

@@ -70,7 +70,7 @@ RunRow row_of_run(const SweepPlan& plan, const SweepOptions& options, std::size_
 }  // namespace
 
 SweepReport run_sweep(const SweepPlan& plan, const SweepOptions& options) {
-  // Open the table, and keep the rows of an earlier sweep with --resume.
+  // Open the table. With --resume, keep the rows of the earlier sweep.
   const Shard part = options.shard.value_or(Shard{});
   Json about = {{"definition", plan.definition}, {"runs", plan.cases.size()}, {"shard", shard_text(part)}};
   about.update(plan.content);

@@ -149,7 +149,7 @@ std::vector<std::size_t> runs_to_check(const Cases& cases) {
     std::iota(runs.begin(), runs.end(), std::size_t{0});
     return runs;
   }
-  // Check a large grid only on the lines through the first and the last run.
+  // Of a large grid, check only runs in which at most one field differs from the first run or from the last run.
   std::set<std::size_t> runs;
   std::size_t stride = 1;
   for (std::size_t a = cases.axes().size(); a-- > 0;) {
@@ -184,7 +184,7 @@ SweepPlan plan_sweep(Cases cases, const JobOptions& jobs, RunLength length) {
   }
   // Read each combination of files once.
   const Json hashes = check_files(plan, runs_with_files, metrics);
-  // List these metrics in the order in which the program lists all metrics.
+  // List the collected metrics in the order in which the program lists all metrics.
   for (const Metric& metric : metrics_without_values(TrackingHandFields::kMaxTargetPositions)) {
     if (!metrics.contains(metric.name)) continue;
     plan.metrics.push_back(metric.name);

@@ -35,8 +35,8 @@ class TableFile {
   using Keep = std::function<bool(std::size_t i, std::string_view row)>;
 
   /// Starts a table.
-  /// - Without `keep`, replaces an unfinished table. Throws InputError if that table belongs to the same sweep
-  ///   and has rows.
+  /// - Without `keep`, replaces an unfinished table that has no rows. Throws InputError if the unfinished table has
+  ///   rows, whether they belong to the same sweep or to another sweep.
   /// - With `keep`, continues an unfinished or finished table, and drops an incomplete last line. Throws
   ///   InputError if the table is damaged or belongs to another sweep.
   /// Throws IoError.

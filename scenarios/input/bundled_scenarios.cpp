@@ -41,7 +41,7 @@ static std::vector<std::string> study_names() {
 }
 
 fs::path find_scenario(const std::string& argument, const fs::path& directory) {
-  // Return an existing file, unless it is a mesh.
+  // If the argument is an existing file, return it. Refuse a mesh.
   std::error_code error;
   fs::path file = directory / argument;
   if (fs::exists(file, error)) {

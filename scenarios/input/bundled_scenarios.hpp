@@ -26,9 +26,9 @@ std::vector<BundledScenario> bundled_scenarios();
 /// exists, or if the file is a mesh.
 std::filesystem::path find_scenario(const std::string& argument, const std::filesystem::path& directory = {});
 
-/// Returns the scenario files that the arguments name. The name of a group stands for all scenarios of the group,
-/// ordered by name, unless a file has that name. find_scenario() resolves every other argument and throws its
-/// InputError.
+/// Returns the scenario files that the arguments name. If an argument is the name of a group, and no file has this
+/// name, the argument stands for all scenarios of the group, ordered by name. find_scenario() resolves every other
+/// argument and throws InputError.
 std::vector<std::filesystem::path> find_scenarios(const std::vector<std::string>& arguments);
 
 /// Returns the names of scenario files, without folder and extension. The program stores results under these names.

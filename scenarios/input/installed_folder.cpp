@@ -7,8 +7,8 @@
 
 #include "scenarios/input/input_error.hpp"
 
-// Path of the share folder. Defined in .cmake/share_folder.cpp, which is linked by projects that use find_package.
-// Null in other programs. A static library cannot find out where it was installed.
+// Path of the share folder, for programs of projects that use find_package: a static library cannot find out where it
+// was installed. Defined in .cmake/share_folder.cpp, which these projects link. Null in all other programs.
 extern "C" [[gnu::weak]] const char hapbench_share_folder[];
 
 namespace hapbench {

@@ -28,7 +28,7 @@ struct FieldGuide {
   std::string name;
   std::string meaning;
   Presence presence;
-  Json initial;  ///< the default value; null unless presence is Presence::has_default
+  Json initial;  ///< the default value if presence is Presence::has_default; otherwise null
   ValueGuide value;
 
   /// Returns the schema of the value, extended by the field's meaning and default.

@@ -17,7 +17,7 @@ enum class Continuation { none, backslash };
 
 /// Reads a mesh file in text form line by line and splits each line into tokens at white space. Skips comments
 /// (from '#' to the end of the line) and blank lines. Every function throws an InputError with file and line if a
-/// token is invalid. The message adds that the file may be cut short, if the line is the last line and has no line end.
+/// token is invalid. If the line is the last line and has no line end, the message adds that the file may be cut short.
 class MeshLines {
  public:
   /// The text and the path must outlive the object.

@@ -23,9 +23,9 @@ namespace hapbench {
 namespace {
 
 /// Returns the formal order of convergence in the time step. With a device, the order is 1, because the device holds
-/// the force between samples. Without damping, leapfrog has order 2 for amplitudes and energies; its velocity belongs
-/// to a time half a step earlier. Its values at a fixed time have order 1, because the run starts with the velocity at
-/// time 0 instead of half a step earlier.
+/// the force between samples. Without device and damping, the order of leapfrog is 2, which is its order for amplitudes
+/// and energies. Positions and velocities of leapfrog at a fixed time have order 1: its velocity belongs to a time half
+/// a step earlier than its position, but the run starts with both at time 0.
 double order_in_step(const Scenario& scenario) {
   const IntegratorEntry& integrator = *scenario.integrator.type;
   if (has_device(scenario)) return 1.0;

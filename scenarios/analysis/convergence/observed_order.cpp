@@ -61,8 +61,8 @@ std::string switching_reason(std::span<const LevelResult> last) {
 std::string incredible_reason(std::span<const double> f, std::span<const std::optional<double>> orders,
                               std::size_t count, double formal, double ratio) {
   const std::size_t last = f.size() - 1, from = f.size() >= count ? f.size() - count : 0;
-  // The largest credible order: twice the formal order, and beyond it the same relative deviation of the ratio of two
-  // differences as in the asymptotic range (kAsymptoticWithin).
+  // The largest credible order p: the ratio r^p of two successive differences may exceed the ratio for twice the formal
+  // order by the fraction kAsymptoticWithin.
   const double largest_credible = 2.0 * formal + math::log(1.0 + kAsymptoticWithin) / math::log(ratio);
   for (std::size_t i = from + 2; i <= last; ++i) {
     const double coarse = f[i - 2] - f[i - 1], fine = f[i - 1] - f[i];

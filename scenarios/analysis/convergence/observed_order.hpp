@@ -70,7 +70,7 @@ LevelResult level_result(const LevelSweep& levels, std::size_t level, const Resu
 /// - the last two results differ by rounding only;
 /// - contacts switch between the last three levels (last five levels for a metric that is not smooth);
 /// - within the last four levels (last five for a metric that is not smooth), differences change their sign
-///   or an order is not in (0, 2 formal_order];
+///   or an order is not in (0, 2 formal_order + log_r 1.1], with the ratio r of the levels;
 /// - the extrapolated value is negative, and the metric cannot be.
 Convergence convergence_of(const LevelSweep& sweep, std::span<const LevelResult> levels,
                            const MetricTraits& traits = {});

@@ -146,7 +146,7 @@ void add_cause(const LimitQuestion& question, FieldLimit& limit) {
   if (limit.unstable_alone && limit.unstable_part.empty()) limit.unstable_part = "hand and device";
 }
 
-/// Stores in `limit` the linear limit of a tool on a surface, or the reason why there is no linear limit.
+/// Stores FieldLimit::linear, or the reason why it has no value (FieldLimit::no_linear).
 void add_linear_limit(const LimitQuestion& question, const std::map<double, RunStability>& runs, FieldLimit& limit) {
   if (limit.theory || limit.theory_has_none || question.search.smallest || !limit.end.value) return;
   const Scenario scenario = question.at(*limit.end.value).scenario;

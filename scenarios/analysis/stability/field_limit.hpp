@@ -40,20 +40,21 @@ struct FieldLimit {
   IntervalEnd end;    ///< the limit: the high end of the stable interval, or the low end in a search for the smallest
                       ///< stable value
   IntervalEnd other;  ///< the other end of the interval
-  /// Linear limit by the eigenvalues of a step, for springs that stay in contact. If the whole range is stable, it is
-  /// infinite, or 0 in a search for the smallest stable value. Empty if the theory does not apply or no value is
-  /// stable.
+  /// Linear limit for springs that stay in contact, by the eigenvalues of the linear map of one time step
+  /// (eigenvalue_limit()). If the whole range is stable, it is infinite, or 0 in a search for the smallest stable
+  /// value. Empty if the theory does not apply or no value is stable.
   std::optional<double> theory;
   bool theory_has_none = false;  ///< true if the theory applies and no value of the range is stable
-  /// Limit by the integrator's stability inequality, for a tool without hand and device on springs; empty otherwise.
+  /// Limit by the integrator's stability inequality (inequality_limit()), which applies to a tool on springs without
+  /// hand and device; empty otherwise.
   std::optional<double> closed_form;
   /// Linear limit if `theory` is empty. For springs in permanent contact, it is frictionless_limit(). For a surface
   /// that the tool can leave, it is contact_limit(), searched from the run with the largest stable value in which
   /// contact lasts. Dry friction and the encoder are ignored. Dry friction, the encoder and loss of contact can raise
   /// the simulated limit above the linear limit. Infinite if the whole range is stable; 0 if no value is stable.
   std::optional<double> linear;
-  std::string no_linear = {};  ///< why neither `theory` nor `linear` has a value; empty if one of them has a value, or
-                               ///< in a search for the smallest stable value
+  std::string no_linear = {};  ///< why no linear limit was found; empty if `theory` or `linear` has a value, if no
+                               ///< value is stable, and in a search for the smallest stable value
   /// Errors of the bounded metrics at the limit: their largest change if the time step or the point spacing is halved.
   /// The bounds hold with these errors added.
   MetricValues metric_errors = {};
@@ -63,24 +64,25 @@ struct FieldLimit {
   std::string no_theory;             ///< WallLimits::no_theory
   SettledState settled;              ///< settled state of the run at the limit
   std::string unstable_part = {};    ///< name of the part that is unstable without contact, such as "hand and device";
-                                     ///< empty unless `unstable_alone`
+                                     ///< empty if `unstable_alone` is false
   std::optional<JudgedValue>
       own;  ///< verdict at the scenario's current value; empty if this value is outside of the range
   /// True if the loop of hand and device is unstable without contact (unstable_without_contact()) at the nearest
   /// value beyond the limit, or at the smallest evaluated value if there is no limit.
   bool unstable_alone = false;
   bool has_effect = true;  ///< false if the handle's motion is bitwise equal in all runs
-  /// Number of verification samples in the interval, all stable: distinct values between its ends that were run.
+  /// Number of distinct values between the ends of the interval that were run to verify it; all of them are stable.
   std::size_t tried_between = 0;
-  bool scattered = false;  ///< true if stable values exist, but no stable interval is kNearLimit times the limit long
+  bool scattered = false;  ///< true if stable values exist, but no contiguous stable interval is as long as kNearLimit
+                           ///< times the limit
   std::vector<JudgedValue> runs;          ///< all runs, by increasing value
   std::vector<JudgedValue> inconsistent;  ///< unstable runs inside the interval and stable runs outside of it
   std::size_t undecided = 0;              ///< number of runs that were too short to judge (RunStability::undecided)
 
   /// Returns the linear limit: `theory` if it has a value, otherwise `linear`.
   const std::optional<double>& known_linear_limit() const { return theory ? theory : linear; }
-  /// Returns the width of the interval that encloses the quoted limit if the simulated limit is quoted. Empty if the
-  /// linear limit is quoted, which is known to many digits.
+  /// If the simulated limit is quoted, returns the width of the interval that encloses it. If the linear limit is
+  /// quoted, returns nothing, because the linear limit is known to many digits.
   std::optional<double> quoted_tolerance() const { return quoted.value == end.value ? end.tolerance() : std::nullopt; }
 };
 

@@ -32,7 +32,7 @@ class TransitionSearch {
     return transition ? bisected_transition(*transition) : StableInterval{};
   }
 
-  /// Returns the first transition that samples on either side confirm, with the other end of its interval.
+  /// Returns the first transition that is confirmed by samples on both sides of it, and the other end of its interval.
   StableInterval confirmed() {
     // Maximum number of bisected transitions. The samples beside a transition may reveal an earlier transition.
     constexpr int kMaxRounds = 6;
@@ -100,10 +100,10 @@ class TransitionSearch {
     return {stable, unstable};
   }
 
-  /// Evaluates three parameters on either side of a transition, at most the length of one scan interval away from the
+  /// Evaluates three parameters on each side of a transition, at most the length of one scan interval away from the
   /// transition.
   void evaluate_beside(double first_stable, const StableInterval& interval) {
-    constexpr int kBeside = 3;  // number of samples on either side
+    constexpr int kBeside = 3;  // number of samples on each side
     constexpr double kInterval = 1.0 / kScanIntervals;
     const double before = std::max(first_stable, *interval.stable - kInterval);
     const double behind = std::min(1.0, *interval.beyond + kInterval);

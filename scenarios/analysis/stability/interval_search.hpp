@@ -61,7 +61,7 @@ EvaluatedParameters evaluate_scan(int intervals, const IsStable& stable);
 /// current value is unstable. Returns an empty interval if no parameter is stable. On input `evaluated` has at least
 /// both ends of the range; the search adds all parameters that it evaluates.
 ///
-/// Without `beside`, only `stable` and `beyond` are found. With `beside`, also evaluates three parameters on either
+/// Without `beside`, only `stable` and `beyond` are found. With `beside`, also evaluates three parameters on each
 /// side of the transition. If they show an earlier transition, bisects the earlier transition instead, up to five
 /// times. Finally bisects the other end of the interval.
 StableInterval find_stable_interval(const IntervalSearchOptions& options, EvaluatedParameters& evaluated,

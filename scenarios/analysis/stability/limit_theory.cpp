@@ -27,14 +27,15 @@ constexpr int kTheoryIntervals = 256;
 constexpr double kTheoryResolution = 1e-12;
 constexpr double kContactResolution = 1e-9;  // relative; the derivatives of a rendered force are accurate to 1e-7
 
-/// Returns true for springs in permanent contact with a tool whose loop with hand and device is linear.
+/// Returns true if the springs are in permanent contact with the tool, and the loop of tool, hand and device is linear.
 bool has_eigenvalues(const Scenario& scenario) {
   if (!has_permanent_springs(scenario) || std::holds_alternative<TrackingHandFields>(scenario.hand)) return false;
   if (has_device(scenario)) return device_loop(scenario, 1.0).no_theory.empty();
   return !std::get<IdealDeviceFields>(scenario.device).force_limit || is_without_hand(scenario);
 }
 
-/// Returns true if all eigenvalues of a step lie inside the unit circle, for each principal stiffness of the springs.
+/// Returns true if, for each principal stiffness of the springs, all eigenvalues of the linear map of one time step lie
+/// inside the unit circle.
 bool step_is_stable(const Scenario& scenario) {
   constexpr double kNoWall = 1e-12;  // smallest stiffness in units of K; below it, a direction has no springs, and
                                      // the handle moves freely along it

@@ -22,8 +22,8 @@ struct TheoreticalLimit {
   bool has_none = false;  ///< true if the condition applies and no value is stable
 };
 
-/// Returns the limit by the eigenvalues of one time step (all inside the unit circle). Applies to springs in permanent
-/// contact if the loop of tool, hand and device is linear.
+/// Returns the limit up to which all eigenvalues of the linear map of one time step lie inside the unit circle. Applies
+/// to springs in permanent contact if the loop of tool, hand and device is linear.
 TheoreticalLimit eigenvalue_limit(const LimitQuestion& question);
 
 /// Returns the same limit as eigenvalue_limit(), but with dry friction, encoder step and force step of an impedance
@@ -38,7 +38,8 @@ TheoreticalLimit inequality_limit(const LimitQuestion& question);
 /// field, the contact has the derivatives of the rendered force at the equilibrium of the tool (linear_contact). `near`
 /// is the state of a run at the field's value `stable`; the search for the equilibrium starts from `near`, and the
 /// search for the limit starts at `stable`. Returns infinity if the whole range above `stable` is stable, zero if no
-/// value is stable. Returns nothing without an equilibrium in contact at `stable`, or without has_linear_loop().
+/// value is stable. Returns nothing if the tool has no equilibrium in contact at `stable`, or if has_linear_loop() is
+/// false.
 std::optional<double> contact_limit(const LimitQuestion& question, double stable, const ContactState& near);
 
 /// Limits of the stiffness K [N/m] on a two-sided wall that holds the handle of an impedance device.

@@ -6,9 +6,10 @@
 namespace hapbench {
 namespace {
 
-// Ratios of amplitudes. kGrowth: smallest growth from one quarter of the run to the next. kLeft: largest remainder of a
-// decayed motion in the last quarter relative to the first quarter. kSustained: smallest ratio of consecutive quarters
-// of a sustained motion. kRest: largest speed at rest relative to the largest speed of the run.
+// Ratios of the amplitudes of two quarters of the run. kGrowth: a motion grows if the ratio of each quarter to the
+// quarter before is larger. kLeft: a motion has decayed if the ratio of the last to the first quarter is smaller.
+// kSustained: a motion is decaying if the ratios of both the third and the last quarter to the quarter before are
+// smaller. kRest: the tool is at rest if the ratio of its speed to the largest speed of the run is at most kRest.
 constexpr double kGrowth = 1.01, kLeft = 0.01, kSustained = 0.9, kRest = 1e-12;
 constexpr double kFelt = 1e-3;  // smallest speed that a hand can feel [m/s]
 

@@ -10,7 +10,7 @@ namespace hapbench {
 /// if every run up to the end of the range is stable and there is no linear limit: the end of a range is no limit. Also
 /// returns no value if no value of the field is stable by both limits. If runs are stable beyond the linear limit, the
 /// reason names the measured property of the run at the simulated limit that may explain the difference. Precondition:
-/// all other members of `limit` are set.
+/// all members of `limit` except `quoted` are set.
 QuotedLimit quoted_limit(const LimitQuestion& question, const FieldLimit& limit);
 
 }  // namespace hapbench

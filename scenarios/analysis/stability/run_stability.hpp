@@ -23,8 +23,9 @@ struct RunStability {
 };
 
 /// Runs the scenario's first trial without records and returns the verdict on this run. If the run is too short to
-/// judge, repeats it four times as long, up to three times. If the rule has bounds on metrics and the run is stable,
-/// runs the scenario again to compute the metrics. `shell`: make_shell() of the scenario. Throws Stopped.
+/// judge, makes up to three further runs, each four times as long as the run before and of at most 10^6 steps. If the
+/// rule has bounds on metrics and the run is stable, runs the scenario again to compute the metrics. `shell`:
+/// make_shell() of the scenario. Throws Stopped.
 /// Precondition: the position of the tool is free, and the scenario has at least 4 steps.
 RunStability stability_of(const CheckedScenario& checked, std::shared_ptr<const PointShell> shell,
                           const StabilityRule& rule = {});

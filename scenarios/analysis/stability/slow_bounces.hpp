@@ -9,9 +9,9 @@
 /// Detection of bounces whose period is longer than 1/30 s, the period of the slowest vibration.
 namespace hapbench {
 
-/// Detects a tool that keeps bouncing with a period longer than 1 / kVibrationCutoff (1/30 s). In a
-/// bounce the tool is out of contact for longer than the preceding contact, and the hand presses it back. The height of
-/// a bounce is the largest distance of the handle from its last position in contact, along the last contact force.
+/// Detects a tool that keeps bouncing with a period longer than 1 / kVibrationCutoff (1/30 s). In a bounce, the tool is
+/// out of contact for longer than the preceding contact lasted, and the hand presses the tool back. The height of a
+/// bounce is the largest distance of the handle from its last position in contact, along the last contact force.
 class SlowBounces {
  public:
   /// `dt`: time step [s].

@@ -13,9 +13,9 @@ namespace hapbench {
 /// Conditions that a stable run satisfies.
 struct StabilityRule {
   /// Largest allowed vibration of the handle above 30 Hz over the judged steps (EvaluationWindow) [m/s rms]. If set,
-  /// the vibration decides instead of the class of motion: a smaller vibration is stable, a larger vibration is not,
-  /// even if it decays. A run without a measured vibration is not stable. A tool with persistent slow bounces
-  /// (SlowBounces) is vibrating.
+  /// the vibration decides instead of the class of motion: a run with at most this vibration is stable; a run with a
+  /// larger vibration is not stable, even if the vibration decays. A run without a measured vibration is not stable. A
+  /// run with persistent slow bounces (SlowBounces) is vibrating.
   std::optional<double> max_vibration = {};
   /// Bounds on metrics of summary.json, by name. A metric without a value violates its bound.
   std::map<std::string, MetricBound> bounds = {};

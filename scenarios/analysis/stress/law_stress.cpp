@@ -17,7 +17,8 @@ namespace hapbench {
 namespace {
 
 /// Allowed relative rounding error of sums over at most kMaxContacts contacts, and of the weights of exact_shaping.
-/// These weights are sensitive because of the small epsilon of 1e-6.
+/// These weights are sensitive to rounding because of the small weight kExactShapingEpsilon (1e-6) of the
+/// regularisation.
 constexpr double kForceRounding = 1e-6;
 constexpr std::uint64_t kSetsPerJob = 1000;
 

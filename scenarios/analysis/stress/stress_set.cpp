@@ -61,7 +61,7 @@ Draw positions(Random& random, const ContactSet& set) {
   switch (random.below(5)) {
     case 0:  // coincident
       return [point = in_tool(random, set)] { return point; };
-    case 1: {  // on the axis, where the radial direction is undefined, or all in the tip centre
+    case 1: {  // on the axis, where the radial direction is undefined, or all at the tip centre
       const double height = chance(random, 0.3) ? 0.0 : length;
       return [&, height] { return Vec3(set.pose.position - height * random.uniform() * set.pose.axis); };
     }
@@ -117,7 +117,7 @@ void draw_rendering(Random& random, RenderingConfig& config) {
   config.depth_model = depth_models()[random.below(depth_models().size())].info->name;
   config.iterations = static_cast<int>(chance(random, 0.8) ? 3 : 1 + random.below(50));
   if (chance(random, 0.3)) config.stiffness = log_uniform(random, 1.0, 1e12);
-  // A limit n_ext far below the number of contacts makes the reduction overflow.
+  // If the limit n_ext is far below the number of contacts, the reduction becomes full and drops contacts.
   if (chance(random, 0.5)) config.reduction = ReductionConfig{0.995, chance(random, 0.5) ? 3u : 100u, std::nullopt};
 }
 

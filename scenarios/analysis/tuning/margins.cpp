@@ -31,8 +31,8 @@ std::vector<double> parameters_up_to(const IntervalSearchOptions& options, doubl
   return parameters;
 }
 
-/// Returns the largest value of a range up to which all variants of the trial are settled. `override_of`: override that
-/// sets a value. Verifies the interval by samples; a sample that fails shortens the interval.
+/// Returns the largest value of a range up to which all variants of the trial are settled. `override_of`: returns the
+/// override that sets a value. Verifies the interval by samples; a sample that fails shortens the interval.
 double last_settled(Trials& trials, const TuneTrial& trial, const IntervalSearchOptions& options,
                     const std::function<std::string(double value)>& override_of) {
   const auto holds = [&](double t) {
@@ -56,8 +56,8 @@ double last_settled(Trials& trials, const TuneTrial& trial, const IntervalSearch
   }
 }
 
-/// Returns the damping ratio of the mode with the eigenvalue z of one step; empty if the mode is a state of a delay
-/// line or the free motion of a tool in some direction.
+/// Returns the damping ratio of the mode with the eigenvalue z of the linear map of one time step. Empty if the mode is
+/// a state of a delay line, or the free motion of a tool in some direction.
 std::optional<double> damping_ratio(const std::complex<double>& z) {
   constexpr double kDelayLine = 1e-9, kFree = 1e-5;  // largest |z| of a delay-line state; largest |z - 1| of a freely
                                                      // moving tool, as in is_stable_loop()

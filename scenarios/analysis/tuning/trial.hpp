@@ -49,8 +49,9 @@ struct TuneFailure {
   std::size_t variant_index = 0;  ///< index of the variant; 0: the scene itself
 };
 
-/// The contact of a run, linearised at the equilibrium of the tool. Empty if the tool ended without contact, or without
-/// a linear loop.
+/// The contact of a run, linearised at the equilibrium of the tool. `linear` is empty if the contact did not last until
+/// the end of the run, if no equilibrium was found, if the scene has no linear loop, or for springs in permanent
+/// contact (Trials::contact_of).
 struct ContactOfTrial {
   std::optional<LinearContact> linear = {};
   RenderingConfig rendering = {};  ///< rendering settings with which `linear` was computed
@@ -84,7 +85,7 @@ struct TuneTrial {
   bool is_complete = false;   ///< true if limited metrics were measured in all variants
   bool is_refined = false;    ///< true if `error` has the changes by Refinement::resolution
   bool has_error = false;     ///< true if `error` has the changes by all refinements
-  double depth_within = 0.0;  ///< bound of the change of inside_max_m by Refinement::depth [m]: its tolerance
+  double depth_within = 0.0;  ///< largest possible change of inside_max_m by Refinement::depth [m]
   std::size_t runs = 0;       ///< number of simulations of the trial
   /// The variant whose motion fails and how it fails; empty if no motion fails. The failure does not depend on limits.
   std::optional<TuneFailure> failure = {};

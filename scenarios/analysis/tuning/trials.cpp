@@ -383,9 +383,9 @@ std::vector<NamedLoop> Trials::loops_in_contact(const Scenario& scenario, const 
   return contact_loops(scenario, scaled(*contact.linear, contact.rendering, scenario.rendering), over_hands);
 }
 
-/// Returns the contact of a settled run, linearised at the equilibrium of the tool that is found from the tool's state
-/// in its last step in contact. Returns no contact if the contact does not persist, because there is then no linear
-/// loop.
+/// Returns the contact of a settled run, linearised at the equilibrium of the tool. The search for the equilibrium
+/// starts from the state in the last step in contact. Returns no contact if the contact does not persist, because there
+/// is then no linear loop.
 ContactOfTrial Trials::contact_of(const CheckedScenario& scene, const RunStability& run) const {
   ContactOfTrial contact;
   contact.rendering = scene.scenario().rendering;

@@ -36,7 +36,7 @@ enum class Need {
   feasibility,  ///< whether the trial keeps all constraints
   softness,     ///< also whether a larger K may help (TuneTrial::too_soft)
   excess,       ///< also the factor by which limits are violated, with the errors of the limited metrics
-  all           ///< also all variants and these errors if the trial is far from the limits
+  all           ///< all variants and these errors, even for a trial that is far from the limits
 };
 
 /// The limits of a search.
@@ -110,13 +110,13 @@ class Trials {
   /// Returns up to `count` trials of this search that violate only limits, at most one for each setting, the smallest
   /// excess() first.
   std::vector<const TuneTrial*> nearest(std::size_t count);
-  /// Returns the first `count` of `trials` by excess(), smallest first, evaluated as far as Need::excess. Leaves out
-  /// trials for which `counts` returns false after this evaluation. With `one_per_setting`, also leaves out all but the
-  /// first trial of each setting.
+  /// Returns the `count` trials with the smallest excess() among `trials`, smallest first. The returned trials are
+  /// evaluated as far as Need::excess. Leaves out trials for which `counts` returns false after this evaluation. With
+  /// `one_per_setting`, also leaves out all trials of a setting except its trial with the smallest excess().
   std::vector<const TuneTrial*> smallest_excess(std::vector<const TuneTrial*> trials, std::size_t count,
                                                 bool one_per_setting,
                                                 const std::function<bool(const TuneTrial&)>& counts);
-  /// Returns true if a trial violates only limits, by a smaller excess() than `other`.
+  /// Returns true if a trial violates only limits, and its excess() is smaller than the excess() of `other`.
   bool is_nearer(const TuneTrial& trial, const TuneTrial& other);
   /// Returns the linear loops of a scenario in a contact (contact_loops()), with the scenario's stiffness and damping.
   /// For springs in permanent contact, returns the loops along their stiffest direction. Empty without contact.
@@ -136,15 +136,15 @@ class Trials {
   MetricValues violated_limits(const TuneTrial& trial) const;
   /// Returns true for the name of a low-vibration rule.
   bool is_rule(const std::string& name) const { return rules_.contains(name); }
-  /// Returns the largest factor of violated_limits(); 1 if no limit is violated. A lower bound unless the trial was
-  /// evaluated as far as Need::excess.
+  /// Returns the largest factor of violated_limits(); 1 if no limit is violated. If the trial was not evaluated as far
+  /// as Need::excess, the returned factor is only a lower bound.
   double excess(const TuneTrial& trial) const;
 
   // ---- Verification
 
-  /// Marks the trials of a choice's setting with K from `from` to `to` [N/m] as infeasible, because the choice failed a
-  /// verification. Before restrict_refutations(), also marks the trials of settings with the same filter whose zeta and
-  /// mass differ by a factor of less than 4/3.
+  /// Refutes a choice that failed a verification: marks the trials of its setting with K from `from` to `to` [N/m] as
+  /// infeasible. Until restrict_refutations() is called, also marks the trials of settings with the same filter whose
+  /// zeta and mass differ from the choice by a factor of less than 4/3.
   void refute(const TuneSetting& setting, double from, double to, std::string constraint, std::string reason);
   /// Restricts every refutation to the setting that failed. Returns false if there are no refutations or they are
   /// already restricted.

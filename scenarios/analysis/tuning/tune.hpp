@@ -39,8 +39,8 @@ struct TunedLaw {
 /// A setting at K is feasible if
 /// - every variant of the scene, including the scene itself, is settled at K, that is, stable by rule_of(). Its
 ///   metrics keep the limits even with their errors added.
-/// - unless TuneQuestion::allow_vibration, the run of the scene itself has low vibration (low_vibration_numbers in
-///   diagnosis.hpp).
+/// - the run of the scene itself has low vibration (low_vibration_numbers in diagnosis.hpp). This condition is dropped
+///   if TuneQuestion::allow_vibration is true.
 /// - the run of the scene itself renders a force, and explicit integration of friction is stable in all its steps.
 /// - every variant is settled at G K.
 /// - the loop in contact has stable eigenvalues from K to G K (contact_loops(); with every hand of
@@ -48,8 +48,9 @@ struct TunedLaw {
 ///
 /// The search (tune_search.hpp) finds the feasible setting with the largest K. This choice is then verified
 /// (verification.hpp). If the verification fails, the search is repeated without this choice. If nothing is feasible,
-/// searches with relaxed limits confirm the relaxations that are named; a trial of these searches that keeps all limits
-/// becomes the choice. Throws InputError if the tool's position is prescribed, and Stopped.
+/// searches with relaxed limits confirm the relaxations that TunedLaw::relax names. If one of these searches finds a
+/// trial that keeps all original limits, this trial becomes the choice. Throws InputError if the tool's position is
+/// prescribed, and Stopped.
 TunedLaw tuned_law(const TuneQuestion& question, const std::string& algorithm);
 
 }  // namespace hapbench

@@ -23,10 +23,11 @@ struct TuneQuestion {
   std::vector<std::string> overrides;
   double margin = 2.0;                             ///< gain margin G: runs must be settled up to G K
   std::map<std::string, MetricBound> limits = {};  ///< limits on metrics, for all variants at K
-  /// Unless true, the run of the scene itself must have low vibration by the rules of the diagnosis.
+  /// False: the run of the scene itself must have low vibration by the rules of the diagnosis.
   bool allow_vibration = false;
   std::vector<std::string> families = {"hands"};  ///< variant sets, from kFamilies
-  Range damping_ratio = {0.01, 10.0, true};       ///< zeta, with rendering.mass_kg even on impedance devices
+  /// Damping ratio zeta, defined with the mass rendering.mass_kg, also on impedance devices.
+  Range damping_ratio = {0.01, 10.0, true};
   /// Virtual mass of an admittance device [kg]; empty: half to twice the scene's virtual mass.
   std::optional<Range> mass = {};
   bool filters = false;  ///< true: velocity filters of impedance devices are searched too

@@ -15,7 +15,8 @@ namespace hapbench {
 ///
 /// The initial settings combine damping ratios zeta, spaced by factors of about 10^(1/4), with up to three virtual
 /// masses: the scene's mass and both ends of the mass range. The search has four stages:
-/// - It searches the largest feasible K of each initial setting that is feasible at a K 0.5 % above the best K so far.
+/// - For each initial setting, it first evaluates a K that is 0.5 % above the best K so far. If the setting is feasible
+///   there, it searches the largest feasible K of the setting.
 /// - Only if no trial is feasible, it evaluates K in steps of a third of the scan's steps, next to values at which the
 ///   run of the scene itself is settled. It then evaluates the velocity filters. Finally, it descends towards the
 ///   limits from the trials with the smallest excess().

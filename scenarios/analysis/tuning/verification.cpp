@@ -61,7 +61,7 @@ bool scene_limit_is_near(Trials& trials, const TuneTrial& choice, TunedLaw& law)
   return false;
 }
 
-/// Returns true if a run twice as long is not settled, in any variant.
+/// Returns true if at least one variant is not settled in a run twice as long as the scene's run.
 bool fails_in_longer_run(Trials& trials, const TuneTrial& choice) {
   const Scenario scenario = trials.load(choice.setting, choice.stiffness).scenario;
   const double duration = scenario.time.step * static_cast<double>(scenario.time.steps);

@@ -9,8 +9,9 @@
 #include "sim/core/types.hpp"
 #include "sim/loop/simulation.hpp"
 
-/// Samples the motion and the force of a run in every TimeFields::stride-th step. Runs with different time steps are
-/// sampled at the same times if step times stride is equal, and can then be compared sample by sample.
+/// Samples the motion and the force of a run in every TimeFields::stride-th step. Two runs with different time steps
+/// are sampled at the same times if the product of time step and stride is equal in both runs. They can then be
+/// compared sample by sample.
 namespace hapbench {
 
 /// Tip position and rendered force of a run in every n-th step, n = TimeFields::stride.
@@ -25,7 +26,7 @@ struct SampledMotion {
 /// free tool. Throws InputError and Stopped.
 SampledMotion sampled_motion(const CheckedScenario& checked, const Vec3& shift = Vec3::Zero());
 
-/// Difference of two motions: root mean square over their common samples.
+/// Difference of two motions: root mean square, over all samples, of the distance between the two vectors of a sample.
 struct MotionDifference {
   double position = 0.0;  ///< [m]
   double force = 0.0;     ///< [N]

@@ -104,7 +104,7 @@ class Study {
   LevelSweep levels_;
 };
 
-/// Makes and stores the motions that a study compares with each other, each once.
+/// Makes and stores the motions that a study compares with each other. Each motion is made only once.
 class Motions {
  public:
   explicit Motions(const Study& study) : study_(study) {
