@@ -8,7 +8,8 @@
 #include "sim/loop/live_loop.hpp"
 
 /// The renderer behind hapbench_renderer.h, which documents its behaviour: a LiveLoop computes forces from the poses of
-/// a device, and limits, ramps and faults of the renderer protect the user's hand.
+/// a device, and the renderer protects the user's hand: it limits and ramps the force, and renders no
+/// force after a fault.
 namespace hapbench {
 
 /// Rotation of vectors by a quaternion. If the rotation is the identity, it returns vectors unchanged, bit for bit.

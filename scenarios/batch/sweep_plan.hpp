@@ -28,9 +28,9 @@ struct SweepPlan {
 inline constexpr std::size_t kMaxChecked = 1000;
 
 /// Returns the runs to check before the first run, in increasing order. If there are at most kMaxChecked runs, these
-/// are all runs. Of a larger sample, they are the first kMaxChecked runs. Of a larger grid, they are the runs on the
-/// lines through the first and the last run along which a single field varies; each line contributes at most
-/// kMaxChecked runs, including both ends.
+/// are all runs. Of a larger sample, they are the first kMaxChecked runs. Of a larger grid, they are the runs
+/// that differ from the run with the lowest number, or from the run with the highest number, in at most one field. For
+/// each field and each of these two runs, at most kMaxChecked runs are returned, including both ends of the field.
 std::vector<std::size_t> runs_to_check(const Cases& cases);
 
 /// Loads the scenarios of the runs to check and reads the files that they name, so that errors are found before

@@ -134,8 +134,8 @@ void check_indices(const MeshFaces& faces, const fs::path& file) {
   const auto number = first + static_cast<std::int32_t>(*wrong);
   const std::string allowed = vertices == 0 ? "vertices of the file, which has none"
                                             : fmt::format("{} ... {}, the vertices of the file", first, last);
-  // An OBJ file does not declare its number of vertices, so that an OBJ file that was cut short is not detected
-  // earlier.
+  // An OBJ file, whose first vertex has the number 1, does not declare its number of vertices. Therefore an OBJ file
+  // that was cut short is not detected earlier.
   const bool may_be_cut = first == 1 && number > last;
   faces.fail_at_face(
       face, fmt::format("got vertex {}; allowed: {}{}", number, allowed, may_be_cut ? " (is the file cut short?)" : ""),

@@ -68,8 +68,8 @@ decltype(&hapbench_module) entry_point(const fs::path& file, void* library) {
 /// Opens a library and returns its table. The library stays open, because its functions may be called until the
 /// program ends. Throws InputError if the library is not a module of this interface version.
 const HapbenchModule& opened(const fs::path& file) {
-  // Loading a library that was linked with -ffast-math switches off subnormal numbers for the whole program,
-  // which would change the results of every algorithm. The floating-point environment is therefore restored on
+  // Loading a library that was linked with -ffast-math switches off subnormal numbers for this thread and for later
+  // threads, which would change the results of every algorithm. The floating-point environment is therefore restored on
   // return.
   std::fenv_t environment{};
   std::fegetenv(&environment);

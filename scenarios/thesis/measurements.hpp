@@ -63,9 +63,9 @@ double seconds_of(int repetitions, Work work) {
   return *middle;
 }
 
-/// Returns a scenario of a drill in the block's hole, prepared for measuring contacts. An ideal device, which has no
-/// dynamics, replaces the device of `scenario` and keeps its input-force limit. The returned scenario lasts at most one
-/// period of the tilt (6 s) and records nothing.
+/// Returns `scenario`, in which a drill is in the block's hole, prepared for measuring contacts. An ideal device, which
+/// has no dynamics, replaces the device of `scenario` and keeps its input-force limit. The returned scenario lasts at
+/// most one period of the tilt (6 s) and records nothing.
 Scenario drill_in_hole(Scenario scenario);
 
 /// The contacts before (`colliding`) or after (`rendered`) the scenario's point stages.

@@ -100,9 +100,9 @@ Vec3 Simulation::angular_velocity_after(double fraction, const Vec3& axis, doubl
   return (1.0 - taken) * tool_.angular_velocity + taken * turn(from, to) / time;
 }
 
-/// Moves the tool to its scripted pose at the current step. The orientation always follows the script; omega_k
-/// is the rotation of the last step divided by dt, and omega_0 = 0. A prescribed position also gives the
-/// velocity, v_k = (p_k - p_{k-1}) / dt, and v_0 = v_1.
+/// Moves the tool to its scripted pose at the current step. The orientation always follows the script. If the
+/// angular velocity is used, omega_k is the rotation of the last step divided by dt, and omega_0 = 0. A prescribed
+/// position also gives the velocity, v_k = (p_k - p_{k-1}) / dt, and v_0 = v_1.
 void Simulation::move_tool_by_script() noexcept {
   const double t = static_cast<double>(row_) * config_.dt;
   const Vec3 axis = parts_.motion->axis_at(t);

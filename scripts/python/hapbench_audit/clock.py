@@ -1,4 +1,5 @@
-"""Statistics of the times of a log: rate, jitter and missing rows, and how many rows repeat each position or force."""
+"""Statistics of the times of a log: rate, jitter and missing rows, and the number of successive rows in which a
+position or a force stays the same."""
 import numpy as np
 
 from .log import LONG_INTERVALS

@@ -86,7 +86,8 @@ def chosen(rows, **wanted):
 
 
 def ratio_of_closed_form(grip, matched):
-    """Returns the force of the proxy divided by the force of the device with torque, for one contact. `grip`: distance
+    """Returns the force of the proxy divided by the force that a device with force and torque renders, for one
+    contact. `grip`: distance
     of the grip from the force point [m]. `matched`: true for a proxy that is matched to a hand with its grip at the
     force point, false for a proxy that does not rotate."""
     series = 1 / COUPLING + 1 / HAND

@@ -17,7 +17,8 @@ UNITS = {
     "angle": {"rad": 1.0, "rads": 1.0, "radian": 1.0, "radians": 1.0, "mrad": 1e-3}
     | {unit: 0.017453292519943295 for unit in ("deg", "degs", "degree", "degrees", "°")},
 }
-# Endings of column names that are certainly units, as in x_mm. The endings of x_m and x_cm may have another meaning.
+# Endings of column names that are certainly units, as in x_mm. Other endings, as in x_m and x_cm, may have another
+# meaning.
 _ENDINGS = "ms msec us usec ns nsec mm um mN kN deg".split()
 _UNCLEAR_ENDINGS = ("cm", "in", "inch", "nm")
 _BRACKETED = re.compile(r"\s*([\[(])\s*([^\[\]()]*?)\s*[\])]\s*$")
