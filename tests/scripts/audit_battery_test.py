@@ -13,8 +13,8 @@ from hapbench import audit  # noqa: E402  (finds the program in the environment)
 T = 1e-3  # sampling period [s]
 # Mass of the handle [kg], stiffness [N/m] and damping [N s/m] of the hand.
 MASS, HAND, HAND_DAMPING = 0.12, 250.0, 3.5
-# Allowed error of the intervals, relative to the true value, for a model that is exact. It covers the rounding of the
-# log: positions have six decimals, forces nine digits.
+# A reported interval may miss the true value by at most this fraction of the true value. The model is exact, so the
+# only errors are those of the log's rounding: positions have six decimals, forces nine digits.
 ROUNDING = 1e-4
 
 

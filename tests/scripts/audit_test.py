@@ -126,7 +126,8 @@ class KnownAnswers(unittest.TestCase):
         z = pressed(20) + 2e-4 * np.cumsum(rng.normal(size=len(pressed(20)))) / 100.0
         stiffness = 1000.0
         damped = audit(table(z, wall(z, stiffness, 1.0)))["energy"]
-        # A contact that begins between two rows adds at most K d²/2, with the displacement d per row at touch (80 um).
+        # A contact that begins between two rows adds at most K d²/2. Here d is the displacement per row at first touch:
+        # 80 um plus noise, less than 100 um.
         touch = 0.5 * stiffness * 1e-4**2
         self.assertLessEqual(damped["net_created_J"], damped["net_created_error_J"] + touch)
         bare = audit(table(z, wall(z, stiffness)))["energy"]
@@ -426,7 +427,7 @@ class OwnRuns(unittest.TestCase):
         if stated is None or value is None:
             self.assertEqual(value, stated, (scene, name))
             return
-        # Sums in another order round differently. The summary states the error of metrics from a histogram.
+        # Sums in another order round differently. For metrics from a histogram, the summary states a tolerance.
         within = 1e-9 * abs(stated) + summary["tolerances"].get(metric, 0.0) + 1e-12
         self.assertAlmostEqual(value, stated, delta=within, msg=(scene, name))
 

@@ -15,8 +15,8 @@ T = 1e-3  # interval of the rows [s]
 
 
 def smooth(share):
-    """Returns a transition from 0 to 1 without a jump of the acceleration. `share`: time as a fraction of the
-    transition."""
+    """Returns a transition from 0 to 1 without a jump of the acceleration. `share`: time since the start of the
+    transition, divided by its duration."""
     share = np.clip(share, 0.0, 1.0)
     return 10 * share**3 - 15 * share**4 + 6 * share**5
 

@@ -125,7 +125,7 @@ def shortened(command, folder):
     ):
         shorter = [*shorter, "--algorithms", "shaped_stiffness"]  # for studies over all laws
     if "--errors" in given:
-        # --errors also runs at half of this spacing.
+        # With --errors, the command also runs at half the spacing of the points.
         shorter = [*shorter, "--set", "environment.spacing_m=4e-4"]
     if "--resolution" in given:
         shorter = [word for word in shorter if word not in ("--resolution", "0.5")]

@@ -82,7 +82,7 @@ def make_results(directory):
         hapbench(verb, study, *words, "--out", directory / study)
     make_accuracy(directory / "accuracy")
     shutil.copy(REFERENCE / "claims.json", directory)
-    # The fraction of the loop's period that a step takes is drawn only if this file exists.
+    # The figure of the time that a step takes, as a fraction of the loop's period, is drawn only if timing.json exists.
     loop = directory / "step_latency" / "task2_rotate_signed_distance"
     loop.mkdir(parents=True)
     (loop / "timing.json").write_text(

@@ -162,8 +162,9 @@ class Folders(unittest.TestCase):
         self.assertEqual(self.ends_of([comparison])[0][0], 0)
 
     def test_beside_reproduce_only_its_own_runs_are_refused(self):
-        """Checks that a run into another folder beside those of a running `reproduce` succeeds, and that a run into one
-        of its folders is refused. scripts/reproduce writes studies beside the folders of `reproduce`.
+        """Checks two runs that write below the output folder of a running `reproduce`. A run into the subfolder study,
+        which `reproduce` does not use, succeeds. A run into the subfolder thesis, which `reproduce` uses, is refused.
+        scripts/reproduce writes studies to such other subfolders.
         """
         folder = self.root / "both"
         reproduce = subprocess.Popen(

@@ -87,8 +87,9 @@ def judged(seed):
 
 
 def table(ones):
-    """Returns the lines of a Markdown table by kind of signal and in total. For each parameter it has the fraction of
-    the reported intervals that contain the true value. `ones`: results of judged()."""
+    """Returns the lines of a Markdown table with a row for each kind of signal and a row for all logs. For each
+    parameter, a row has the fraction of the reported intervals that contain the true value. `ones`: results of
+    judged()."""
     rows = [
         "| logs | m | b | c | delay | offset | refused | not told | largest residual / at the "
         "truth | CPU, mean, largest |",

@@ -78,7 +78,8 @@ class Logs(unittest.TestCase):
         return error
 
     def assert_holds(self, result):
-        # The mean interval of a clock with jitter differs from 1 ms.
+        # The clock has jitter, so its mean interval differs from 1 ms. The true delay is therefore divided by the mean
+        # interval that the program found.
         for name, true in {**TRUE, "delay_samples": DELAY_S / result["step_s"]}.items():
             low, high = result[name]["interval"]
             self.assertTrue(low <= true <= high, f"{name}: {true} in {low} ... {high}")

@@ -88,7 +88,7 @@ class Recordings(Given):
             "in other units? (--scale time=1e-06)",
         )
         self.assertEqual(self.refusal(even, scale="time=1e-6"), "")
-        # An interval of four median intervals is not a gap by its ratio, but it is longer than max_gap.
+        # An interval four times as long as the median interval is not yet a gap, but this interval exceeds max_gap.
         slow = "0,0,0,0\n0.2,0.001,0,0\n0.4,0.002,0,0\n1.2,0.003,0,0\n"
         self.assertEqual(
             self.refusal(slow),

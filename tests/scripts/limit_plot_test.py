@@ -265,7 +265,7 @@ class Limits(Given):
         figure = draw_study(folder, SHEETS["double"])
         self.assertIn(BEYOND_LABEL, legend_labels(figure))
         self.assertNotIn("simulated limit", legend_labels(figure))
-        # The marks of a device and of its variants are one line. The marks of two devices are in separate rows.
+        # The marks of a device and of its variants are one Line2D. The marks of two devices are at different heights.
         (ax,) = figure.axes
         marks = [line for line in ax.lines if line.get_marker() == "^"]
         devices = list(dict.fromkeys(device_of(row) for row in rows))

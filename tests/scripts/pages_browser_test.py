@@ -57,7 +57,7 @@ class EveryPage:
                 self.assertLessEqual(self.js("document.documentElement.scrollWidth"), width)
                 for part in self.PARTS:
                     self.js(f"document.getElementById('{part}').scrollIntoView()")
-                    # A picture with only text has tens of shades of grey.
+                    # An empty picture has few colours. A picture with text already has more than 20 shades of grey.
                     colours = Image.open(BytesIO(self.driver.get_screenshot_as_png())).getcolors(
                         20
                     )  # None means that there are more colours

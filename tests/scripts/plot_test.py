@@ -1,4 +1,4 @@
-"""Tests `hapbench plot` of runs: quantities over time, and the scene in a section."""
+"""Tests `hapbench plot` of runs: quantities over time, and the cross-section of the scene."""
 import json
 import os
 import shutil

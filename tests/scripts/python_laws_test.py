@@ -237,7 +237,8 @@ class TheEndOfTheInterpreter(Scratch):
 
     def test_finds_threads_that_have_just_ended(self):
         # The main thread holds the interpreter from the comparison to the end of the script, so that many of 16 threads
-        # still wait when the interpreter shuts down. Before this was corrected, three of four scripts were aborted.
+        # still wait when the interpreter shuts down. If hapbench did not handle such threads, three of four scripts
+        # would be aborted.
         words = [
             "compare",
             WEDGE,

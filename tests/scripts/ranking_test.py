@@ -125,8 +125,8 @@ class Rankings(WithRuns):
             self.assertEqual(known_number(value, tolerance), shown)
 
     def test_an_axis_of_bounds_alone_reaches_the_largest(self):
-        """Checks a panel of laws with only bounds: the axis extends to the largest bound. A law whose runs all failed
-        has no number."""
+        """Checks a panel in which every number is an upper bound, because its tolerance is not smaller than its value.
+        The axis must extend to the largest bound. A law whose runs all failed has no number."""
 
         class Run:
             scenario, path = {}, ""

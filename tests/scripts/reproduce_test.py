@@ -1,5 +1,5 @@
 """Tests the order in which scripts/reproduce runs its parts, with a dummy program in place of hapbench. Also tests the
-sets that scripts/assumption_sets.py draws."""
+sets of assumptions that scripts/assumption_sets.py draws at random."""
 import csv
 import json
 import math

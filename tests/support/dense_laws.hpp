@@ -53,7 +53,8 @@ ShapingOptimality shaping_optimality(const ContactBuffer& contacts, double eps);
 
 /// Largest violation that rounding in double precision allows for n <= 1000 contacts. The solver stops at a
 /// residual of 1e-14. S is the sum of eight partial sums of n/8 terms, which round by at most (n/8 + 8) eps tr
-/// S = 6e-14 (here eps is the machine epsilon). c_i = a_i . w, with |w| up to sqrt 3 / eps, adds an error of
+/// S = 6e-14 (here eps is the machine epsilon). The solver computes c_i = a_i . w, where a_i is u_i u_i^T as a unit
+/// vector of 6 components and |w| is at most sqrt 3 / eps (here eps is that of exact_shaping). This adds an error of
 /// 1e-15 in eps c_i.
 inline constexpr double kShapingRounding = 1e-13;
 

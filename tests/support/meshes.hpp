@@ -16,8 +16,8 @@ namespace hapbench::test {
 
 /// Returns the cube with corners at +-half around `centre`: 8 vertices, 12 triangles.
 TriangleSoup cube(double half = 1.0, const Vec3& centre = Vec3::Zero());
-/// Returns an octahedron whose triangles are divided into four `levels` times, with all vertices projected onto
-/// the sphere around the origin.
+/// Returns a sphere around the origin. Starts with an octahedron, divides each triangle into four triangles, `levels`
+/// times, and projects all vertices onto the sphere.
 TriangleSoup sphere(double radius, int levels);
 /// Returns a grid of `n` x `m` quads with vertices position(i, j), i = 0 … n, j = 0 … m. Each quad is divided
 /// into two triangles. Vertices with equal positions are not merged; the code under test must weld them.

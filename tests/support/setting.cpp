@@ -141,8 +141,9 @@ Setting wedge_springs() {
   return springs({{0.5, s, 0.0}, {0.5, -s, 0.0}}, kDeep * Vec3::UnitX(), false);
 }
 
-/// Spring force divided by K of each law in the five scenes above, in units of the compression. By default K_vc
-/// = K. A set of springs with the total stiffness k K then acts in series with K, and renders k / (k + 1).
+/// Spring force divided by K of each law in the five scenes above, in units of the compression. For
+/// `virtual_coupling`, K_vc = K by default: springs with the total stiffness k K act in series with K and give
+/// k / (k + 1).
 struct SpringRow {
   std::string_view law;
   double single, parallel, corner, opposite, wedge;

@@ -102,8 +102,8 @@ std::span<const AnalyticScene> analytic_scenes();
 RenderingConfig config_for(std::string_view algorithm, const AnalyticScene& scene);
 
 /// Returns the sum of |d_i| over the scene's contacts, where d_i are the depths under the algorithm's depth
-/// model [m]. If the gradients agree, no law renders more than K times this sum. It is also the scale of
-/// rounding errors.
+/// model [m]. If all gradients are equal, no law renders more than K times this sum. Rounding errors of the force
+/// are in proportion to K times this sum.
 double total_depth(const Setting& setting, const RenderingConfig& config);
 
 }  // namespace hapbench::test

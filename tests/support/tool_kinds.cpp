@@ -40,7 +40,7 @@ struct Section {
 
   Real distance(Real s, Real rho) const {
     Real nearest = ball > 0.0L && s > 0.0L ? std::abs(std::hypot(s, rho) - ball) : 1e9L;
-    // A round tip has no disc: skip the last edge.
+    // The last edge is the disc of a flat tip. A round tip has no disc, so skip the edge.
     for (std::size_t i = 0; i + (ball > 0.0L ? 2 : 1) < corners.size(); ++i) {
       const Real ds = Real(corners[i + 1].s) - corners[i].s, dr = Real(corners[i + 1].rho) - corners[i].rho;
       const Real from_s = s - corners[i].s, from_rho = rho - corners[i].rho, length2 = ds * ds + dr * dr;

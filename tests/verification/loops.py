@@ -17,14 +17,15 @@ from loop_models import MAPS, between, limit_of, radius, random_device, random_h
 PROGRAM = Path(sys.argv[1]).resolve()
 COUNT = int(sys.argv[2]) if len(sys.argv) > 2 else 2
 RANDOM = np.random.default_rng(85)
-# Largest relative difference of a limit on a spring. `limit` bisects eigenvalues to 1e-11. Rounding changes an
-# eigenvalue of multiplicity two by the square root of the machine precision, 1e-8.
+# Largest allowed relative difference between the limit that `limit` reports and the limit from the eigenvalues here,
+# for a contact with a spring. `limit` bisects eigenvalues to 1e-11. Rounding changes an eigenvalue of multiplicity two
+# by the square root of the machine precision, 1e-8.
 SPRINGS_AGREE = 1e-7
-# Largest relative difference of a limit on a surface. The derivative of a rendered force is a difference quotient with
-# an error of 1e-7. The limit depends on it about linearly.
+# The same for a contact with a surface. The derivative of a rendered force is a difference quotient with an error of
+# 1e-7. The limit depends on the derivative about linearly.
 SURFACES_AGREE = 1e-5
-# Runs have a stiffness K below and above the limit by the fraction BESIDE. A run takes about three times the number of
-# steps in which its amplitude changes by the factor GROWN. The run is skipped if this number exceeds MAX_STEPS.
+# Runs have a stiffness K below and above the limit by the fraction BESIDE. Let n be the number of steps in which the
+# amplitude changes by the factor GROWN, plus 100. A run has 3 n steps. If n exceeds MAX_STEPS, the run is skipped.
 BESIDE, GROWN, MAX_STEPS = 0.05, 100.0, 200_000
 
 
@@ -96,8 +97,8 @@ def check(name, got, known, within, faults):
 
 
 def check_springs(folder, faults):
-    """Checks the limit of each device with each hand on a spring. Runs below and above the limit must decay and
-    grow."""
+    """Checks the limit of each device with each hand on a spring. A run below the limit must decay, and a run above the
+    limit must grow."""
     pairs = [(device, hand) for device in MAPS for hand in ("none", "force", "impedance")]
     pairs.append(("impedance", "mass_spring_damper"))
     for device, hand in pairs:

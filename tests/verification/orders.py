@@ -35,8 +35,8 @@ FORMAL = {
     "implicit_midpoint": (2, 2),
     "event": (4, 4),
 }
-# Largest difference of observed and formal order. If the error at the step h is C h^p (1 + D h), and D h is below 0.07
-# at the second-finest step, the observed order differs from p by less than log2(1.07) = 0.1.
+# Largest allowed difference between observed and formal order. If the error at the step h is C h^p (1 + D h), and D h
+# is below 0.07 at the second-finest step, the observed order differs from p by less than log2(1.07) = 0.1.
 WITHIN = 0.1
 NONLINEAR = {"static_coupling"}  # laws without a closed form, because their spring softens
 # Smallest error that is used, relative to the amplitude of the motion. Smaller errors are caused by rounding.

@@ -34,9 +34,10 @@ from loop_models import MAPS, between, damping_of, radius, random_device, random
 # Largest fraction of runs that may contradict `limit`. `limit` itself states that up to 6 % of its stable interval may
 # be unstable.
 SHARE = 0.06
-# Largest relative difference of a linear limit. The derivative of a rendered force is a difference quotient with an
-# error of 1e-7. The limit depends on it about linearly. Newton's method finds an equilibrium to 1e-10 m, which changes
-# the slope of a round tip by up to 1e-10 / 1e-5.
+# Largest allowed relative difference between the linear limit that `limit` reports and the limit from the eigenvalues
+# of loop_models.py. The derivative of a rendered force is a difference quotient with an error of 1e-7. The limit
+# depends on the derivative about linearly. Newton's method finds an equilibrium to 1e-10 m, which changes the slope of
+# a round tip by up to 1e-10 / 1e-5.
 AGREE = 3e-5
 # An eigenvalue within this distance of 1 belongs to a mode that moves freely. Rounding changes an eigenvalue of
 # multiplicity two by the square root of the machine precision.
@@ -152,8 +153,8 @@ def push_of(scene):
 
 
 def loop_radius(scene, K, slope, ratio):
-    """Returns the spectral radius of the loop along the normal, with the contact stiffness K `slope` and the contact
-    damping B `ratio`."""
+    """Returns the spectral radius of the loop along the normal, with the contact stiffness K * `slope` and the contact
+    damping B * `ratio`, where B is the damping of the rendering."""
     return radius(MAPS[scene["device"]["type"]](scene, K * slope, damping_of(scene, K) * ratio))
 
 

@@ -55,7 +55,8 @@ TEST(Fitted, BreaksWideLinesAtBlanksAndKeepsTheirIndent) {
   EXPECT_EQ(fitted("a  b\n\n", 80), "a  b\n\n");
 }
 
-/// Checks that only equal warnings are merged into one line. The warnings of `proxy` contain other numbers.
+/// Checks that the laws with the same warning are named in one line. The warnings of the two runs with `proxy` contain
+/// other numbers than the warning of `mean` and `summation`, so they are in a second line.
 TEST(RunWarnings, QuoteEachLawsOwnNumber) {
   const auto run = [](const char* law, const char* text) {
     Result result;
@@ -88,8 +89,8 @@ TEST(Deserved, HasItsUsualDigitsWithoutATolerance) {
   EXPECT_EQ(deserved(std::nan(""), 1e-3), "-");
 }
 
-/// Checks the cases of test_a_number_below_its_error_is_a_bound in tests/scripts/ranking_test.py, which tests the same
-/// text on the HTML page.
+/// Checks the same cases as test_a_number_below_its_error_is_a_bound in tests/scripts/ranking_test.py, which checks how
+/// the HTML page prints these numbers.
 TEST(Deserved, IsABoundIfTheToleranceIsNotSmaller) {
   EXPECT_EQ(deserved(0.0730, 0.37), "<= 0.5");
   EXPECT_EQ(deserved(0.0730, 0.93), "<= 2");

@@ -1,5 +1,5 @@
-// Tests the protection of the hand by hapbench_renderer.h: start without force, gaps, faults, clutch, limits, mounts,
-// and failing laws.
+// Tests the protection of the hand by hapbench_renderer.h: start without force, too long times between calls, faults,
+// clutch, limits of the force, mounts of the device, and failing laws.
 
 #include <gtest/gtest.h>
 
@@ -203,8 +203,9 @@ TEST(Renderer, LimitsTheForceAndItsRate) {
 }
 
 TEST(Renderer, MountsTheDevice) {
-  // The device's y axis is the world's z axis. 1 mm of the device is 2 mm of the world, 3 mm higher. The tip is 0.1 m
-  // below the handle, along -y of the handle's frame.
+  // The device's y axis is the world's z axis. The origin of the device's frame is 3 mm above the origin of the world.
+  // A displacement of the device by 1 mm is 2 mm in the world. The tip is 0.1 m below the handle, along -y of the
+  // handle's frame.
   HapbenchSetup setup = setup_of(kPlane);
   setup.flags = HAPBENCH_TORQUE;
   const double s = std::sqrt(0.5);

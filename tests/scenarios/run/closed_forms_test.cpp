@@ -56,9 +56,9 @@ TEST(OneSpringDamper, FollowsEquationA2ToRounding) {
   EXPECT_LT(std::abs(expected.x), 1e-100);  // the mass comes to rest
 }
 
-/// Returns the steady response x_k of the integrator's spring-damper, (M/dt²)(x_(k+1) - 2 x_k + x_(k-1)) + (B/dt)(x_k -
-/// x_(k-1)) + K x_k = F_k, to F_k = mean + amplitude sin(w k dt): the response to a geometric sequence is a geometric
-/// sequence.
+/// Returns the steady response x_k of a spring-damper to the force F_k = mean + amplitude sin(w k dt). The integrator
+/// computes (M/dt²)(x_(k+1) - 2 x_k + x_(k-1)) + (B/dt)(x_k - x_(k-1)) + K x_k = F_k. The response to a force z^k is a
+/// multiple of z^k, here with z = exp(i w dt).
 double steady_response(double K, double B, double M, double dt, const Profile::Sine& force, double k) {
   const double angle = 2.0 * std::numbers::pi / force.period_s * dt;
   const std::complex<double> z = std::polar(1.0, angle);
@@ -77,9 +77,9 @@ TEST(TenMinutesInContact, EndWhereTheClosedFormSaysAndMakeNoEnergy) {
   const double B = 2.0 * scenario.rendering.damping_ratio * std::sqrt(K * M);
   const auto& force = std::get<Profile::Sine>(std::get<ForceHandFields>(scenario.hand).force[2].shape());
   const double expected = steady_response(K, B, M, scenario.time.step, force, 1'199'999.0);
-  // The transient has decayed to e^(-100 000) of its start. Rounding of position and force, 1e-16 of 0.3 mm each,
-  // decays within a hundred steps. The phase of the sine, 5386 rad, has a rounding error of 1e-12 rad, which changes
-  // the position by 1e-12 of 0.05 mm.
+  // The transient has decayed to e^(-100 000) of its initial amplitude. The rounding errors of position and force, each
+  // 1e-16 times 0.3 mm, decay within a hundred steps. The phase of the sine, 5386 rad, has a rounding error of 1e-12
+  // rad, which changes the position by 1e-12 times the amplitude of 0.05 mm.
   EXPECT_NEAR(number_of(report.metrics, "final_position_m.z").value(), expected, 1e-15);
   const auto& bound = scenario.expect.metrics.at("final_position_m.z");
   EXPECT_NEAR(0.5 * (*bound.min + *bound.max), expected, 1e-14) << "the file's bounds are about the closed form";
@@ -133,10 +133,10 @@ TEST(PegThatJams, SlipsAtMuTimesTheLoadsOfBothWalls) {
 }
 
 /// Checks that a peg that is pushed into a taper of half angle w and then released stays if and only if mu > sin w /
-/// cos^2 w. The sum N of the loads on both faces pushes the peg out with the force N sin w. Friction holds it with at
-/// most mu N cos^2 w, because the component of the projector P along the exit direction is cos^2 w. Coulomb friction on
-/// each face would already hold the peg if mu > tan w, so the bristle of the whole tool never holds more than friction
-/// on each face.
+/// cos^2 w. The sum N of the loads on both faces pushes the peg out with the force N sin w. The law has one bristle for
+/// the whole tool and projects its force with P = I - sum N_i u_i u_i^T / N. Along the exit direction, P is cos^2 w, so
+/// friction holds the peg with at most mu N cos^2 w. With separate Coulomb friction on each face, the peg would already
+/// stay if mu > tan w.
 TEST(PegInATaper, LocksItselfFromTheClosedFormOn) {
   for (const double w : {0.1, 0.2, 0.4}) {
     const double locks = std::sin(w) / (std::cos(w) * std::cos(w));
@@ -157,9 +157,9 @@ TEST(PegInATaper, LocksItselfFromTheClosedFormOn) {
 }
 
 /// Checks the period of stick-slip. A spring whose end moves at the speed V pulls the block. The block slips when the
-/// spring force is mu N, moves with the velocity V (1 - cos w t), and therefore comes to rest every 2 pi sqrt(M/k). At
-/// rest, the spring force is mu N again and grows. With a single friction coefficient, the block therefore slips again
-/// at once.
+/// spring force is mu N, moves with the velocity V (1 - cos w t) with w = sqrt(k/M), and therefore comes to rest every
+/// 2 pi / w. At rest, the spring force is mu N again and grows. With a single friction coefficient, the block therefore
+/// slips again at once.
 TEST(StickSlip, HasThePeriodOfSpringAndMass) {
   for (const double k : {100.0, 200.0, 400.0}) {
     for (const double mass : {0.05, 0.1}) {
@@ -199,8 +199,8 @@ LoadedScenario with_algorithm(const char* scenario, const char* algorithm) {
   return load_scenario(find_scenario(scenario), overrides);
 }
 
-/// Largest depth [m] of a shell point in a proxy that counts as outside the shell: rounding of the proxy's position,
-/// plus the violation (kViolationTolerance) that a move of at most a millimetre allows.
+/// A proxy counts as outside the shell if no shell point is deeper in it than this depth [m]. The depth allows for the
+/// rounding of the proxy's position and for kViolationTolerance times a move of at most a millimetre.
 constexpr double kOutside = 1e-9;
 /// Depth [m] of a shell point in the drill's proxy above which the proxy leaves the shell at a limited speed: the
 /// distance that the proxy moves in one step at kProxyRecoverySpeed.
@@ -270,9 +270,9 @@ struct Run {
   std::int64_t steps;
   double allowed = kOutside;  ///< allowed depth of a point in the proxy [m]
 };
-/// Allowed depth [m] of a point in the proxy in a corner. There, the flat patches about the points may leave no room
-/// for the proxy although the points do. The proxy then distributes the depth of the patches, at most a tenth of the
-/// spacing, over patches and points.
+/// Allowed depth [m] of a shell point in a proxy that is in a corner. The proxy also keeps out of the flat patches of
+/// surface around the points. In a corner, the patches may leave no room for the proxy although the points do. The
+/// depth of the patches, at most a tenth of the spacing, is then distributed over patches and points.
 constexpr double kShared = 1e-5;
 class ProxyOverAWholeRun : public testing::TestWithParam<Run> {};
 INSTANTIATE_TEST_SUITE_P(Scenes, ProxyOverAWholeRun,
@@ -287,7 +287,7 @@ TEST_P(ProxyOverAWholeRun, NeitherEntersTheShellNorGetsStifferThanOneSpringNorTa
   const PointsInProxy points =
       watch(GetParam().scenario, GetParam().steps / static_cast<std::int64_t>(test::sanitized(16)));
   EXPECT_TRUE(points.cleared);
-  // At the start, points are up to 22 um deep in the tools. The proxies leave by 10 um per step.
+  // At the start, shell points are up to 22 um deep in the tools. The proxy leaves the shell by 10 um per step.
   EXPECT_LE(points.steps_until_clear, 10u);
   EXPECT_LE(points.deepest, GetParam().allowed);
   EXPECT_LE(points.stiffest, 1.0 + 1e-12);

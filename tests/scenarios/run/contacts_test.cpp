@@ -49,8 +49,8 @@ TEST(LinearContacts, OfAPlaneAreFreshForEveryAlgorithm) {
   for (const AlgorithmEntry& algorithm : algorithms()) {
     SCOPED_TRACE(algorithm.info->name);
     const std::vector<std::string> pressed = {"rendering.algorithm=" + std::string(algorithm.info->name),
-                                              // This model measures the exit along the normal. With other models, the
-                                              // depths of points at the rim do not follow the tool.
+                                              // This model measures the depth along the normal. With other models, the
+                                              // depths of points at the rim of the tip do not follow the tool.
                                               "rendering.depth_model=normal_projection", R"(hand={"type":"none"})",
                                               "time.duration_s=0.05",
                                               R"(motion.position={"type":"prescribed","x_m":0,"y_m":0,
@@ -67,7 +67,7 @@ TEST(LinearContacts, OfAPlaneAreFreshForEveryAlgorithm) {
       if (k < 4) {
         EXPECT_EQ(linear[k].force.spring, Vec3(Vec3::Zero()));
       } else if (k >= kInContact && depths_are_the_normals) {
-        // The solvers of the laws stop at 1e-6 of the force or less.
+        // The iterative solvers of the laws end with an error of at most 1e-6 times the force.
         ASSERT_NEAR((linear[k].force.spring - fresh[k].force.spring).norm(), 0.0, 1e-6 * fresh[k].force.spring.norm())
             << k;
       }
@@ -75,8 +75,8 @@ TEST(LinearContacts, OfAPlaneAreFreshForEveryAlgorithm) {
   }
 }
 
-/// Checks multi-rate contacts that are found in every step. A dropout probability of 1e-300 makes the run hold its
-/// contacts, although no query is ever lost.
+/// Checks multi-rate contacts that are found in every step. A dropout probability of 1e-300 switches the holding of
+/// contacts on, although in practice no query is ever lost.
 TEST(MultiRateContacts, OfEveryRowChangeNoBitForAnyAlgorithm) {
   for (const AlgorithmEntry& algorithm : algorithms()) {
     SCOPED_TRACE(algorithm.info->name);
@@ -199,8 +199,8 @@ TEST(ContactPlugin, NamesWhatItMisses) {
   EXPECT_NE(message(folder + "sphere.so", "3").find("config: got 3; allowed: an object"), std::string::npos);
 }
 
-// Tests that skipped work does not change results: without skips, a run writes the same bytes, except the work
-// counters. tests/scenarios/program/bundled_scenarios_test.cpp tests the bundled scenarios.
+// Tests that a run that skips unnecessary work and a run that skips nothing (Skips::off) write the same bytes, except
+// the work counters. tests/scenarios/program/bundled_scenarios_test.cpp tests this for the bundled scenarios.
 
 /// Returns summary.json without the work counts, as text, so that every digit is compared. Writes the work counts to
 /// `work`.

@@ -41,8 +41,8 @@ void compare(const CheckedScenario& scene, std::map<Outcome, int>& early) {
 /// Checks every bundled scenario with its own gains, and with gains and forces that make the tool sink in, fly off and
 /// diverge.
 TEST(EarlyEnd, HasTheOutcomeOfTheFullRun) {
-  // At most this many steps, so some runs end before the failure that their full length would have. Their outcome must
-  // be the same as well.
+  // Both runs of a scenario have at most this many steps. In some scenarios the failure would come later. Both runs
+  // must then have the same outcome as well.
   constexpr std::int64_t kMaxSteps = 1500;
   std::map<Outcome, int> early;
   for (const auto& [name, group, file] : bundled_scenarios()) {
@@ -102,8 +102,8 @@ TEST(EarlyEnd, LeavesOnlyIfNoHandBringsTheToolBack) {
     SCOPED_TRACE(patch);
     const Result run = ended(patch);
     EXPECT_EQ(run.end.outcome, run_scenario(above_plane(patch), {}, false).end.outcome);
-    // A run whose tool may come back does not end early because it left the surface. It may end early because it went
-    // through.
+    // If the tool may come back, the run does not end early because the tool left the surface. It may end early because
+    // the tool went through the surface.
     if (!early && run.end.ended_at) {
       EXPECT_EQ(run.end.outcome, Outcome::went_through);
     }
@@ -114,8 +114,8 @@ TEST(EarlyEnd, LeavesOnlyIfNoHandBringsTheToolBack) {
   }
 }
 
-/// Checks a tool that is pushed through the plane and moves on to the bound of divergence. A run that ends early has
-/// the outcome of the full run.
+/// Checks a tool that is pushed through the plane and moves on until the run counts as diverged. A run that ends early
+/// has the outcome of the full run.
 TEST(EarlyEnd, ToolThatWentThroughMayStillDiverge) {
   const char* const shot = R"({"hand": {"z_N": -1e6}, "time": {"steps": 20000}})";
   const Result run = ended(shot), full = run_scenario(above_plane(shot), {}, false);

@@ -70,8 +70,8 @@ TEST(Outcome, AScriptMayLeadTheToolAway) {
   EXPECT_EQ(run_of(led).end.outcome, Outcome::completes);
 }
 
-/// Checks that the distance is measured to the surface. The tip centre is inside the environment's box all the time, 1
-/// mm from the wall of a hole of 2 mm.
+/// Checks that the distance in the warning is the tool's distance to the surface, not to the bounding box of the
+/// environment. The tip centre is always inside this box, 1 mm from the wall of a hole of 2 mm diameter.
 TEST(Outcome, NoContactIsMeasuredToTheSurface) {
   const char* const in_hole =
       R"({"hand": null, "initial": {"position_m": [0, 0, -0.001]}, "tool": {"diameter_m": 0.0006},
@@ -171,9 +171,9 @@ std::string warnings_of(const Result& report) {
   return text;
 }
 
-/// Checks paths of two to four legs that turn back on themselves or to one side. A tool that lags behind the moving
-/// point by a fraction of its width follows all of these paths, however far it is from its start at the end. Under
-/// strong dry friction the tool follows none of the paths.
+/// Checks paths of two to four straight legs, of which each leg turns back or to one side. A tool that lags behind the
+/// moving point of the hand's spring by a fraction of its width counts as following the path, whatever the distance
+/// between the start and the end of the path is. Under strong dry friction the tool follows none of the paths.
 TEST(Drag, IsJudgedAlongItsPathAlsoWhereThePathReturns) {
   const std::vector<Json> paths = {
       {{-0.002, 0, 0}, {0.002, 0, 0}, {-0.002, 0, 0}},
@@ -376,7 +376,7 @@ TEST(Diagnosis, NamesNoOutcomeThatTheSceneExpects) {
 }
 
 /// Checks the reported frequency. An undamped spring of 20 000 N/m and 0.1 kg oscillates at 71.2 Hz. The last quarter
-/// of the run takes half a second, so an error of half an oscillation is 1 Hz.
+/// of the run takes half a second, so an error of half an oscillation in the count is an error of 1 Hz.
 TEST(Diagnosis, ReportsTheFrequencyOfABuzz) {
   const Result result = run({"single_spring", {"rendering.damping_ratio=0.0005", "time.steps=4000"}});
   const Diagnosed* buzz = finding(result, "buzz");
@@ -458,15 +458,15 @@ std::vector<Trap> traps() {
       {"fault", kMolar, {}, "correct the law", "time.step_s", Outcome::diverges, "gives a force that is not finite"},
       {"diverged", kMolar, {}, "without contact", "smaller K", Outcome::diverges},
       {"edge", kMolar, {{"ratio_max", 1e9}}, "", "smaller K", Outcome::diverges, "gives a force that is not finite"},
-      // No K helps a tool that starts inside. Changing the hand does not help a tool that a script moves.
+      // No K helps a tool that starts inside the object. Changing the hand does not help a tool that a script moves.
       {"sank", kMolar, {}, "initial.position_m", "larger K", Outcome::went_through, "", inside()},
       {"sank", kLed, {}, "motion.position", "larger K", Outcome::went_through},
       {"lost", kOmegaMolar, {}, "device.coulomb_N", "initial.position_m", Outcome::no_contact, "", held()},
       {"lost", kLed, {}, "motion.position", "hand's direction", Outcome::no_contact},
       {"stuck", {"impedance_at_wall"}, {}, "device.coulomb_N", "rendering.friction", Outcome::stuck},
       {"stuck", {"drag_molar_dry"}, {}, "rendering.friction", "device.coulomb_N", Outcome::stuck},
-      // A tool that diverges makes long steps, so the rule finds nothing. A slower hand does not help a tool that a
-      // script moves.
+      // If the tool diverges, its long steps are a consequence, so the rule `step` finds nothing. A slower hand does
+      // not help a tool that a script moves.
       {"step", kMolar, {}, "", "", Outcome::diverges, "", long_step()},
       {"step", kLed, {}, "motion.position", "slower hand", Outcome::completes, "", long_step()},
       // A script makes the same contacts at any K, so a smaller K does not help.
@@ -495,7 +495,7 @@ std::vector<Trap> traps() {
        Outcome::completes,
        "",
        contact(50)},
-      // In equilibrium, the rendered force balances the hand's force, so a smaller K does not reduce it.
+      // In equilibrium, the rendered force balances the hand's force. A smaller K does not reduce the rendered force.
       {"saturated", kOmegaMolar, {}, "smaller hand force", "smaller K", Outcome::completes, "", contact(50)},
       {"damping",
        {"drag_molar", {"rendering.damping_N_s_per_m=1e4"}},

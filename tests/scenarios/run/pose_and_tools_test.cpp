@@ -106,7 +106,7 @@ void expect_torques(std::string_view algorithm, const Surface& surface) {
   for (std::size_t k = 0; k < rows.rows(); ++k) {
     const Vec3 spring = rows.vector(k, {"fspring_x_N", "fspring_y_N", "fspring_z_N"});
     Vec3 tip = rows.vector(k, {"px_m", "py_m", "pz_m"});
-    // For a proxy, the points act on the proxy, which is displaced from the tool.
+    // With the law `proxy`, the contacts act on the proxy, which is displaced from the tool.
     if (algorithm == "proxy") tip += spring / rendering.stiffness;
     std::vector<Contact> of_row;
     for (; next < contacts.rows() && contacts.number(next, "step") == static_cast<double>(k); ++next) {
@@ -148,7 +148,8 @@ TEST(LostTorque, IsTheSumOverTheContactsOfArmTimesShareForEveryAlgorithm) {
   for (const AlgorithmEntry& algorithm : algorithms()) {
     SCOPED_TRACE(algorithm.info->name);
     expect_torques(algorithm.info->name, kPlane);
-    // In a slot that is too narrow, the proxy takes a compromise; the forces of its contacts have their own tests.
+    // The slot is too narrow for the tool, so the proxy cannot avoid overlapping it. Other tests cover the forces of
+    // the contacts in this case.
     if (std::string_view(algorithm.info->name) != "proxy") expect_torques(algorithm.info->name, kSlot);
   }
 }
@@ -314,7 +315,7 @@ TEST(MakeShell, OfABlockListsVerticesOnceOrForEachCell) {
   const auto per_cell = make_shell(scenario);
   EXPECT_GT(shared->size(), 1000u);
   EXPECT_EQ(per_cell->size(), 4 * shared->size());
-  // The cubes are aligned with the multiples of the grid's spacing. Other cubes would give different cells.
+  // The cubes of marching cubes start at multiples of the grid's spacing. Shifted cubes would give different cells.
   const auto& block = std::get<BlockEnvironment>(scenario.environment);
   const IsoSurface surface = marching_cubes(density_field(block.block, block.grid, block.density), {.cells = true});
   EXPECT_EQ(per_cell->cell_of_points(), points_by_cell(surface, block.grid).cells);

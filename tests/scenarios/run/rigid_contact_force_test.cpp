@@ -29,8 +29,8 @@ Json over_a_cube() {
   })");
 }
 
-/// Returns the scenario of a hand of 300 N/m whose target comes down to 5 mm, 0.5 mm below the lowest free position
-/// over the cube's face, and then stays there.
+/// Returns the scenario of a hand of 300 N/m whose target moves down to z = 5 mm and then stays there. This is 0.5 mm
+/// below the lowest tip centre at which the tool does not overlap the cube.
 Json held_over_a_cube(const char* algorithm, double K) {
   Json json = over_a_cube();
   json.erase("motion");
@@ -73,7 +73,8 @@ TEST(RigidContactForce, DoesNotDependOnTheLawAndScalesWithK) {
   EXPECT_NEAR(rigid_contact_force(loaded.scenario, loaded.files)->at(0.3)->z(), 0.5, 1e-10);
 }
 
-/// Checks the fidelity of a run with the proxy, and its tolerance of five times the error of the reference.
+/// Checks the force error of a run with the proxy relative to the reference force. The tolerance of this metric is five
+/// times the error of the reference force.
 TEST(RigidContactForce, IsComparedWithTheRenderedForce) {
   Json json = over_a_cube();
   json["rendering"]["algorithm"] = "proxy";  // the proxy uses the constraints of rigid contact on points
@@ -135,8 +136,8 @@ TEST(RigidContactForce, InAHandComparesForceAndDisplacement) {
   // over 2 s is smaller than the square of `depth` by a fraction of at most 2 * 7.1 ms / 2 s, and its root is smaller
   // than `depth` by half of this fraction.
   EXPECT_NEAR(displacement, depth, 0.004 * depth);
-  // The rendered force rises from 0 with this time constant tau. The mean of its squared error over 2 s is larger by at
-  // most (0.15 N)^2 (tau / 2) / 2 s.
+  // The rendered force rises from 0 with this time constant tau. The mean of its squared error over 2 s therefore
+  // exceeds (k depth)^2, the squared error at equilibrium, by at most (0.15 N)^2 (tau / 2) / 2 s.
   EXPECT_GT(force, kHand * depth);
   EXPECT_LT(force, std::sqrt(std::pow(kHand * depth, 2) + std::pow(kHand * 0.0005, 2) * 0.0071 / 2.0 / 2.0));
   EXPECT_EQ(

@@ -142,7 +142,7 @@ TEST_F(StopSignals, EndARunOfWhichNothingIsLeft) {
   EXPECT_TRUE(std::filesystem::exists(directory / "out/below/summary.json"));
 }
 
-// Compares the linear loops of scenarios with the simulation of the scenarios.
+// Compares the linear model of the loop of hand, device and contact with the simulation of the same scenario.
 
 Scenario single_spring(const std::vector<std::string>& overrides = {}) {
   return test::bundled("single_spring", overrides);

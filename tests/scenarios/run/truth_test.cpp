@@ -42,9 +42,9 @@ using Truth = std::function<double(const Vec3& p)>;
 double ball_in_plane(const Vec3& p) {
   return std::max(0.0, kRadius - p.z());
 }
-/// Depth of a ball in a plate that is 0.2 mm thick, below z = 0, and wider than the tool's path: the depth at the
-/// height of the tool that is nearest to the middle of the plate. The tool extends from the lowest point of the ball to
-/// the end of the shank.
+/// Depth of a tool in a plate that is 0.2 mm thick, below z = 0, and wider than the tool's path. The tool extends
+/// vertically from the lowest point of its ball to the end of its shank. Its depth is the depth of the height at which
+/// the tool is nearest to the middle plane of the plate.
 double ball_in_plate(const Vec3& p) {
   const double neck = 0.3 * 2.0 * kRadius, end = std::sqrt(kRadius * kRadius - neck * neck) + 20.0 * neck;
   const double height = std::clamp(-0.0001, p.z() - kRadius, p.z() + end);
@@ -428,8 +428,8 @@ TEST(SettledDepth, OfEveryRowIsKnownToTheTolerance) {
   EXPECT_EQ(few.settled_within, InsideSearch::kTolerance * half_width);
 }
 
-/// Checks a drill that is dragged over a molar. It is equally deep nearly everywhere, so the search over the run has no
-/// early end.
+/// Checks a drill that is dragged over a molar. The drill is about equally deep in nearly all steps, so the search for
+/// the largest depth cannot exclude most steps early.
 TEST(LargestDepth, OfALongPathHasAnErrorBelowItself) {
   for (const char* law : {"summation", "proxy"}) {
     SCOPED_TRACE(law);

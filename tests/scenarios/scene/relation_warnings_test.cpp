@@ -51,8 +51,8 @@ TEST(AdmittanceDevice, WarnsUnderAHandThatDoesNotFeelTheHandle) {
   EXPECT_TRUE(warnings(R"({"type": "impedance", "target": {"x_m": 0, "y_m": 0, "z_m": 0}})", kDelay).empty());
 }
 
-/// Checks a device in millimetres or grams instead of metres and kilograms. Presets and light or heavy devices cause no
-/// warning.
+/// Checks the warnings about a device whose fields are given in millimetres or grams instead of metres and kilograms.
+/// Presets, and devices that are really light or heavy, cause no warning.
 TEST(ImpedanceDevice, WarnsOfNumbersThatNoDeviceHas) {
   const auto warnings = [](const std::string& fields) {
     return warnings_with({R"(device={"type":"impedance",)" + fields + "}"});

@@ -103,9 +103,9 @@ TEST_F(AssumptionSets, JudgeNothingThatUsesAScenarioOfAMissedCalibration) {
   EXPECT_EQ(found[0].why, "no value of stiffness gives the published 5 raw points");
 }
 
-/// Checks the calibration of the hand of task 2. Half the tilt amplitude changes the number of contacts before the
-/// reduction, and calibration finds a force of the hand that restores this number. A force that the set itself gives is
-/// not calibrated.
+/// Checks the calibration of the hand's force in task 2. Another angle of the hand changes the number of contacts
+/// before the reduction, and the calibration finds a force of the hand that restores this number. If the set gives the
+/// force itself (`given`), the calibration keeps this force.
 TEST(Calibration, OfRecordedInputsIsMadeAnew) {
   const Assumptions assumptions(kReference / "assumptions.json");
   const auto index = [&](const std::string& id) {

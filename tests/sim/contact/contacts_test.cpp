@@ -64,7 +64,8 @@ TEST(LambdaMax, IsTheLargestEigenvalue) {
     Vec3 eigenvalues(random.uniform(-1.0, 2.0), random.uniform(-1.0, 2.0), random.uniform(-1.0, 2.0));
     if (i % 2 == 0) eigenvalues = {1.0, 1.0, random.uniform()};  // the largest eigenvalue is double
     const Mat3 S = Q * eigenvalues.asDiagonal() * Q.transpose();
-    // Computing S and the iteration change eigenvalues by a few roundings of the norm.
+    // The rounding errors of S and of the eigenvalue iteration change an eigenvalue by a few units in the last place of
+    // the largest absolute eigenvalue.
     EXPECT_NEAR(lambda_max(S), eigenvalues.maxCoeff(), 32 * kEps * eigenvalues.cwiseAbs().maxCoeff());
   }
 }

@@ -31,7 +31,8 @@ TriangleSoup square(double height = 0.0) {
   return soup;
 }
 
-/// Returns a sphere around the origin: an octahedron whose faces are divided into four `levels` times.
+/// Returns a sphere around the origin. Starts with an octahedron and, `levels` times, divides each face into four
+/// faces.
 TriangleSoup sphere(double radius, int levels) {
   TriangleSoup soup;
   const auto add = [&](const auto& self, const Vec3& a, const Vec3& b, const Vec3& c, int level) -> void {

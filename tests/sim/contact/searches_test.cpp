@@ -29,7 +29,7 @@ TEST(NeighbourListQuery, FindsWhatBruteForceFindsAtPosesOfEveryKindOfTool) {
     const auto make_tool = [&](Random& random, double size) { return kind.make(random, 0.5 * size).shape; };
     test::WalkTotals totals;
     test::expect_agreement_with_brute_force(Random(13), make_tool, totals);
-    // Check that the walks touch points, and that lists are used more than once.
+    // Check that the tools touch points on their random walks, and that neighbour lists are used more than once.
     EXPECT_GT(totals.contacts, totals.poses / 2);
     EXPECT_LT(totals.lists_rebuilt, totals.poses / 2);
   }
@@ -49,8 +49,8 @@ TEST(NeighbourListQuery, SurvivesAnEmptyShellAndPosesThatAreNotFinite) {
 }
 
 TEST(NeighbourListQuery, HoldsToItsInequalityWhenTheToolTurnsAboutItsTip) {
-  // Points on the arc of the end opposite to the tip, 10 mm away, which moves farthest. A list that ignored rotation
-  // would miss these points.
+  // Points on the arc on which the end opposite to the tip moves, 10 mm away from the tip. A rotation about the tip
+  // moves this end farthest. A neighbour list that ignored rotation would miss these points.
   std::vector<SurfacePoint> arc;
   for (int k = 0; k < 360; ++k) {
     const double a = k * std::numbers::pi / 180.0;
@@ -169,7 +169,8 @@ TEST(MostPoints, BoundWhatAnyToolHasNearItAnywhere) {
     const Cylinder drill{size * random.uniform(0.01, 0.2), size * random.uniform(0.02, 3.0), tip};
     tightest = std::max(tightest, worst_part_of_bound(drill, size, random));
   }
-  // The walks touch points. A sanitized build does a thirtieth of the walks, which need not touch.
+  // Check that points came near the tools on some random walks. A sanitized build does only a thirtieth of the walks,
+  // so this is not required there.
   EXPECT_TRUE(tightest > 0.1 || HAPBENCH_TEST_SANITIZED != 0) << tightest;
 }
 

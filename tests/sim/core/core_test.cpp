@@ -116,7 +116,8 @@ TEST(Profile, RateIsTheTimeDerivativeOfEveryShape) {
 
 constexpr double kInf = std::numeric_limits<double>::infinity(), kNaN = std::numeric_limits<double>::quiet_NaN();
 
-/// A function with its stated error [ulp] and a range of arguments; for powers, from 2^low to 2^high with both signs.
+/// A function with its stated error `bound` [ulp]. Its arguments are in the range from `low` to `high`. If `powers`,
+/// they have both signs and absolute values from 2^low to 2^high.
 struct Case {
   const char* name;
   double (*ours)(double);
@@ -228,8 +229,8 @@ TEST(Math, ZerosInfinitiesAndOtherDomainsAreAsInTheStandard) {
   };
   for (const double y : special) {
     for (const double x : special) {
-      // The arguments include the ends of the range of double, where the quotient is 0, 1 or infinite. Both functions
-      // round equally.
+      // The arguments include the ends of the range of double, where the quotient is 0, 1 or infinite. At all these
+      // arguments, the function of hapbench and the function of std give the same bits.
       EXPECT_TRUE(same(math::atan2(y, x), std::atan2(y, x))) << y << " " << x;
       if (!std::isnan(x) && !std::isnan(y)) {
         EXPECT_TRUE(same(math::hypot(y, x), std::hypot(y, x)) || std::abs(y) == 1e308) << y << " " << x;

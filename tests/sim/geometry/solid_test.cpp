@@ -52,7 +52,8 @@ void expect_distances_to_points(Shape shape, double reach, bool planar) {
     }
     EXPECT_LE(std::abs(phi.value), nearest + 1e-12);
     EXPECT_GE(std::abs(phi.value), nearest - 0.75 * shape.spacing) << q.transpose();
-    // Away from the surface, the normal of the nearest point gives the sign, also the mean normal of an edge.
+    // Away from the surface, the normal of the nearest point gives the sign, even if it is the mean normal of two faces
+    // at an edge.
     if (nearest > 2.0 * shape.spacing) {
       EXPECT_EQ(phi.value > 0.0, point->normal.dot(q - point->position) > 0.0) << q.transpose();
     }
@@ -91,7 +92,8 @@ TEST(Solid, OfAClosedMeshHasItsExactDistance) {
       EXPECT_NEAR(solid->gradient(q, 1e-6).dot(test_gradient(*soup, q)), 1.0, 1e-6) << q.transpose();
       EXPECT_TRUE(solid->at(q).known);
     }
-    // A line along edges and through vertices crosses the surface like a line beside it.
+    // The solid counts the winding number along a vertical line through the query point. If this line goes along edges
+    // or through vertices, the sign must still be right.
     EXPECT_NEAR(solid->at(soup->vertices[0] - Vec3(0, 0, 1)).value,
                 test::exact_distance(*soup, soup->vertices[0] - Vec3(0, 0, 1)), 1e-12);
   }
@@ -264,9 +266,10 @@ TEST(Inside, AgreesWithADenseSampleOfTheTool) {
   RecordProperty("largest_shortfall_um", std::to_string(1e6 * largest));
 }
 
-/// Checks how much the bound exceeds the depth. A round tip lies in one ball, which is enlarged by a tenth of the
-/// tolerance for rounding. A leaning flat tip touches a ball whose centre is behind it along the normal; the radii of
-/// two neighbouring candidate balls may differ by a factor of two.
+/// Checks how much the bound exceeds the depth. The bound comes from balls that contain a part of the tool. The ball of
+/// a round tip is larger than the tip only by a tenth of the tolerance, for rounding. A tilted flat tip touches a large
+/// ball whose centre is behind the tip along the surface's normal. The bound is less tight there, because the radii of
+/// successive candidate balls differ by up to a factor of two.
 TEST(Inside, HasATightBoundOverAMesh) {
   const TriangleSoup cube = test::cube(0.004, {0.0, 0.0, -0.004});
   const auto solid = make_solid(cube.vertices, cube.triangles);

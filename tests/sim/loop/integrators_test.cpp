@@ -178,8 +178,8 @@ class HeldJacobian final : public ForceField {
 TEST(LinearlyImplicit, CopesWithDampingThatDrives) {
   Random random(1);
   for (int i = 0; i < 1000; ++i) {
-    // Friction f on a law whose S exceeds 1 gives the damping D = B S + f (I - S), with eigenvalues of both signs and
-    // of any size.
+    // If S has eigenvalues above 1, friction f gives the damping D = B S + f (I - S), whose eigenvalues may have both
+    // signs and any size.
     Mat3 S = Mat3::Zero();
     for (int j = 0; j < 3; ++j) {
       const Vec3 u = random.direction();

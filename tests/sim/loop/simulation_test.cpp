@@ -454,8 +454,8 @@ TEST(ObservedEnergy, IsWhatALoneToolHasLost) {
   EXPECT_NEAR(observed.energy(), given - 0.5 * kMass * end.velocity.squaredNorm(), 300 * 10 * kEpsilon * given);
 }
 
-/// Checks the trapezoidal rule: half of a rotation is assigned to the moment of the previous step, half to the moment
-/// of the next step.
+/// Checks the trapezoidal rule: the work of a rotation between two steps is the rotation times the mean of the moments
+/// at both steps.
 TEST(ObservedEnergy, AMomentThatAppearsOrGoesCountsForHalfATurn) {
   ObservedEnergy observed(kStep);
   double angle = 0.0;

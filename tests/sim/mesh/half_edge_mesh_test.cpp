@@ -139,7 +139,7 @@ TEST(MeshFromTriangles, KeepsTheFirstOfTrianglesWithTheSameCorners) {
   EXPECT_EQ(found.opposite_triangles, 1u);
   EXPECT_FALSE(found.is_double_sided);
   expect_nothing_found(found);
-  // The surface has both sides of every triangle. The normals are the normals of one side, whichever side comes first.
+  // Every triangle is present in both windings. The mesh keeps the winding that comes first, here the outward winding.
   const TriangleSoup both = together(cube(), reversed(cube()));
   const CheckedMesh double_sided = mesh_from_triangles(both);
   EXPECT_TRUE(double_sided.findings.is_double_sided);
@@ -323,7 +323,8 @@ TEST(Refine, LeavesNoLongerEdgeAndTheSameSurface) {
   EXPECT_NEAR(enclosed_volume(mesh) / volume, 1.0, 3e-11);
 }
 
-/// Checks every handle, because the handles determine the order of points, and with it the last digits of a force.
+/// Compares the index (OpenMesh handle) of every mesh element, because the indices determine the order of points, and
+/// with it the last digits of a force.
 TEST(Refine, SplitsAsOpenMeshDoes) {
   using Base = OpenMesh::TriMesh_ArrayKernelT<HalfEdgeMeshTraits>;
   Random random(7);

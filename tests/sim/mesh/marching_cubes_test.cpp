@@ -186,7 +186,7 @@ TEST(PointsByCell, OfTheThesisBlockAreAtMostFiveInACellAndFourForEachVertex) {
   const ShellPoints shell = surface.shell();
   EXPECT_EQ(surface.vertices.size(), 109'000u);
   EXPECT_EQ(shell.points.size(), 436'000u);
-  // Thesis C.2: "at least one and at most 5".
+  // Thesis C.2 on the number of points per cell: "at least one and at most 5".
   EXPECT_EQ(histogram(shell), (std::map<std::size_t, std::size_t>{{3, 52}, {4, 108'906}, {5, 44}}));
 }
 

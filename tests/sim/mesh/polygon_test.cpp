@@ -110,8 +110,8 @@ TEST(Polygon, IsAFanIfItIsConvex) {
   EXPECT_TRUE(is_fan(divided({{1, 1, 1}, {1, 1, 1}, {1, 1, 1}, {1, 1, 1}})));
 }
 
-/// Checks corners on a line. A flat triangle on an edge would repeat the corners of the neighbour's triangle on the
-/// same edge.
+/// Checks polygons with additional corners on their sides. No triangle may consist of three corners on one side: in a
+/// mesh, the polygon beyond this side might be divided into a triangle with the same three corners.
 // NOLINTNEXTLINE(readability-function-cognitive-complexity): checks every polygon and its variants.
 TEST(Polygon, HasNoFlatTrianglesIfItsCornersAreOnALine) {
   Random random(5);

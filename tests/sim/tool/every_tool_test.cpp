@@ -125,7 +125,8 @@ TEST_P(EveryTool, HasExitsWhereRaysFirstGoOut) {
     }
   });
   EXPECT_GT(rays, cases(1000));
-  // Some rays through a hollow body pass through the air at a corner.
+  // Few rays enter the body again directly after their exit, because they pass through the air at a corner of a hollow
+  // body.
   EXPECT_LE(back_in, rays / 500);
 }
 
@@ -140,7 +141,7 @@ TEST_P(EveryTool, MarksAsNearWhateverLiesWithinTheMargin) {
     const std::vector<bool> near = marked(contacts, [&](auto points, auto ranges, auto marks) {
       tool.shape->mark_near(pose, margin + kRounding, points, ranges, marks);
     });
-    // The box encloses the first two points, as a search requests it for its grid.
+    // The argument `bounds` encloses only the first two points, so the box must contain these two points.
     const Box bounds{contacts.point(0).cwiseMin(contacts.point(1)), contacts.point(0).cwiseMax(contacts.point(1))};
     const Box box = tool.shape->box_near(pose, margin + kRounding, bounds);
     const ToolShape::Grown grown = tool.shape->grown(margin + kRounding);

@@ -285,7 +285,7 @@ TEST_P(MeshToolOf, FindsInEverySearchTheContactsOfBruteForceAndGivesThemDepths) 
     }
     rebuilt += by_list->work().lists_rebuilt;
   }
-  // Check that the walks touch points, and that the lists are used more than once.
+  // Check that the tools touch points on their random walks, and that neighbour lists are used more than once.
   EXPECT_GT(contacts, poses);
   EXPECT_LT(rebuilt, poses / 2);
 }
@@ -376,7 +376,8 @@ TEST_P(MeshToolOf, LeavesItsBodyAtTheExitDistance) {
     tool_.exit_distances(pose, contacts, &exit);
     ASSERT_GE(exit, 0.0);
     ASSERT_NEAR(field(tool_, pose, x + exit * u), 0.0, 1e-9);
-    // Every position before the exit is inside, except in holes that are shorter than the smallest step.
+    // Every position on the ray before the exit is inside, except in gaps of the tool that are shorter along the ray
+    // than the smallest step of the search.
     for (double t = 0.0; t < exit - GetParam().spacing / 8.0; t += GetParam().spacing / 4.0) {
       ASSERT_LE(field(tool_, pose, x + t * u), 0.0) << t << " of " << exit;
     }
