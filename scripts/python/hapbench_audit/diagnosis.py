@@ -8,7 +8,7 @@ import numpy as np
 from hapbench_command import output_of_program
 
 from .contacts import runs_of
-from .force import CUTOFF
+from .force import CUTOFF, reversals
 from .normal import main_direction
 from .text import HAMMERS, expected_text
 
@@ -246,20 +246,19 @@ def motion_at(log, stiffness, row):
 
 
 def reversals_per_s(log, contacts, audit):
-    """Returns the number of force reversals per second of settled contact. A reversal counts only if no row is missing
-    between the forces before and after it, and if both exceed NOISE times the noise. The noise is the median of
-    `noise_N` over the contacts (see evidence_of_rows())."""
-    settled, force = contacts.settled, log.force
+    """Returns the number of force reversals() per second of settled contact. A reversal counts only if the forces
+    before and after it exceed NOISE times the noise. The noise is the median of `noise_N` over the contacts (see
+    evidence_of_rows())."""
     seconds = audit["metrics"]["settled_s"]
     if audit["metrics"]["force_reversals_per_s"] is None:
         return None
     noises = [
         one["spring"]["noise_N"] for one in audit["contacts"] if "noise_N" in (one["spring"] or {})
     ]
-    size = np.linalg.norm(force, axis=1)
+    size = np.linalg.norm(log.force, axis=1)
     is_large = size > (NOISE * float(np.median(noises)) if noises else 0.0)
-    reverses = (np.einsum("ij,ij->i", force[1:], force[:-1]) < 0.0) & (log.missing == 0)
-    return float(np.sum(reverses & is_large[1:] & is_large[:-1] & settled[1:]) / seconds)
+    counted = reversals(log)[1:] & is_large[1:] & is_large[:-1] & contacts.settled[1:]
+    return float(counted.sum() / seconds)
 
 
 def encoder_share(audit, mean):

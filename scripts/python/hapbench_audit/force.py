@@ -62,6 +62,13 @@ def even(log, contacts):
     return force, contacts.settled[row], contacts.landing[row]
 
 
+def reversals(log):
+    """Returns for each row True if the force has reversed since the row before it. The result is False if rows are
+    missing in between."""
+    reverses = np.einsum("ij,ij->i", log.force[1:], log.force[:-1]) < 0.0
+    return np.append(False, reverses & (log.missing == 0))
+
+
 def force_of(log, contacts):
     """Returns the metrics of the force for the JSON. Force steps and reversals across missing rows are not counted."""
     interval = log.interval
@@ -69,8 +76,7 @@ def force_of(log, contacts):
     change = np.diff(log.force, axis=0, prepend=log.force[:1])
     step = np.linalg.norm(change, axis=1)
     step[1:][log.missing > 0] = 0.0
-    reverses = np.append(False, np.einsum("ij,ij->i", log.force[1:], log.force[:-1]) < 0.0)
-    reverses[1:][log.missing > 0] = False
+    reverses = reversals(log)
     settled, landing = contacts.settled, contacts.landing
     settled_s = float(settled.sum() * interval)
     enough = settled_s >= MIN_SETTLED
