@@ -63,8 +63,8 @@ Cases cases_of(const ComparisonQuestion& question, const fs::path& file, std::ve
   check_seeds_and_jitter(question, first);
   if (question.seeds > 1 || question.jitter != 0.0)
     axes.push_back(seed_axis(first.scenario, question.seeds, question.jitter));
-  // Of the warnings about unused fields (kNoEffect), keep the warnings that occur with every algorithm. Keep all
-  // warnings of other kinds.
+  // Keep a warning about an unused field (kNoEffect) only if it occurs with every algorithm. Keep all warnings of other
+  // kinds.
   std::vector<Warning> common = first.warnings, special;
   const auto is_special = [](const Warning& w) { return w.kind != kNoEffect; };
   std::ranges::copy_if(first.warnings, std::back_inserter(special), is_special);

@@ -149,7 +149,7 @@ std::vector<std::size_t> runs_to_check(const Cases& cases) {
     std::iota(runs.begin(), runs.end(), std::size_t{0});
     return runs;
   }
-  // Of a large grid, check only runs in which at most one field differs from the first run or from the last run.
+  // In a large grid, check only runs in which at most one field differs from the first run or from the last run.
   std::set<std::size_t> runs;
   std::size_t stride = 1;
   for (std::size_t a = cases.axes().size(); a-- > 0;) {

@@ -466,7 +466,7 @@ double refined_face_count(const HalfEdgeMesh& mesh, double longest_edge, double 
   const double largest = longest_edge * longest_edge;
   double area = 0.0, count = 0.0;
   for (const auto face : mesh.faces()) area += mesh.calc_face_area(face);
-  // Of all triangles without an edge longer than `longest_edge`, the equilateral triangle has the largest area.
+  // The equilateral triangle has the largest area of all triangles without an edge longer than `longest_edge`.
   const double lower_bound = area / (std::sqrt(3.0) / 4.0 * largest);
   if (lower_bound > max_count) return lower_bound;
   // Divide every triangle as refine() does, with the lengths of its sides only.

@@ -195,7 +195,7 @@ TEST_F(Override, DelayInSecondsIsTheSceneSamples) {
   const double step = with({}).at("time").at("step_s").get<double>();
   EXPECT_EQ(delays({}), std::pair(0.0023, 0.0023 / step));
   EXPECT_EQ(delays({"time.step_s=0.001"}), std::pair(0.0023, 0.0023 / 0.001));
-  // Of delay_s and delay_samples, the later override replaces the other field.
+  // The later of two overrides of delay_s and delay_samples replaces the other field.
   EXPECT_EQ(delays({"device.delay_samples=3"}), std::pair(-1.0, 3.0));
   EXPECT_EQ(delays({"device.delay_samples=3", "device.delay_s=0.001"}), std::pair(0.001, 0.001 / step));
   // The effective scenario has both fields and can be read again, also with another time step.
