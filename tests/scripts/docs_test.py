@@ -206,6 +206,10 @@ class Pages(unittest.TestCase):
             [line for line in lines if len(line) > 110 and not line.startswith("|")], []
         )
 
+    def test_the_map_of_the_sources_keeps_its_size(self):
+        section = text_of("CONTRIBUTING.md").split("\n## Architecture\n")[1].split("\n## ")[0]
+        self.assertLessEqual(len(section.strip().splitlines()), 80)
+
     def test_every_algorithm_is_in_the_table(self):
         names = json.loads(
             re.search(
