@@ -52,6 +52,13 @@ class Reproduce(unittest.TestCase):
         self.assertIn("FAILED: Run time against error (exit status 7)", out)
         self.assertIn("== Report", out)  # the other parts were run
 
+    def test_words_that_are_no_option_are_refused(self):
+        for words in (["T1"], ["--only", "T1", "--figure", "A.2"], ["--figure", "A.2", "A.3"]):
+            with self.subTest(words=words):
+                status, _, err = self.run_with(NOTHING, *words)
+                self.assertEqual(status, 2)
+                self.assertIn(f'unknown argument "{words[2 if len(words) > 1 else 0]}"', err)
+
     def test_a_second_call_has_nothing_to_do(self):
         self.put("scripts/report", "#!/bin/sh\n: >results/out/reproduce/report.html\n")
         program = '#!/bin/sh\necho "$@" >>ran\n'
@@ -117,7 +124,7 @@ class Reproduce(unittest.TestCase):
         )
         status, output, err = self.run_with(NOTHING, "--figure", "2")
         self.assertEqual(status, 1)
-        self.assertIn("no study makes nowhere", err)
+        self.assertIn("no study computes the folder nowhere", err)
         self.assertIn("skipped 2", output)
 
     def test_a_claim_with_its_figures(self):
