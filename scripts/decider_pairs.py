@@ -1,14 +1,20 @@
 #!/usr/bin/env python3
-"""Judges claims with two of their deciding assumptions changed at once:
+"""Judges claims of the thesis with two of their deciding assumptions changed at the same time:
 
-    scripts/decider_pairs.py build/release/bin/hapbench [--claims ID,...]
+    scripts/decider_pairs.py build/release/bin/hapbench [--claims ID,...] [--jobs N]
 
-For each claim that several assumptions decide, takes of each such assumption the first value in
-results/reference/sensitivity.json that changes the verdict, and judges every pair of
-these values with hapbench reproduce --assumptions. Adds the verdicts to results/reference/pairs.json;
-claims on record are kept, so an interrupted command continues. Without --claims, the claims of
-appendix D, whose pairs take hours, are left out. scripts/docs writes the table of
-scenarios/thesis/README.md.
+An assumption decides a claim if another value of this assumption alone changes the verdict. If
+several assumptions decide a claim, this script takes for each of them the first value in
+results/reference/sensitivity.json that changes the verdict. It judges the claim with every pair of
+these values (hapbench reproduce --assumptions). If several claims have the same pair of values, one
+run judges all of these claims. All pairs of the claims of appendix D take two hours on one
+processor, all other pairs ten minutes.
+
+After each run, the script writes the verdicts to results/reference/pairs.json. After an
+interruption, repeat the command: it runs only pairs without a recorded verdict. A recorded verdict
+is kept while the verdict on the claim and the two values with their verdicts are the same. Changes
+of the program are not detected: to judge all pairs again, delete pairs.json. From pairs.json,
+scripts/docs writes a table of scenarios/thesis/README.md.
 """
 import argparse
 import csv
@@ -17,6 +23,7 @@ import json
 import subprocess
 import sys
 import tempfile
+from concurrent.futures import ThreadPoolExecutor, as_completed
 from pathlib import Path
 
 REFERENCE = Path(__file__).resolve().parents[1] / "results" / "reference"
@@ -38,64 +45,71 @@ def deciding_values(claim, cases):
     return values
 
 
-def judged(program, claim, values):
-    """Returns the verdict and the number of the claim for each pair of assumptions. `values`: result of
-    deciding_values()."""
-    pairs = list(itertools.combinations(values, 2))
+def pairs_to_judge(claims, cases):
+    """Returns the claims that several assumptions decide, as entries of pairs.json whose pairs have no verdict yet."""
+    entries = []
+    for claim in claims:
+        values = deciding_values(claim, cases.get(claim["id"], []))
+        pairs = [
+            {
+                "values": {name: values[name][0] for name in pair},
+                "alone": [values[name][1] for name in pair],
+            }
+            for pair in itertools.combinations(values, 2)
+        ]
+        if pairs:
+            entries.append({"id": claim["id"], "verdict": claim["verdict"], "pairs": pairs})
+    return entries
+
+
+def take_from_record(entries, record):
+    """Copies the recorded verdicts into `entries`, for claims whose recorded verdict and single verdicts are the
+    same."""
+    known = {
+        (claim["id"], claim["verdict"], json.dumps([pair["values"], pair["alone"]])): pair
+        for claim in record
+        for pair in claim["pairs"]
+    }
+    for entry in entries:
+        for pair in entry["pairs"]:
+            key = json.dumps([pair["values"], pair["alone"]])
+            pair.update(known.get((entry["id"], entry["verdict"], key), {}))
+
+
+def judged(program, claims, values):
+    """Returns the verdict and the number of each of these claims with the assumptions changed to `values`."""
     with tempfile.TemporaryDirectory() as folder:
-        # Each pair needs its own file of assumption sets: all sets of a file have the same columns, and a pair without
-        # a calibrated input must not set this input.
-        found = []
-        for pair in pairs:
-            sets = Path(folder) / "sets.csv"
-            with open(sets, "w", newline="", encoding="utf-8") as file:
-                csv.writer(file, lineterminator="\n").writerows(
-                    [pair, [values[name][0] for name in pair]]
-                )
-            command = [
-                program,
-                "reproduce",
-                "--only",
-                claim,
-                "--assumptions",
-                sets,
-                "--out",
-                folder,
-                "--json",
-            ]
-            done = subprocess.run(
-                command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
-            )
-            if done.returncode:
-                raise RuntimeError(f"{claim}, {' and '.join(pair)}: {done.stderr.strip()}")
-            [case] = json.loads(done.stdout)["assumption_sets"][0]["claims"]
-            found.append(
-                {
-                    "values": {name: values[name][0] for name in pair},
-                    "alone": [values[name][1] for name in pair],
-                    "verdict": case["verdict"],
-                    "number": case["number"],
-                }
-            )
-    return found
+        sets = Path(folder) / "sets.csv"
+        with open(sets, "w", newline="", encoding="utf-8") as file:
+            csv.writer(file, lineterminator="\n").writerows([values.keys(), values.values()])
+        command = [program, "reproduce", "--jobs", "1", "--only", ",".join(claims)]
+        command += ["--assumptions", sets, "--out", folder, "--json"]
+        done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    if done.returncode:
+        raise RuntimeError(f"{', '.join(claims)}, {' and '.join(values)}: {done.stderr.strip()}")
+    [judged_set] = json.loads(done.stdout)["assumption_sets"]
+    return {case["id"]: (case["verdict"], case["number"]) for case in judged_set["claims"]}
 
 
-def write(record):
-    """Writes `record` to pairs.json, with one line for each pair, so that a comparison of two versions shows the
-    changed pairs."""
-    lines = [
-        f'    {{"id": "{one["id"]}", "verdict": "{one["verdict"]}", "pairs": [\n'
-        + ",\n".join("      " + json.dumps(pair, ensure_ascii=False) for pair in one["pairs"])
-        + "]}"
-        for one in record
-    ]
+def write(entries):
+    """Writes the pairs that have a verdict to pairs.json, with one line for each pair, so that a comparison of two
+    versions shows the changed pairs."""
+    lines = []
+    for entry in entries:
+        pairs = [pair for pair in entry["pairs"] if "verdict" in pair]
+        if pairs:
+            lines.append(
+                f'    {{"id": "{entry["id"]}", "verdict": "{entry["verdict"]}", "pairs": [\n'
+                + ",\n".join("      " + json.dumps(pair, ensure_ascii=False) for pair in pairs)
+                + "]}"
+            )
     about = (
         "Verdicts with two deciding assumptions changed at once; made by scripts/decider_pairs.py."
     )
-    RECORD.write_text(
-        f'{{\n  "about": "{about}",\n  "claims": [\n' + ",\n".join(lines) + "\n  ]\n}\n",
-        encoding="utf-8",
-    )
+    text = f'{{\n  "about": "{about}",\n  "claims": [\n' + ",\n".join(lines) + "\n  ]\n}\n"
+    unfinished = RECORD.with_suffix(".unfinished")
+    unfinished.write_text(text, encoding="utf-8")
+    unfinished.replace(RECORD)
 
 
 def main():
@@ -103,36 +117,40 @@ def main():
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument(
-        "program", type=Path, help="the program, such as build/release/bin/hapbench"
+        "program", type=Path, help="path of hapbench, such as build/release/bin/hapbench"
     )
-    parser.add_argument("--claims", default="", help="claims to judge")
+    parser.add_argument(
+        "--claims",
+        default="",
+        help="ids of the claims to judge, separated by commas (default: all)",
+    )
+    parser.add_argument("--jobs", type=int, default=1, help="number of parallel runs (default: 1)")
     options = parser.parse_args()
     wanted = [name for name in options.claims.split(",") if name]
     cases = {entry["id"]: entry["cases"] for entry in read("sensitivity.json")}
-    record = read("pairs.json") if RECORD.exists() else []
-    ids = []
-    for claim in read("claims.json"):
-        ids.append(claim["id"])
-        if not (claim["id"] in wanted if wanted else not claim["id"].startswith("D")):
-            continue
-        values = deciding_values(claim, cases.get(claim["id"], []))
-        known = next((one for one in record if one["id"] == claim["id"]), None)
-        pairs = [
-            dict(zip(pair, (values[name][0] for name in pair)))
-            for pair in itertools.combinations(values, 2)
-        ]
-        same = known and known["verdict"] == claim["verdict"]
-        if not pairs or same and [one["values"] for one in known["pairs"]] == pairs:
-            continue
-        record = [one for one in record if one["id"] != claim["id"]]
+    entries = pairs_to_judge(read("claims.json"), cases)
+    take_from_record(entries, read("pairs.json") if RECORD.exists() else [])
+
+    missing = {}
+    for entry in entries:
+        for pair in entry["pairs"]:
+            if "verdict" not in pair and (not wanted or entry["id"] in wanted):
+                missing.setdefault(json.dumps(pair["values"]), {})[entry["id"]] = pair
+    with ThreadPoolExecutor(max_workers=options.jobs) as workers:
+        runs = {
+            workers.submit(judged, options.program.resolve(), list(pairs), json.loads(text)): pairs
+            for text, pairs in missing.items()
+        }
         try:
-            found = judged(options.program.resolve(), claim["id"], values)
+            for done, run in enumerate(as_completed(runs), 1):
+                for claim, pair in runs[run].items():
+                    pair["verdict"], pair["number"] = run.result()[claim]
+                write(entries)
+                print(f"{done} of {len(runs)} runs", flush=True)
         except RuntimeError as problem:
+            workers.shutdown(cancel_futures=True)
             print(f"scripts/decider_pairs.py: {problem}", file=sys.stderr)
             return 2
-        record.append({"id": claim["id"], "verdict": claim["verdict"], "pairs": found})
-        write(record)
-        print(f"{claim['id']:4} {len(found)} pairs", flush=True)
     return 0
 
 
