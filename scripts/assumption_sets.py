@@ -1,11 +1,13 @@
 #!/usr/bin/env python3
-"""Draws assumption sets, a row each, for hapbench reproduce --assumptions:
+"""Draws random assumption sets, one per row of a CSV table, for hapbench reproduce --assumptions:
 
     scripts/assumption_sets.py 16 >sets.csv
 
-A Latin hypercube of the ranges and options of results/reference/assumptions.json: along each
-assumption, every set lies in another of equal strata. It shows interactions, which one assumption at
-a time cannot. Calibrated inputs have no column: reproduce calibrates them anew in each set.
+The sets are a Latin hypercube: the range (or list of options) of each assumption in
+results/reference/assumptions.json is divided into as many equal parts as there are sets, and every
+set has a value from a different part. The sets change all assumptions at once. They therefore show
+interactions, which a change of a single assumption cannot show. Calibrated inputs have no column,
+because hapbench reproduce calibrates them again for each set.
 """
 import argparse
 import csv
@@ -40,8 +42,10 @@ def main():
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
-    parser.add_argument("count", type=int, help="sets to draw")
-    parser.add_argument("--seed", type=int, default=1, help="of the random numbers (default: 1)")
+    parser.add_argument("count", type=int, help="number of sets to draw")
+    parser.add_argument(
+        "--seed", type=int, default=1, help="seed of the random numbers (default: 1)"
+    )
     options = parser.parse_args()
     if options.count < 1:
         parser.error(f"count: got {options.count}; allowed: at least 1")

@@ -1,14 +1,26 @@
 #!/usr/bin/env python3
-"""Judges the claims of the thesis with deliberately wrong laws: a rule that every law passes shows nothing.
+"""Judges the claims of the thesis with programs that have a deliberate fault (a control).
 
     tests/mutants/controls.py [BUILD] [--only NAME,...] [--claims ID,...]
 
-For each control of controls.json: puts the fault in, builds the program, judges the claims with it
-(hapbench reproduce), and adds the verdicts to results/reference/controls.json. Cases on record are
-kept, so an interrupted command continues. Without --claims, claims about computing time and those of
-appendix D, which take a minute, are left out. The source is restored after each control, also if
-interrupted, and the build at the end. Without a build it only checks that the text of each control
-stands once in its file. scripts/docs writes the table of scenarios/thesis/README.md.
+Most controls make a law wrong. If the verdict on a claim is the same with every wrong law, the rule
+of this claim proves nothing.
+
+For each control of controls.json, the script inserts the fault into the source, builds hapbench in
+BUILD, judges the claims with this program (hapbench reproduce), restores the source, and writes the
+verdicts to the record results/reference/controls.json. After an interruption, the source is
+restored, but hapbench in BUILD may contain a fault.
+
+Claims about computing time and claims that are not testable are never judged. Without --claims, the
+claims of appendix D are omitted, too, because they take a minute with each control.
+
+The script judges only cases (a control and a claim) that are missing in the record, or whose claim
+has a new verdict or number in results/reference/claims.json. After an interruption, repeat the
+command to continue. Other changes, such as a new rule that gives the same verdict and number, or a
+new text of a control, are not detected: delete the record to judge all cases again.
+
+Without BUILD, the script only checks that the text to replace occurs exactly once in the file of
+each control. From the record, scripts/docs writes a table of scenarios/thesis/README.md.
 """
 import argparse
 import importlib
@@ -35,7 +47,9 @@ def read(file):
 def program_of(build):
     status, output = mutants.output_of("cmake", "--build", build, "--target", "bin/hapbench")
     if status:
-        raise RuntimeError("it does not compile:\n" + "\n".join(output.splitlines()[-20:]))
+        raise RuntimeError(
+            f"{build}: hapbench does not compile:\n" + "\n".join(output.splitlines()[-20:])
+        )
     return build / "bin" / "hapbench"
 
 
@@ -68,7 +82,9 @@ def faults(control):
         for path in files
     }
     if not texts:
-        raise RuntimeError(f"{control['name']}: no file {control['file']} has {control['find']!r}")
+        raise RuntimeError(
+            f"{control['name']}: no file {control['file']} contains {control['find']!r}"
+        )
     return texts
 
 
@@ -123,7 +139,7 @@ def judged(build, controls, claims):
         found = with_fault(control, lambda: verdicts(program_of(build), missing))
         if all(found[claim]["verdict"] == NOT_MEASURED for claim in missing):
             raise RuntimeError(
-                f"{control['name']}: the program judges no claim; does it run at all?"
+                f"{control['name']}: hapbench with this fault judged no claim; check that hapbench runs at all"
             )
         entry["cases"] += [
             {
@@ -150,9 +166,22 @@ def main():
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
-    parser.add_argument("build", type=Path, nargs="?", help="a build folder, such as build/release")
-    parser.add_argument("--only", default="", help="controls to judge with, instead of all")
-    parser.add_argument("--claims", default="", help="claims to judge")
+    parser.add_argument(
+        "build",
+        type=Path,
+        nargs="?",
+        help="build folder, such as build/release (default: only check the controls)",
+    )
+    parser.add_argument(
+        "--only",
+        default="",
+        help="names of the controls to use, separated by commas (default: all)",
+    )
+    parser.add_argument(
+        "--claims",
+        default="",
+        help="ids of the claims to judge, separated by commas (default: see above)",
+    )
     options = parser.parse_args()
     signal.signal(signal.SIGTERM, signal.default_int_handler)  # restores the source
     listed = lambda text: [name for name in text.split(",") if name]  # noqa: E731
@@ -178,7 +207,10 @@ def main():
         print(f"tests/mutants/controls.py: {problem}", file=sys.stderr)
         return 2
     except KeyboardInterrupt:
-        print(f"interrupted: build {options.build} before its tests are run", file=sys.stderr)
+        print(
+            f"interrupted; hapbench in {options.build} may contain a fault: build it again before you use it",
+            file=sys.stderr,
+        )
         return 130
 
 

@@ -1,12 +1,17 @@
 #!/usr/bin/env python3
-"""Tries the faults of mutants.json on a build of the tests: each fault must make a test of its `killed_by` fail.
+"""Checks that the tests detect each fault (mutant) of mutants.json.
 
   tests/mutants/try.py [BUILD [NAME ...]]
 
-For each mutant, or for the mutants NAME: replaces its text, builds the programs of its tests, and runs them. These
-tests must first pass without any mutant. The source is restored after each mutant, also after an interruption, and the
-build at the end. The exit status is 1 if a mutant survives, and 2 if a mutant could not be tried. Without BUILD, it
-only checks that the text of each mutant occurs exactly once in its file.
+Tries each mutant, or only the mutants NAME. First, the tests that should detect the mutants must
+pass without any mutant. Then, for each mutant, the script inserts the fault into the source, builds
+the tests of this mutant (field `killed_by`) in BUILD and runs them. If a test fails, this test has
+killed the mutant; if all tests pass, the mutant survives. After each mutant, the script restores
+the source; after the last mutant, it builds the tests without a fault. After an interruption, the
+source is restored, but tests in BUILD may contain a mutant.
+
+The exit status is 1 if a mutant survives, and 2 if a mutant could not be tried. Without BUILD, the
+script only checks that the text to replace occurs exactly once in the file of each mutant.
 """
 import argparse
 import json
@@ -31,7 +36,9 @@ def make(build, regex):
         output_of("ctest", "--test-dir", build, "--show-only=json-v1", "-R", regex)[1]
     )["tests"]
     if not tests or any("command" not in test for test in tests):
-        raise RuntimeError(f"{build}: no built test is called {regex}; build all tests first")
+        raise RuntimeError(
+            f"{build}: no built test has a name that matches {regex}; build all tests first"
+        )
     programs = {
         word
         for test in tests
@@ -46,7 +53,9 @@ def make(build, regex):
         *sorted(str(Path(word).relative_to(build)) for word in programs),
     )
     if status:
-        raise RuntimeError("it does not compile:\n" + "\n".join(output.splitlines()[-20:]))
+        raise RuntimeError(
+            f"{build}: the tests do not compile:\n" + "\n".join(output.splitlines()[-20:])
+        )
 
 
 def failing(build, regex):
@@ -57,7 +66,7 @@ def failing(build, regex):
     )
     failed = re.search(r"^\s*\d+ - (\S+) \(", output, re.MULTILINE)
     if status and not failed:
-        raise RuntimeError("ctest failed without a test:\n" + output[-2000:])
+        raise RuntimeError("ctest failed, but reported no failed test:\n" + output[-2000:])
     return failed[1] if status else ""
 
 
@@ -66,7 +75,8 @@ def mutated(mutant):
     text = path.read_text(encoding="utf-8") if path.is_file() else ""
     if (times := text.count(mutant["find"])) != 1:
         raise RuntimeError(
-            f"{mutant['name']}: {mutant['file']} has {times} times what is to be replaced: {mutant['find']!r}"
+            f"{mutant['name']}: {mutant['file']} must contain this text once, but contains it {times} times: "
+            f"{mutant['find']!r}"
         )
     return text.replace(mutant["find"], mutant["replace"])
 
@@ -96,7 +106,7 @@ def tried(build, names):
     if build is None:
         return 0
     if output_of("git", "-C", SOURCE, "status", "--porcelain", "--untracked-files=no")[1]:
-        raise RuntimeError("the tree has changes that are not committed")
+        raise RuntimeError("the working tree has uncommitted changes; commit them first")
     killers = "|".join(sorted({mutant["killed_by"] for mutant in mutants}))
     make(build, killers)
     if failed := failing(build, killers):
@@ -119,9 +129,9 @@ def main():
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument(
-        "build", type=Path, nargs="?", help="a build folder with all tests, such as build/release"
+        "build", type=Path, nargs="?", help="build folder with all tests, such as build/release"
     )
-    parser.add_argument("names", nargs="*", metavar="NAME", help="mutants to try instead of all")
+    parser.add_argument("names", nargs="*", metavar="NAME", help="mutants to try (default: all)")
     options = parser.parse_args()
     signal.signal(
         signal.SIGTERM, signal.default_int_handler
@@ -132,7 +142,10 @@ def main():
         print(f"tests/mutants/try.py: {problem}", file=sys.stderr)
         return 2
     except KeyboardInterrupt:
-        print(f"interrupted: build {options.build} before its tests are run", file=sys.stderr)
+        print(
+            f"interrupted; tests in {options.build} may contain a mutant: build them again before you run them",
+            file=sys.stderr,
+        )
         return 130
 
 
