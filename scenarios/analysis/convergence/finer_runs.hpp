@@ -18,11 +18,12 @@ namespace hapbench {
 /// Error estimate of a metric, in the metric's unit. `step` and `spacing` are the errors due to the time step and to
 /// the point spacing. Each is the error at the coarsest of three levels (convergence_of).
 struct KnownError {
-  std::optional<double> step, spacing;  ///< empty if the refinement is impossible, or if a refined run
-                                        ///< has another outcome or lacks the metric
-  bool has_points = true;               ///< false if the scene has no point spacing to refine
-  double tolerance = 0.0;               ///< error of computing the metric in one run, such as the error of a quantile
-                                        ///< from a histogram
+  /// Empty if the refinement is impossible, or if a refined run lacks the metric or has another outcome than the run of
+  /// the comparison.
+  std::optional<double> step, spacing;
+  bool has_points = true;  ///< false if the scene has no point spacing to refine
+  /// Error of computing the metric in one run, such as the error of a quantile from a histogram.
+  double tolerance = 0.0;
 
   /// Returns the sum of `step`, `spacing` and `tolerance`. Empty if `step` is empty, or if the scene has a point
   /// spacing and `spacing` is empty.
@@ -60,8 +61,8 @@ class FinerRuns {
   const Comparison& comparison_;
   std::span<const Result> reports_;
   std::vector<Scene> scenes_;
-  std::vector<Result> finer_;  ///< refined runs, sorted by scene, then by refinement, then by level, then in the order
-                               ///< of the comparison
+  /// Refined runs, sorted by scene, then by refinement, then by level, then in the order of the runs in the comparison.
+  std::vector<Result> finer_;
 };
 
 }  // namespace hapbench

@@ -11,8 +11,8 @@
 
 namespace hapbench {
 
-/// Returns the cases of the refined runs of a scene, one list for each refined run. A refinement that needs surface
-/// points has no case in a scene without points.
+/// Returns the cases of the refined runs of a scene, one list for each refined run. If the scene has no surface points,
+/// leaves out the refinements that need surface points.
 static std::vector<Cases> refined_cases(const ScenarioText& scene, const std::vector<std::string>& overrides,
                                         Refinement refinement) {
   const LoadedScenario scenario = load_scenario(scene, overrides);

@@ -39,8 +39,8 @@ MetricValues metric_changes(const ScenarioText& scene, const std::vector<std::st
                             const MetricValues& metrics, Refinement refinement, unsigned threads, std::size_t& runs);
 
 /// Returns the error estimates of metrics of one scene: the largest change of each value in `metrics` if the time step
-/// is halved, if the point spacing is halved, and, if `metrics` has a depth, if the depth is evaluated at every step.
-/// Uses up to `threads` threads.
+/// is halved, if the point spacing is halved, and, if `metrics` has a depth metric (depends_on_sampled_depth), if the
+/// depth is evaluated at every step. Uses up to `threads` threads.
 MetricErrors metric_errors(const ScenarioText& scene, const std::vector<std::string>& overrides,
                            const MetricValues& metrics, unsigned threads);
 

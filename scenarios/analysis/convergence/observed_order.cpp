@@ -111,14 +111,16 @@ void add_orders(const LevelSweep& sweep, const CountedLevels& counted, Convergen
 
 /// Writes to `c` the band of the last levels, and the error estimates for the case without an order. `spread`: sampling
 /// spread of a metric that is not smooth.
-void add_band(const CountedLevels& counted, const MetricTraits& traits, double spread, Convergence& c) {
+void add_band(const LevelSweep& sweep, const CountedLevels& counted, const MetricTraits& traits, double spread,
+              Convergence& c) {
   const std::vector<double>& f = counted.f;
   if (f.size() < 2) return;
   const auto last = f.end() - static_cast<std::ptrdiff_t>(std::min(f.size(), kMinLevels));
   c.band = {*std::min_element(last, f.end()), *std::max_element(last, f.end())};
   const double width = c.band->second - c.band->first;
-  // At first order, all further refinements together change the result as much as the last refinement did.
-  const double beyond = traits.smooth ? 0.0 : std::abs(f[f.size() - 1] - f[f.size() - 2]) + spread;
+  // At first order, all further refinements together change the result by the last difference divided by r - 1.
+  const double rest = std::abs(f[f.size() - 1] - f[f.size() - 2]) / std::min(1.0, sweep.ratio - 1.0);
+  const double beyond = traits.smooth ? 0.0 : rest + spread;
   for (std::size_t i = 0; i < f.size(); ++i) {
     double error = width;
     for (std::size_t j = i + 1; j < f.size(); ++j) error = std::max(error, std::abs(f[i] - f[j]));
@@ -182,7 +184,7 @@ Convergence convergence_of(const LevelSweep& sweep, std::span<const LevelResult>
   const CountedLevels counted = counted_levels(levels);
   add_orders(sweep, counted, c);
   const double spread = levels.empty() ? 0.0 : levels.back().spread;
-  add_band(counted, traits, spread, c);
+  add_band(sweep, counted, traits, spread, c);
   c.reason = no_order_reason(sweep, levels, counted, c.orders, traits);
   if (c.reason.empty()) add_extrapolation(sweep, counted, traits, spread, c);
   return c;

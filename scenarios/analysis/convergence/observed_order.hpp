@@ -32,8 +32,8 @@ struct MetricTraits {
 
 /// Convergence of one metric. r: ratio of the levels; p: observed order; f*: Richardson's value.
 struct Convergence {
-  std::optional<double> order;         ///< p, computed from the three finest levels; empty if it is not credible (see
-                                       ///< convergence_of)
+  /// p, computed from the three finest levels; empty if no order is stated (see convergence_of).
+  std::optional<double> order;
   std::string reason;                  ///< why there is no order, as a clause; empty with an order
   std::optional<double> extrapolated;  ///< f*; only with an order
   std::optional<double> gci;  ///< GCI of the finest level, relative to its result; only with an order and a result != 0
@@ -48,15 +48,17 @@ struct Convergence {
   /// Observed order at each level, computed from this level and the two next coarser levels; empty if undefined.
   std::vector<std::optional<double>> orders;
   /// Error estimate (not a bound) of each level [metric's unit]. With an order: 1.25 |f - f*|, which at the finest
-  /// level equals |f| times the GCI. Without an order: the largest distance to the result of a finer level, at least
-  /// the range of the last three levels. For a metric that is not smooth, the estimate is larger. With an order, it is
-  /// at least the range of the last three levels. Without an order, the difference of the two finest levels is added:
-  /// at first order, further levels would change the result by this difference. In both cases, the sampling spread at
-  /// the finest level is added.
+  /// level equals |f| times the GCI. Without an order: the largest difference from the result of a finer level, but at
+  /// least the range of the results of the last three levels. For a metric that is not smooth, the estimate is larger.
+  /// With an order, the estimate is at least the range of the last three levels. Without an order, the difference of
+  /// the two finest levels is added, divided by r - 1 if r < 2: at first order, all further levels together would
+  /// change the result by the difference divided by r - 1. In both cases, the sampling spread at the finest level is
+  /// added.
   std::vector<std::optional<double>> errors;
 };
 
-/// Returns the properties of a metric; the strictest properties if the list does not have the metric.
+/// Returns the properties of a metric. If the list does not have the metric, returns the strictest properties: not
+/// smooth, and never negative.
 MetricTraits traits_of(const MetricList& list, const std::string& metric);
 
 /// Returns a metric of the run at a level. `summary`: the result of this run.
@@ -71,7 +73,7 @@ LevelResult level_result(const LevelSweep& levels, std::size_t level, const Resu
 /// - contacts switch between the last three levels (last five levels for a metric that is not smooth);
 /// - within the last four levels (last five for a metric that is not smooth), differences change their sign
 ///   or an order is not in (0, 2 formal_order + log_r 1.1], with the ratio r of the levels;
-/// - the extrapolated value is negative, and the metric cannot be.
+/// - the extrapolated value is negative, although the metric cannot be negative.
 Convergence convergence_of(const LevelSweep& sweep, std::span<const LevelResult> levels,
                            const MetricTraits& traits = {});
 

@@ -33,7 +33,8 @@ bool is_alone_in_each(const std::vector<std::vector<std::size_t>>& groups) {
   return std::ranges::all_of(groups, [](const auto& group) { return group.size() == 1; });
 }
 
-/// Returns the end of a sentence that names the numbers whose error is too large; empty if there are none.
+/// Returns the end of a sentence that names the numbers whose error is too large to rank them; empty if `numbers` is
+/// empty.
 std::string indistinguishable_text(std::span<const std::size_t> numbers, std::span<const std::string> names) {
   return numbers.empty() ? "" : "; error too large to rank: " + joined(numbers, names, ", ");
 }

@@ -14,8 +14,8 @@ namespace hapbench {
 struct SignificantOrder {
   /// Groups in increasing order: each number is significantly smaller (is_less()) than every number of later groups.
   std::vector<std::vector<std::size_t>> groups;
-  std::vector<std::size_t> indistinguishable;  ///< indices of the numbers that do not differ significantly from any
-                                               ///< other number
+  /// Indices of the numbers that do not differ significantly from any other number.
+  std::vector<std::size_t> indistinguishable;
 };
 
 /// Returns the significant order of numbers. Omits numbers without a value or an error. `indistinguishable` is empty if

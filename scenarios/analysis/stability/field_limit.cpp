@@ -30,17 +30,17 @@ void check_sampling(const LoadedScenario& loaded) {
   const double step = loaded.scenario.time.step;
   if (kVibrationCutoff * step < 0.5) return;
   fail_in({.file = loaded.file, .pointer = "/time/step_s", .about_options = {"--vibration"}},
-          fmt::format("got {}; allowed for --vibration, which is what is above {} Hz: below {:.4g}", step,
+          fmt::format("got {}; allowed for --vibration, which is the vibration above {} Hz: below {:.4g}", step,
                       kVibrationCutoff, 0.5 / kVibrationCutoff));
 }
 
-/// The runs of a search. Runs each value of the field once and caches the result. A parameter t in [0, 1] stands for a
-/// value (IntervalSearchOptions::value_at).
+/// The runs of a search. Runs the scenario once with each value of the field and caches the result. A parameter t in
+/// [0, 1] stands for a value (IntervalSearchOptions::value_at).
 class RunCache {
  public:
   explicit RunCache(const LimitQuestion& question) : question_(question) {}
 
-  /// Runs the values at these parameters in parallel. Skips values that were run before.
+  /// Runs the scenario with the field's values at these parameters, in parallel. Skips cached values.
   void run_ahead(std::span<const double> parameters) {
     std::vector<double> values;
     for (const double t : parameters) {
@@ -54,13 +54,14 @@ class RunCache {
     });
   }
 
-  /// Returns true if the run at a parameter is stable by the question's rule. Runs the value if it is not cached.
+  /// Returns true if the run with the value at a parameter is stable by the question's rule. If the value is not
+  /// cached, makes the run.
   bool is_stable_at(double t) {
     run_ahead({&t, 1});
     return question_.rule.holds(at(t).verdict);
   }
 
-  // Precondition of the following functions: the value was run.
+  // Precondition of the functions `at` and `of`: the run with the value is cached.
 
   JudgedValue at(double t) const {
     const double value = question_.search.value_at(t);
@@ -214,8 +215,9 @@ static FieldLimit limit_with_bounds(const LimitQuestion& question) {
 }
 
 /// Computes the errors of the bounded metrics at a value of the field. Stores each error in `errors` if it is larger
-/// than the stored error. If a metric with its error violates the user's bound, sets the bound in `rule` to the user's
-/// bound, tightened by the error. Returns true if a bound was set.
+/// than the stored error. If a metric with its error violates the user's bound, tightens the bound in `rule` to the
+/// user's bound, reduced by the error; a bound that is already tighter stays. Returns true if a metric with its error
+/// violates a bound.
 static bool tighten_bounds(const LimitQuestion& question, double value, StabilityRule& rule, MetricValues& errors) {
   std::vector<std::string> chosen = question.overrides;
   chosen.push_back(override_of(question, value));
@@ -225,18 +227,21 @@ static bool tighten_bounds(const LimitQuestion& question, double value, Stabilit
   for (const auto& [name, bound] : question.rule.bounds)
     if (const auto number = number_of(run.metrics, name)) metrics[name] = *number;
   const MetricErrors refined = metric_errors(*question.scene, chosen, metrics, question.threads);
-  bool is_tighter = false;
+  bool violates = false;
   for (const auto& [name, error] : refined.errors) {
     errors[name] = std::max(errors[name], error);
     const MetricBound& bound_of_user = question.rule.bounds.at(name);
     MetricBound& bound = rule.bounds[name];
-    const bool is_above = bound_of_user.max && metrics[name] + error > *bound_of_user.max;
-    const bool is_below = bound_of_user.min && metrics[name] - error < *bound_of_user.min;
-    if (is_above) bound.max = *bound_of_user.max - error;
-    if (is_below) bound.min = *bound_of_user.min + error;
-    is_tighter = is_tighter || is_above || is_below;
+    if (bound_of_user.max && metrics[name] + error > *bound_of_user.max) {
+      bound.max = std::min(*bound.max, *bound_of_user.max - error);
+      violates = true;
+    }
+    if (bound_of_user.min && metrics[name] - error < *bound_of_user.min) {
+      bound.min = std::max(*bound.min, *bound_of_user.min + error);
+      violates = true;
+    }
   }
-  return is_tighter;
+  return violates;
 }
 
 /// Finds the limit at which the bounded metrics keep the bounds of the question's rule even with their errors added.
@@ -246,13 +251,18 @@ static FieldLimit limit_with_errors(const LimitQuestion& question) {
   constexpr int kMaxTightenings = 4;  // maximum number of repeated searches; the errors change little between them
   LimitQuestion tighter = question;
   MetricValues errors;
-  for (int i = 0; i < kMaxTightenings && limit.end.value; ++i) {
-    bool again = tighten_bounds(question, *limit.end.value, tighter.rule, errors);
-    if (limit.other.value) again |= tighten_bounds(question, *limit.other.value, tighter.rule, errors);
-    if (!again) break;
+  const auto violates_a_bound = [&] {
+    bool violates = tighten_bounds(question, *limit.end.value, tighter.rule, errors);
+    if (limit.other.value) violates |= tighten_bounds(question, *limit.other.value, tighter.rule, errors);
+    return violates;
+  };
+  bool violates = limit.end.value && violates_a_bound();
+  for (int i = 0; violates && i < kMaxTightenings; ++i) {
     limit = limit_with_bounds(tighter);
+    violates = limit.end.value && violates_a_bound();
   }
   limit.metric_errors = std::move(errors);
+  limit.violates_with_errors = violates;
   return limit;
 }
 

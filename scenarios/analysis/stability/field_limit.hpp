@@ -21,10 +21,12 @@ struct JudgedValue {
 
 /// An end of the interval of stable values.
 struct IntervalEnd {
-  std::optional<double> value;        ///< outermost stable value; empty if no stable interval was found
-  std::optional<JudgedValue> beyond;  ///< nearest unstable value beyond it; empty if the end of the range is stable
+  std::optional<double> value;  ///< outermost stable value; empty if no stable interval was found
+  /// Nearest unstable value beyond `value`; empty if the end of the range is stable.
+  std::optional<JudgedValue> beyond;
 
-  /// Returns |beyond - value|: the limit lies between `value` and `beyond`. Returns nothing if one of them is empty.
+  /// Returns |beyond - value|: the limit lies between `value` and `beyond`. Returns nothing if `value` or `beyond` is
+  /// empty.
   std::optional<double> tolerance() const;
 };
 
@@ -37,8 +39,8 @@ struct QuotedLimit {
 /// The result of a search for a stability limit.
 struct FieldLimit {
   QuotedLimit quoted = {};
-  IntervalEnd end;    ///< the limit: the high end of the stable interval, or the low end in a search for the smallest
-                      ///< stable value
+  /// The limit: the high end of the stable interval, or the low end in a search for the smallest stable value.
+  IntervalEnd end;
   IntervalEnd other;  ///< the other end of the interval
   /// Linear limit for springs that stay in contact, by the eigenvalues of the linear map of one time step
   /// (eigenvalue_limit()). If the whole range is stable, it is infinite, or 0 in a search for the smallest stable
@@ -53,28 +55,32 @@ struct FieldLimit {
   /// contact lasts. Dry friction and the encoder are ignored. Dry friction, the encoder and loss of contact can raise
   /// the simulated limit above the linear limit. Infinite if the whole range is stable; 0 if no value is stable.
   std::optional<double> linear;
-  std::string no_linear = {};  ///< why no linear limit was found; empty if `theory` or `linear` has a value, if no
-                               ///< value is stable, and in a search for the smallest stable value
-  /// Errors of the bounded metrics at the limit: their largest change if the time step or the point spacing is halved.
-  /// The bounds hold with these errors added.
+  /// Why no linear limit was found; empty if `theory` or `linear` has a value, if no value is stable, and in any search
+  /// for the smallest stable value.
+  std::string no_linear = {};
+  /// Error estimates of the bounded metrics (metric_errors()): the largest error at any end of a stable interval that
+  /// the repeated searches found.
   MetricValues metric_errors = {};
+  /// True if a bounded metric with its error added violates its bound at an end of the interval, even after four
+  /// repeated searches.
+  bool violates_with_errors = false;
   /// WallLimits::closed_forms [N/m].
   std::vector<std::optional<double>> closed_forms;
   std::optional<double> worst_hand;  ///< WallLimits::worst_hand [N/m]
   std::string no_theory;             ///< WallLimits::no_theory
   SettledState settled;              ///< settled state of the run at the limit
-  std::string unstable_part = {};    ///< name of the part that is unstable without contact, such as "hand and device";
-                                     ///< empty if `unstable_alone` is false
-  std::optional<JudgedValue>
-      own;  ///< verdict at the scenario's current value; empty if this value is outside of the range
+  /// Name of the part that is unstable without contact, such as "hand and device"; empty if `unstable_alone` is false.
+  std::string unstable_part = {};
+  /// Verdict at the scenario's current value; empty if this value is outside of the range.
+  std::optional<JudgedValue> own;
   /// True if the loop of hand and device is unstable without contact (unstable_without_contact()) at the nearest
   /// value beyond the limit, or at the smallest evaluated value if there is no limit.
   bool unstable_alone = false;
   bool has_effect = true;  ///< false if the handle's motion is bitwise equal in all runs
   /// Number of distinct values between the ends of the interval that were run to verify it; all of them are stable.
   std::size_t tried_between = 0;
-  bool scattered = false;  ///< true if stable values exist, but no contiguous stable interval is as long as kNearLimit
-                           ///< times the limit
+  /// True if stable values exist, but no contiguous stable interval is as long as kNearLimit times the limit.
+  bool scattered = false;
   std::vector<JudgedValue> runs;          ///< all runs, by increasing value
   std::vector<JudgedValue> inconsistent;  ///< unstable runs inside the interval and stable runs outside of it
   std::size_t undecided = 0;              ///< number of runs that were too short to judge (RunStability::undecided)
@@ -90,9 +96,9 @@ struct FieldLimit {
 /// that is stable in theory. The 17 values divide the range, or the range of their logarithms, into equal parts. Then
 /// searches the ends of the interval of stable values: with find_verified_interval() if LimitQuestion::between is set,
 /// otherwise with find_stable_interval(), with its argument `beside` true. Makes 35 to 120 runs; each failed
-/// verification costs up to 56 more. Bounds on metrics hold with the metrics' errors at the limit added, as in `tune`;
-/// if a metric with its error violates a bound, searches again with bounds that are tighter by these errors. Throws
-/// InputError, with the file, if the rule limits vibration and the sampling rate is 60 Hz or less.
+/// verification costs up to 56 more. The metrics keep their bounds even with their errors at the limit added, as in
+/// `tune`: if a metric plus its error violates a bound, searches again with bounds that are tightened by these errors.
+/// Throws InputError, with the file, if the rule limits vibration and the sampling rate is 60 Hz or less.
 FieldLimit field_limit(const LimitQuestion& question);
 
 }  // namespace hapbench

@@ -53,8 +53,7 @@ std::string next_run(const LimitQuestion& question, const FieldLimit& limit) {
 std::string without_linear(const FieldLimit& limit) {
   if (!limit.no_linear.empty()) return fmt::format("there is no linear limit: {}", limit.no_linear);
   const auto& linear = limit.known_linear_limit();
-  if (linear && (std::isinf(*linear) || *linear == 0.0))
-    return "the linear loop is stable beyond it, to the end of the range";
+  if (linear && (std::isinf(*linear) || *linear == 0.0)) return "the linear loop is stable to the end of the range";
   return "no linear limit applies";
 }
 
@@ -63,9 +62,14 @@ std::string without_linear(const FieldLimit& limit) {
 // NOLINTNEXTLINE(readability-function-cognitive-complexity): the cases in the order of their priority.
 QuotedLimit quoted_limit(const LimitQuestion& question, const FieldLimit& limit) {
   const bool smallest = question.search.smallest;
+  // Words for the direction from stable to unstable values, and for the opposite direction.
+  const char *const to = smallest ? "down to" : "up to", *const from = smallest ? "up to" : "down to";
   const auto& [value, beyond] = limit.end;
   if (limit.theory_has_none) return {{}, "by the eigenvalues of one step, no value of the range is stable"};
   if (!value) return {{}, "no interval of values is stable"};
+  if (limit.violates_with_errors)
+    return {{},
+            "a bounded metric with its error added violates its bound, even after four searches with tighter bounds"};
   // Returns true if the field reaches the value a before the value b on its way from stable to unstable values.
   const auto is_first = [smallest](double a, double b) { return smallest ? a > b : a < b; };
   const auto& linear = limit.known_linear_limit();
@@ -76,7 +80,7 @@ QuotedLimit quoted_limit(const LimitQuestion& question, const FieldLimit& limit)
   if (!has_linear) {
     if (!beyond)
       return {{},
-              fmt::format("every run up to {}, the end of the range, is stable; {}", number(*value),
+              fmt::format("every run {} {}, the end of the range, is stable; {}", to, number(*value),
                           without_linear(limit))};
     return {value, fmt::format("simulated limit: {}; {}", next_run(question, limit), without_linear(limit))};
   }
@@ -90,17 +94,18 @@ QuotedLimit quoted_limit(const LimitQuestion& question, const FieldLimit& limit)
   if (agree)
     return {is_first(*value, *linear) ? *value : *linear, name + "; the runs agree" + stable_beyond(question, limit)};
   if (is_first(*value, *linear) && beyond)
-    return {value, fmt::format("simulated limit: {}; it is reached before the {}", next_run(question, limit), name)};
+    return {value, fmt::format("simulated limit: {}; it is {} than the {}", next_run(question, limit),
+                               smallest ? "larger" : "smaller", name)};
   if (is_first(*value, *linear))
     return {{},
-            fmt::format("every run up to {}, the end of the range, is stable; the {} is beyond the range",
+            fmt::format("every run {} {}, the end of the range, is stable; the {} is beyond the range", to,
                         number(*value), name)};
   if (limit.other.value && is_first(*linear, *limit.other.value))
     return {{},
-            fmt::format("no value is stable both in runs (from {}) and by the {} (up to {})",
-                        number(*limit.other.value), name, number(*linear))};
+            fmt::format("no value is stable both in runs (stable {} {}) and by the {} (stable {} {})", from,
+                        number(*limit.other.value), name, to, number(*linear))};
   return {*linear,
-          fmt::format("{}: beyond it a tool that rests in contact is unstable. Runs are stable up to {}{}: {}", name,
+          fmt::format("{}: beyond it a tool that rests in contact is unstable. Runs are stable {} {}{}: {}", name, to,
                       number(*value), beyond ? "" : ", the end of the range", measured_cause(question, limit))};
 }
 

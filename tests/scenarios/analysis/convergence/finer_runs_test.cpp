@@ -18,9 +18,10 @@ namespace hapbench::finer_runs_test {
 namespace {
 
 /// Checks two laws whose stiffnesses cross as the points get denser. A flat tip of radius 0.5 mm in a plane touches 5
-/// points at a spacing of 0.4 mm, 21 points at 0.2 mm and 69 points at 0.1 mm. The 10/N rule renders the stiffness of
-/// min(N, 10) springs. N springs in series with K_vc = 40 K render 40 N / (40 + N). So the two laws render 5 and 4.44
-/// springs for 5 points, 10 and 13.8 for 21 points, 10 and 25.3 for 69 points.
+/// points at a spacing of 0.4 mm, 21 points at 0.2 mm and 69 points at 0.1 mm. With N points in contact, `mcneely` (the
+/// 10/N rule) renders a stiffness of min(N, 10) K. `virtual_coupling` renders N springs in series with K_vc = 40 K, a
+/// stiffness of 40 N / (40 + N) K. So the stiffnesses of the two laws are 5 K and 4.44 K for 5 points, 10 K and 13.8 K
+/// for 21 points, 10 K and 25.3 K for 69 points.
 TEST(FinerRuns, LeaveNoOrderWhereTwoStiffnessesCrossAsPointsGrowDenser) {
   constexpr double kDepth = 2e-5, kOne = 1000.0 * kDepth;  // depth [m], force of one spring [N]
   const Json scene = {
@@ -43,8 +44,8 @@ TEST(FinerRuns, LeaveNoOrderWhereTwoStiffnessesCrossAsPointsGrowDenser) {
   }
   EXPECT_EQ(significant_order_text(numbers, laws), "no significant order: virtual_coupling ~ mcneely");
   EXPECT_NEAR(*numbers[0].value, 5.0 * kOne, 1e-12);
-  // No order is observed: the error is the largest difference between levels, plus at most the same amount for the last
-  // level.
+  // No order is observed. The error is then the largest difference between two levels, plus at most the same amount for
+  // the unknown error of the finest level.
   EXPECT_GE(*known[0].spacing, 5.0 * kOne - 1e-9);
   EXPECT_LE(*known[0].spacing, 10.0 * kOne);
   EXPECT_GE(*known[1].spacing, (25.3 - 4.45) * kOne);
@@ -53,8 +54,8 @@ TEST(FinerRuns, LeaveNoOrderWhereTwoStiffnessesCrossAsPointsGrowDenser) {
 }
 
 /// Checks the error of the largest speed of a drill that is pushed onto a plane. The largest speed is the speed in the
-/// last step before the landing. At the first levels this speed changes by 2e-6 m/s, at the next levels by 5e-4 m/s,
-/// because the landing moves to another step.
+/// last step before the landing. Between the first levels this speed changes by 2e-6 m/s. Between the next levels it
+/// changes by 5e-4 m/s, because the landing moves to another step.
 TEST(FinerRuns, ErrorOfAnExtremeHoldsTheValuesOfFinerLevels) {
   const std::vector<std::string> laws = {"mean"};
   const Comparison comparison = planned({.scenarios = {find_scenario("poke_plane")}, .algorithms = laws});

@@ -76,10 +76,10 @@ TEST(Converge, FindsSecondOrderInTheAmplitudeOfAnUndampedSpring) {
   EXPECT_NEAR(*c.extrapolated, kStiffness * kStart, *c.errors.back());
 }
 
-/// Checks the spread of the largest speed over the choices of the first counted step. Levels with smaller time steps
-/// count only the steps at the times of the coarsest level. The largest speed occurs in the last counted step before
-/// the landing. If another choice moves this step, the largest speed changes by the speed that is gained between two
-/// counted steps.
+/// Checks the spread of the largest speed. A level with smaller time steps counts only every n-th step, so that its
+/// counted steps are as far apart as the steps of the coarsest level. The spread is the range of the largest speed over
+/// all n choices of the first counted step. The largest speed occurs in the last counted step before the landing. Over
+/// all choices, it varies by about the speed that is gained between two counted steps.
 TEST(Converge, EstimatesTheSpreadOfExtremesOverTheChoiceOfRows) {
   Json scene = {{"time", {{"step_s", 1e-3}, {"steps", 200}}},
                 {"environment", {{"type", "springs"}, {"bilateral", false}}},
@@ -107,8 +107,9 @@ TEST(Converge, EstimatesTheSpreadOfExtremesOverTheChoiceOfRows) {
   EXPECT_NEAR(*levels.back().result, landing_speed, *c.errors.back());
 }
 
-/// Checks that all levels are measured at the same times. For a prescribed motion, the force steps therefore do not
-/// depend on the time step; a time step of a quarter would otherwise give a quarter of the force step.
+/// Checks that all levels are measured at the same times. For a prescribed motion, the change of the force between two
+/// measured times therefore does not depend on the time step. If every step were measured, a quarter of the time step
+/// would give a quarter of this change.
 TEST(Converge, MeasuresAtTheTimesOfTheCoarsestRows) {
   Json scene = spring(0.2, "leapfrog");
   scene["motion"] = {{"position",
@@ -121,7 +122,8 @@ TEST(Converge, MeasuresAtTheTimesOfTheCoarsestRows) {
   for (const char* metric : {"force_max_N", "force_step_max_N", "force_reversals"}) {
     const auto levels = study.levels_of(metric);
     const double first = *levels.front().result;
-    // The times of the levels are products with two roundings each. The largest speed is 2 pi 1e-3 m per period.
+    // The measured times are products with two rounding errors. They change the position at most by these errors times
+    // the largest speed, 2 pi 1e-3 m per period.
     for (const LevelResult& level : levels) EXPECT_NEAR(*level.result, first, 1e-12 * first) << metric;
     EXPECT_NE(study.of(metric).reason.find("rounding"), std::string::npos) << study.of(metric).reason;
   }

@@ -18,7 +18,7 @@
 namespace hapbench::observed_order_test {
 namespace {
 
-/// Returns the levels h = 1, 1/r, … of a result f(h).
+/// Returns `count` levels h = 1, 1/ratio, 1/ratio^2, … with the results f(h).
 std::vector<LevelResult> levels_of(const std::function<double(double)>& f, std::size_t count = 5, double ratio = 2.0) {
   std::vector<LevelResult> levels;
   double h = 1.0;
@@ -147,6 +147,18 @@ TEST(ObservedOrder, OfExtremesNeedsFiveLevelsAndCountsTheirScatter) {
   levels.front().result = 0.9;
   EXPECT_TRUE(judged(levels, 1.0).order);
   expect_no_order(convergence_of({{}, 2.0, 1.0}, levels, kExtreme), "change sign");
+}
+
+/// Checks the errors of a first-order extreme, whose limit is 1, with a small ratio of the levels. Without the division
+/// by r - 1, the error of the finest level would be 0.64 of the true error.
+TEST(ObservedOrder, OfExtremesCountsAllFurtherLevelsAtASmallRatio) {
+  const double r = 1.2;
+  const std::vector<double> results = {1.0 + 1.0, 1.0 + 1.0 / r, 1.0 + 1.0 / (r * r)};
+  const Convergence c = convergence_of({{}, r, 1.0}, levels_with(results), kExtreme);
+  expect_no_order(c, "needs five levels");
+  // Rounding: results of about 1 with 1e-16, divided by r - 1.
+  EXPECT_NEAR(*c.errors.front(), results.front() - 1.0, 1e-14);
+  EXPECT_GE(*c.errors.back(), results.back() - 1.0);
 }
 
 TEST(ObservedOrder, OfAMetricThatCannotBeNegativeLeadsToNoNegativeValue) {
