@@ -46,9 +46,7 @@ const char* text_of(std::uint32_t reason) noexcept {
     case HAPBENCH_NO_VELOCITY:
       return "the velocity is not given, and the scenario has no device.velocity_filter that computes it";
     case HAPBENCH_NO_HAND_FORCE:
-      return "the hand's force is not given, which moves the virtual mass";
-    case HAPBENCH_NULL_ARGUMENT:
-      return "the renderer, the input or the output is NULL";
+      return "the hand's force, which moves the virtual mass, is not given";
     default:
       return "";
   }
@@ -79,7 +77,7 @@ void LiveRenderer::step(const HapbenchInput& input, HapbenchOutput& output) noex
   output = {};
   output.call = calls_++;
   // Measure the time since the previous call. If the clock has not advanced, one period counts as elapsed, so that a
-  // falling force still falls.
+  // force that is being reduced to 0 is reduced further.
   const bool time_is_valid = !has_time_ || input.time_ns > last_time_;
   if (has_time_ && time_is_valid) output.dt = static_cast<double>(input.time_ns - last_time_) / 1e9;
   const double elapsed = time_is_valid && has_time_ ? output.dt : loop_.dt();
@@ -233,7 +231,7 @@ void LiveRenderer::render(const Measurement& now, const HapbenchInput& input, do
     tool_.pose.position = to_world(now.tip);
     tool_.velocity.setZero();
   }
-  // Limit the hand's force and render. In impedance mode, a clutched tool is not rendered.
+  // In admittance mode, limit the hand's force. Render the force; in impedance mode, only while the clutch is released.
   Vec3 hand = Vec3::Zero();
   if (config_.is_admittance) {
     hand = world_.turned(vector_of(input.hand_force));
@@ -308,7 +306,8 @@ void LiveRenderer::report_set_point(const Measurement& now, const HapbenchInput&
   if (output.limited != 0 && output.status == HAPBENCH_ON) output.status = HAPBENCH_CLAMPED;
 }
 
-/// Restarts the loop: the status is WAITING until the rendered force is small. Keeps mount and clutch.
+/// Restarts the loop: the status is WAITING until kCallsBeforeForce successive rendered forces are below engage_force.
+/// Keeps mount and clutch.
 void LiveRenderer::restart() noexcept {
   loop_.reset();
   gain_ = 0.0;

@@ -104,7 +104,8 @@ TEST(SampledLowPass, HasHalfThePowerAtItsCutOffWhateverItsOrder) {
     }
     SampledLowPass filter({4.0, order}, kT);
     filter.settle_at({1, 2, 3});
-    // The modes of high orders are tens of times larger than the input.
+    // The tolerance exceeds the rounding of the input, because the modes of filters of high order are tens of times
+    // larger than the input.
     EXPECT_NEAR((filter.filter({1, 2, 3}) - Vec3(1, 2, 3)).norm(), 0.0, 1e-12) << order;
   }
 }
@@ -196,7 +197,8 @@ TEST(DevicePresets, HaveNamesOfTheirOwnAndPossibleNumbers) {
   EXPECT_EQ(find_device_preset("Touch"), nullptr);
 }
 
-/// Returns the steps of a run in which the device renders `law` of the tool and a hand pushes with `push` along x.
+/// Returns the records of all steps of a run. The device renders the force `law`(tool), and a hand pushes with the
+/// force `push` [N] along x.
 std::vector<StepRecord> rows_of(const ImpedanceDeviceConfig& config, test::FakeAlgorithm::Law law, std::uint64_t steps,
                                 const Vec3& start, const Vec3& velocity = Vec3::Zero(), double push = 0.0) {
   SimulationParts parts = test::fake_parts(std::move(law));
@@ -267,7 +269,8 @@ TEST(ImpedanceDevice, SaturatedMotorsYield) {
     config.viscous = 5.0;
     config.force_max = 3.0;
     const auto rows = rows_of(config, wall(1000.0, 5.0), 4000, Vec3::Zero(), Vec3::Zero(), push);
-    // Beyond the saturation, 0.1 N moves the handle against the friction at 0.02 m/s for four seconds.
+    // The push of 3.1 N exceeds the saturation of 3 N by 0.1 N. This difference moves the handle at 0.1 N / (5 N s/m) =
+    // 0.02 m/s for four seconds.
     EXPECT_EQ(rows.back().handle.position.x() < -0.05, push < -3.0);
   }
 }

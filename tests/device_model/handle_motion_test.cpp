@@ -67,9 +67,9 @@ TEST(ElasticMotion, StickingMotorsBreakLooseWhereTheClosedFormSays) {
       EXPECT_NEAR(motion.handle().position.x(), swung + speed * after, 1e-15);
       continue;
     }
-    // At the time t = `after` after the motors have started to move, the spring's force has grown by k speed t, with
-    // the handle's `speed`. So the motors have the speed v_m = k speed t^2 / (2 m_m). The relative error of this
-    // formula is (w t)^2 / 12.
+    // Let t = `after` be the time since the motors have started to move, and `speed` the speed of the handle at the
+    // start. At the time t, the force of the spring has grown by k speed t. Therefore the motors have the speed v_m = k
+    // speed t^2 / (2 m_m). The relative error of this formula is (w t)^2 / 12.
     const double v = 0.5 * k * speed * after * after / 0.06;
     EXPECT_NEAR(motion.motor().velocity.x(), v, (after < 1e-6 ? 1e-3 : 0.02) * v) << after;
   }
@@ -171,7 +171,7 @@ TEST(ElasticMotion, KeepsItsEnergyBalance) {
 
 using Complex = std::complex<long double>;
 
-/// Reference that computes position and velocity from the two exponentials of the motion, in complex long doubles.
+/// Reference solution in complex long doubles: position and velocity as the sum of two exponential functions of time.
 struct Reference {
   MotionLaw law;
 
@@ -218,7 +218,7 @@ TEST(FreeMotion, WithoutASpringIsTheOneOfAFrictionalMass) {
       const double S = -std::expm1(-k * t) / k;
       EXPECT_NEAR(m.S, S, 1e-14 * t + 1e-13 * S);
       EXPECT_NEAR(m.V, std::exp(-k * t), 1e-13);
-      // P is (t - S) / k, or its series if the difference cancels.
+      // P is (t - S) / k. For small k t, where the difference t - S loses digits, the power series of P is used.
       const double z = k * t, P = z < 1e-4 ? t * t * (0.5 - z / 6.0 + z * z / 24.0) : (t - S) / k;
       EXPECT_NEAR(m.P, P, (z < 1e-4 ? 1e-14 : 1e-12) * P / std::min(1.0, z < 1e-4 ? 1.0 : z));
     }
@@ -326,8 +326,9 @@ TEST(HandleMotion, SticksUpToTheFrictionAndBreaksAwayBeyond) {
   EXPECT_EQ(motion.handle().position.z(), 0.0);
 }
 
-/// Checks a mass on a spring with dry friction. It loses an amplitude of 2 c / k in each half period, and stops where
-/// the spring force is smaller than the friction. One call covers the whole motion.
+/// Checks a mass on a spring with dry friction. The amplitude decreases by 2 c / k in each half period, where c is the
+/// friction force and k the stiffness. The mass stops where the spring force is smaller than the friction. A single
+/// call of advance() computes the whole motion.
 TEST(HandleMotion, SwingsOutUnderAHandWithASpring) {
   constexpr double k = 100.0, kStart = 0.0987;
   HandleMotion motion(handle_of(0.0, kCoulomb), {0.1, k, 0.0});
@@ -382,7 +383,8 @@ TEST(HandleMotion, KeepsItsEnergyBalanceToRounding) {
   }
 }
 
-/// Checks the dissipated energy against path length and speed, which the energy balance does not use.
+/// Checks the dissipated energy against an independent computation from the path length (dry friction) and from the
+/// speed (viscous friction).
 TEST(HandleMotion, DissipatesByItsFrictionAlone) {
   constexpr double b = 2.0;
   HandleMotion motion = started(handle_of(b, kCoulomb), {kSpeed, 0, 0});
@@ -398,6 +400,25 @@ TEST(HandleMotion, DissipatesByItsFrictionAlone) {
   }
   // The trapezoidal rule has an error of (h / time constant)^2 = 1e-8.
   EXPECT_NEAR(motion.energy().dissipated, -viscous - kCoulomb * path, 1e-7 * (viscous + kCoulomb * path));
+}
+
+/// Checks a viscous handle that a constant force pushes from rest against x = (f / b) (t - tau (1 - exp(-t / tau))),
+/// tau = m / b. The intervals between the times are shorter and longer than 0.05 tau, where the formula of a step
+/// changes.
+TEST(SimulateLog, FollowsTheClosedFormOfAViscousHandle) {
+  constexpr double kForce = 1.5, kViscous = 4.0, kTau = 0.05;
+  const LoggedHandle handle{.mass = kViscous * kTau, .viscous = kViscous};
+  for (const double interval : {0.01 * kTau, 0.049 * kTau, 0.051 * kTau, 0.5 * kTau, 5.0 * kTau}) {
+    std::vector<double> times(8), positions(8);
+    const std::vector<double> forces(8, kForce);
+    for (std::size_t k = 0; k < times.size(); ++k) times[k] = interval * static_cast<double>(k);
+    simulate_log(handle, times, forces, positions);
+    for (std::size_t k = 0; k < times.size(); ++k) {
+      const double t = times[k], expected = kForce / kViscous * (t + kTau * std::expm1(-t / kTau));
+      // The difference of t and tau (1 - exp(-t / tau)) loses the digits of t / x. Their rounding errors are 1e-16 t.
+      EXPECT_NEAR(positions[k], expected, 1e-15 * (kForce / kViscous) * t) << interval / kTau << ", " << k;
+    }
+  }
 }
 
 }  // namespace

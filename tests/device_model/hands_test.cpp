@@ -40,8 +40,9 @@ TEST(ImpedanceHand, IsASpringAndADamperFromTargetToHandle) {
   EXPECT_EQ(hand.force(3.0, seen), Vec3(100 * 6 + 10 * 0, 0, 100 * 1 - 10 * 3));
 }
 
-/// Checks the mean square over ten minutes. For eight tones it equals the sum of the mean squares of the tones to 1 %:
-/// a beat between two tones either has a period below ten seconds, or contributes less than 1 %.
+/// Checks the mean square and the frequency over ten minutes. The mean square of eight tones equals the sum of the mean
+/// squares of the tones to 1 %: a beat between two tones either has a period below ten seconds, or contributes less
+/// than 1 %.
 TEST(Tremor, HasItsStandardDeviationInItsBandAlone) {
   const Tremor tremor({{20e-6, 0.0, 5e-6}, 8.0, 12.0}, 3);
   constexpr double kStep = 0.005;
@@ -68,7 +69,8 @@ TEST(Tremor, MovesTheTargetOfAHandAsItsSeedSays) {
   const double t = 0.37, h = 1e-6;
   const auto [x, v] = tremor.at(t);
   EXPECT_LE((shaky.force(t, Seen{}) - still.force(t, Seen{}) - 100.0 * x - 10.0 * v).norm(), 1e-15);
-  // The error of the difference is the third derivative, 43 m/s^3, times h^2 / 6, plus rounding divided by h.
+  // The central difference of the position has the error h^2 / 6 times the third derivative, 43 m/s^3, plus the
+  // rounding error divided by h.
   EXPECT_LE(((tremor.at(t + h).position - tremor.at(t - h).position) / (2.0 * h) - v).norm(), 1e-10);
   EXPECT_EQ(Tremor(config, 1).at(t).position, x);
   EXPECT_NE(Tremor(config, 2).at(t).position, x);
@@ -169,7 +171,7 @@ TEST_F(DragOnPlane, DirectionTurnsSteadilyAroundACorner) {
 
 TEST_F(DragOnPlane, PathAlongADirectionEndsAtTheEdge) {
   const auto path = along({0.001, 0, 0.002}, {2, 0, -5}, 1.0);
-  // Positions beyond the last points are still in their plane, as long as a point is within the smoothing radius.
+  // The path continues in the plane beyond the last points, as long as a point is within the smoothing radius.
   EXPECT_GT(path->length(), 0.001 - 1e-12);
   EXPECT_LT(path->length(), 0.001 + kSmoothing);
   EXPECT_NEAR(path->at(0.0005).position.x(), 0.0015, 1e-12);
@@ -178,8 +180,8 @@ TEST_F(DragOnPlane, PathAlongADirectionEndsAtTheEdge) {
 }
 
 TEST(SurfacePath, AlongADirectionStartsFromFarAboveARoughSurface) {
-  // Waves of 0.1 mm, shorter than the smoothing radius: projected from 2 mm above, the first position lies off the
-  // surface.
+  // The surface has waves with an amplitude of 0.1 mm along x and along y, which are shorter than the smoothing radius.
+  // The path starts 2 mm above the surface. The first projection of this start does not lie on the surface.
   constexpr double kWave = 2.0 * std::numbers::pi / 0.0003, kHeight = 0.0001;
   std::vector<SurfacePoint> points;
   for (int i = -40; i <= 40; ++i) {

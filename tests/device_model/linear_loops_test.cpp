@@ -124,7 +124,7 @@ TEST(SampledLoop, HasNoCrossingBelowItsLimit) {
     if (i % 4 == 1) loop.device.position_filter = LowPassFilter{0.3, 2};
     const double limit = linear_stability_limit(loop);
     ASSERT_GT(limit, 0.0);
-    // The sweep cannot find a crossing at pi, but no loop here has its first crossing at pi.
+    // first_crossing() cannot find a crossing at theta = pi, but no loop in this test has its first crossing there.
     EXPECT_NEAR(first_crossing(loop), limit, 1e-8 * limit) << i;
   }
 }
@@ -147,8 +147,8 @@ TEST(SampledLoop, IsTheMapOfTheDeviceWithFiltersOfAnyOrder) {
       const Vec3 kick(0.7, 0, 0);  // the motors' force of the first period, before there is any contact
       device.drive(kick, Vec3::Zero());
       Eigen::VectorXd state = Eigen::VectorXd::Zero(A.rows());
-      state[A.rows() - 1] = kick.x() * loop.period * loop.period / 0.1;  // delayed force, and force that acts since 3/4
-                                                                         // T
+      // The last component of the state is the delayed force. Because of the delay, the kick acts from 3/4 T on.
+      state[A.rows() - 1] = kick.x() * loop.period * loop.period / 0.1;
       const double a = kick.x() / 0.1, h = 0.25 * loop.period, b = 0.5 / 0.1;
       state[0] = a / (b * b) * (b * h - 1.0 + std::exp(-b * h));
       state[1] = loop.period * a / b * (1.0 - std::exp(-b * h));
@@ -230,8 +230,8 @@ TEST(ContactLoop, OfAWallInAnyDirectionIsTheLoopOfOneAxis) {
   EXPECT_FALSE(stable(limit * (1.0 + 1e-6)));
 }
 
-/// Checks axes that drive each other in both directions. The device itself, in three dimensions, decays just below the
-/// limit and grows just above it.
+/// Checks a contact in which the motion along each axis causes forces along the other axes. The simulated motion of the
+/// device in three dimensions must decay just below the limit of contact_loop() and grow just above this limit.
 TEST(ContactLoop, OfCoupledAxesIsThatOfTheDevice) {
   SampledLoop loop = light_loop();
   loop.device.viscous = 1.0;

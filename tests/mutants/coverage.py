@@ -28,7 +28,7 @@ FOLDERS = ("sim", "algorithms", "device_model", "results/observe")
 # coverage in this build.
 TESTS = (
     ["-L", "^fast$", "-E", "^Library[.]"],
-    ["-L", "^slow$", "-E", "[.]"],
+    ["-L", "^slow$", "-E", "[.]|_NOT_BUILT$"],
     ["-R", "^KnownAnswers[.]"],
 )
 # Largest allowed decrease of the executed fraction of a folder's lines [percentage points].
@@ -46,6 +46,9 @@ def run_tests(build):
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
             text=True,
+            # Tests kill programs, and a killed program can leave damaged counters. The messages about them would be
+            # differences in tests that compare the standard error.
+            env={**os.environ, "GCOV_ERROR_FILE": os.devnull},
         )
         if done.returncode != 0:
             all_pass = False

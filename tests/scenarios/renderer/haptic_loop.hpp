@@ -51,7 +51,7 @@ inline Opened opened(const HapbenchSetup& setup) {
   return renderer;
 }
 
-/// A haptic loop with its own clock.
+/// A haptic loop whose times are simulated: the test chooses the time between two calls of the renderer.
 struct Loop {
   explicit Loop(const HapbenchSetup& setup) : renderer(opened(setup)) {
     input.time_ns = 1'000'000'000;

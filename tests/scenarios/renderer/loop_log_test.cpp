@@ -102,6 +102,9 @@ TEST(Renderer, AnswersNullArguments) {
   EXPECT_EQ(output.reason, static_cast<unsigned>(HAPBENCH_NULL_ARGUMENT));
   EXPECT_EQ(norm(output.force), 0.0);
   EXPECT_EQ(hapbench_renderer_step(nullptr, nullptr, nullptr), static_cast<unsigned>(HAPBENCH_FAULT));
+  Loop loop(setup_of(kPlane));
+  EXPECT_EQ(hapbench_renderer_step(loop.renderer.get(), nullptr, &output), static_cast<unsigned>(HAPBENCH_FAULT));
+  EXPECT_EQ(output.reason, static_cast<unsigned>(HAPBENCH_NULL_ARGUMENT));
   hapbench_renderer_close(nullptr);
 }
 
