@@ -33,12 +33,12 @@ Measured measure_peg_motion(const Evidence& e) {
 
 Finding judge_peg_motion(const Measured& measured, const PublishedNumbers& p) {
   const MeasuredCase &original = measured.at(0), &shaped = measured.at(1);
-  return {
-      decide(vibrates_much_more(original, shaped, p), vibrates_more(original, shaped)),
-      fmt::format("with the original algorithm, the total variation of the velocity is {:.3g} times as large without "
-                  "friction, and {:.3g} times with the trainer's friction",
-                  original["velocity_variation"] / shaped["velocity_variation"],
-                  measured.at(2)["velocity_variation"] / measured.at(3)["velocity_variation"])};
+  return {decide(vibrates_much_more(original, shaped, p), vibrates_more(original, shaped)),
+          fmt::format(
+              "the total variation of the velocity with the original algorithm, divided by its value with stiffness "
+              "shaping, is {:.3g} without friction and {:.3g} with the trainer's friction",
+              original["velocity_variation"] / shaped["velocity_variation"],
+              measured.at(2)["velocity_variation"] / measured.at(3)["velocity_variation"])};
 }
 
 /// The algorithms of the thesis, except the normal projection, which equals stiffness shaping on springs.
@@ -46,10 +46,12 @@ constexpr const char* kAlgorithms[] = {"original_averaging", "summation",       
                                        "virtual_coupling",   "shaped_stiffness", "tandpasta"};
 constexpr std::size_t kPairs = 100;  ///< number of spring pairs in Table A.3
 
-/// Measures how the mass approaches the origin. arrives: 1 if its final distance from the origin is at most
-/// rule.arrived times the initial distance (the tolerance), otherwise 0. overshoot: largest x or y coordinate [m]; the
-/// mass starts at negative coordinates. swings: number of times that a coordinate changed its sign, where only
-/// coordinates beyond the tolerance count.
+/// Measures how the mass approaches the origin. The tolerance is rule.arrived times the initial distance from the
+/// origin.
+/// arrives: 1 if the final distance from the origin is at most the tolerance, otherwise 0.
+/// overshoot: largest x or y coordinate [m]; the mass starts at negative coordinates.
+/// swings: number of sign changes of the x and y coordinates. Coordinates whose magnitude is below the tolerance are
+/// ignored.
 MeasuredCase approach(const Evidence& e, const std::string& scene, std::size_t pairs, const std::string& algorithm,
                       std::vector<std::string> overrides = {}) {
   overrides.insert(overrides.end(), {fmt::format("environment.groups.0.count={}", pairs),
@@ -66,7 +68,7 @@ MeasuredCase approach(const Evidence& e, const std::string& scene, std::size_t p
   for_each_row(checked(loaded), [&](const StepRecord& row) {
     const Vec3& p = row.tool.pose.position;
     for (const Eigen::Index axis : {0, 1}) {
-      // The start is in the negative quadrant.
+      // The mass starts at negative coordinates, so that a positive coordinate is an overshoot.
       overshoot = std::max(overshoot, p[axis]);
       if (std::abs(p[axis]) < tolerance) continue;
       if (p[axis] * side[axis] < 0.0) swings += 1.0;
@@ -83,7 +85,7 @@ MeasuredCase approach(const Evidence& e, const std::string& scene, std::size_t p
 }
 
 // ---- A2: a mass on many springs without force limits. One case for each algorithm, number of pairs of springs, and
-// definition of the depth: signed, or nonnegative with the gradient along the displacement (2.3: d >= 0).
+// definition of the depth d: signed, or nonnegative (d >= 0, thesis 2.3) with the gradient along the displacement.
 
 constexpr std::size_t kPairCounts[] = {1, 2, 4, 10, 30, kPairs};
 
@@ -129,16 +131,15 @@ Finding judge_springs_unlimited(const Measured& measured, const PublishedNumbers
     if (const auto found = smooth_with.find({true, algorithm});
         found != smooth_with.end() && (", " + found->second).ends_with(", " + plain(kPairs)))
       ++smooth;
-  return {
-      published ? Verdict::replicated : Verdict::contradicted,
-      "100 pairs of dampers of 88.5 N s/m have 17 700 N s/m in sum, 22 times the stability limit 2 M / Δt = 800 N s/m "
-      "of A.3, so the plain sum must diverge",
-      "numbers of pairs with which the path is smooth: " + text,
-      fmt::format("{} of {} algorithms are smooth with 100 pairs", smooth, std::size(kAlgorithms))};
+  return {published ? Verdict::replicated : Verdict::contradicted,
+          "100 pairs have 200 dampers of 88.5 N s/m, in sum 17 700 N s/m; this is 22 times the stability limit of A.3, "
+          "2 M / Δt = 800 N s/m for M = 0.2 kg, so the plain sum must diverge",
+          "numbers of pairs with which the path is smooth: " + text,
+          fmt::format("{} of {} algorithms are smooth with 100 pairs", smooth, std::size(kAlgorithms))};
 }
 
-// Number of pairs with which the plain sum is smooth without force limits. With 100 pairs it is not smooth even without
-// force limits (A2).
+// Number of pairs of springs with which the motion by the plain sum of forces (algorithm `summation`) is smooth without
+// force limits. With 100 pairs, the motion is not smooth even without force limits (A2).
 constexpr std::size_t kStablePairs = 4;
 
 /// Measures claim A3. Returns two cases for each algorithm and number of pairs: without force limits, then with force
@@ -173,8 +174,8 @@ Finding judge_springs_limited(const Measured& runs, const PublishedNumbers& p) {
   return {decide(keeps && published_pairs, keeps && !fluctuate.empty()),
           fmt::format("the proposed algorithm {} its performance; {}", keeps ? "keeps" : "does not keep",
                       fluctuate.empty() ? "no other algorithm is smooth without the limits and fluctuates with them"
-                                        : "smooth without the limits, but fluctuating with them: " + fluctuate),
-          "swings without and with the limits: " + text,
+                                        : "smooth without the limits, but fluctuating with the limits: " + fluctuate),
+          "number of swings, first without the limits, then with them: " + text,
           fmt::format("proposed algorithm: {}; fluctuating algorithms: {}", swings,
                       fluctuate.empty() ? "none" : fluctuate)};
 }
@@ -228,7 +229,7 @@ Finding judge_stability_limits(const Measured& measured, const PublishedNumbers&
   for (std::size_t i = 0; i < measured.size(); ++i)
     worst = std::max(worst, std::abs(measured[i]["limit"] / published[kPublished[i]].mean - 1.0));
   return {decide(worst <= threshold(published, "same_limit"), false),
-          fmt::format("the largest difference to the published figures is {:.2g} %", 100.0 * worst)};
+          fmt::format("the largest difference from a published value is {:.2g} %", 100.0 * worst)};
 }
 
 /// Measures "there", the damping that the scene's damping ratio gives at the largest undamped stiffness, and "alone",
@@ -242,15 +243,17 @@ Finding judge_damping_at_limit(const MeasuredCase& m, const PublishedNumbers& p)
   const double alone = std::abs(m["alone"] / p["A4.damping"].mean - 1.0);
   const bool before = m["there"] > m["alone"];
   return {decide(before && std::max(there, alone) <= threshold(p, "same_limit"), before),
-          before ? "the damping at the largest stiffness is unstable without any spring" : "stiffness comes first"};
+          before ? "the damping at the largest stiffness is unstable without any spring"
+                 : "the damping at the largest stiffness is stable without a spring"};
 }
 
-// ---- A6: three energies of an undamped mass on a spring, as Eq. A.1 moves it.
-// mass: largest excess of the kinetic energy over the work F_k (p_k - p_(k-1)) of the force on the mass, divided by the
-//   initial energy; the excess is -M |dv|^2 / 2 in each step, so that the mass alone is passive.
-// kept: largest relative change of the modified energy (K x^2 + M v^2 - K dt x v) / 2, which Eq. A.1 keeps.
-// naive: largest energy (K x^2 + M v^2) / 2 in units of its initial value; bound: 1 / (1 - w dt / 2), with the angular
-//   frequency w.
+// ---- A6: energies of an undamped mass on a spring, whose motion is computed by Eq. A.1.
+// mass: largest excess of the gain of kinetic energy over the work of the force on the mass, divided by the initial
+//   energy. The work is the sum of F (p_k - p_(k-1)) over the steps so far, with the force F at p_(k-1). Each step
+//   changes the excess by -M |dv|^2 / 2, so that the mass alone is passive.
+// kept: largest relative change of the modified energy (K x^2 + M v^2 - K dt x v) / 2, which Eq. A.1 conserves.
+// naive: largest energy (K x^2 + M v^2) / 2, divided by the initial energy.
+// bound: upper bound 1 / (1 - w dt / 2) of `naive`, with the angular frequency w.
 
 MeasuredValues measure_energy(const Evidence& e) {
   const LoadedScenario loaded = e.load(kSpring, {kUndamped});
@@ -285,7 +288,7 @@ Finding judge_energy(const MeasuredCase& m, const PublishedNumbers&) {
           fmt::format(
               "the verdict depends on the meaning of energy: the mass alone {} passive; with a spring, a modified "
               "energy {} constant; the energy K x²/2 + M v²/2 oscillates up to 1 / (1 - ω Δt / 2) = {:.4f} times its "
-              "start",
+              "initial value",
               mass ? "is" : "is not", kept ? "is" : "is not", m["bound"])};
 }
 

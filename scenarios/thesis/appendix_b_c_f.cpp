@@ -125,7 +125,7 @@ constexpr const char* kLaws[] = {"shaped_stiffness", "original_averaging", "summ
                                  "virtual_coupling", "least_squares"};
 
 constexpr std::size_t kWallDensities[] = {4, 10, 40};  ///< copies of each wall point
-/// A gradient with |z| below this belongs to the wall.
+/// A contact belongs to the wall if the magnitude of its gradient's z component is below kWall.
 constexpr double kWall = 0.5;
 
 /// Returns the contacts with each point of the wall repeated `copies` times.
@@ -144,7 +144,7 @@ ContactBuffer with_repeated_wall_points(const ContactBuffer& contacts, std::size
 }
 
 /// Returns the spring force [N] of an algorithm for each contact set, with each point of the wall repeated `copies`
-/// times and a tool at rest. The sets have depths and gradients.
+/// times and a tool at rest. Precondition: depths and gradients of the sets have been computed.
 std::vector<Vec3> forces_of(const RenderingConfig& config, const Scene& scene, const std::vector<ContactBuffer>& sets,
                             std::size_t copies = 1) {
   const auto algorithm = make_algorithm(config);
@@ -172,9 +172,9 @@ double change_of_force(const std::vector<Vec3>& first, const std::vector<Vec3>& 
   return std::sqrt(difference / force);
 }
 
-// ---- P1: change_of_force() of the contacts of task 2 if every point of the wall is repeated: with all points, and
-// after the reduction. One case for each law, and for stiffness shaping one case for each number of updates. With many
-// updates the force should no longer depend on the point density.
+// ---- P1: change_of_force() for the contacts of task 2 if every point of the wall is repeated, without and with the
+// reduction of points. One case for each law. For stiffness shaping, one more case for each number of updates of the
+// weights: with many updates, the force should no longer depend on the point density.
 
 constexpr int kUpdates[] = {1, 10, 100, 1000};
 
@@ -243,7 +243,8 @@ Finding judge_information(const MeasuredCase& m, const PublishedNumbers& p) {
           "three updates give different weights with all points and with the points that the reduction keeps"};
 }
 
-// ---- C6: the damping ratio of 1, 2, 4 and 8 springs in parallel. The stiffness ratio is the number of springs.
+// ---- C6: the damping ratio of 1, 2, 4 and 8 springs in parallel. The stiffness divided by the stiffness of one spring
+// is the number of springs.
 
 constexpr double kCounts[] = {1.0, 2.0, 4.0, 8.0};
 constexpr double kSpringDamping = 0.1;  ///< damping ratio of one spring; small, so that the mass oscillates many times
@@ -254,7 +255,7 @@ Measured measure_relative_damping(const Evidence& e) {
     const std::vector<std::string> overrides = {
         fmt::format(R"(environment.groups=[{{"direction":[1,0,0],"count":{}}}])", count),
         "initial.position_m=[-0.005,0,0]", fmt::format("rendering.damping_ratio={}", kSpringDamping),
-        // With a tenth of the step, the numerical damping of the integrator is negligible.
+        // With a tenth of the scenario's time step, the numerical damping of the integrator is negligible.
         "time.step_s=0.00005", "time.steps=10000"};
     const double ratio = damping_ratio_of(e.load("springs_unlimited_summation", overrides));
     measured.push_back({fmt::format("{}", count), {{"count", {count}}, {"damping_ratio", {ratio}}}});
@@ -274,8 +275,12 @@ Finding judge_relative_damping(const Measured& measured, const PublishedNumbers&
   return {decide(same, false), fmt::format("√ρ times that of one spring to {:.2g} %", 100.0 * worst)};
 }
 
-// ---- F1: the largest force change in a step at a corner [N], and the rendered depth of a tool pressed into a flat
-// [m].
+// ---- F1: the normal projection, compared with stiffness shaping and the depth model surface_normal.
+// step, step_shortest: largest change of the force in one time step at a corner [N], with normal projection and with
+//   surface_normal.
+// pressed: final distance of the tool's tip below a flat surface, with normal projection [m].
+// depth, depth_shortest: largest depth of a contact while the tool is pressed into this surface [m], with normal
+//   projection and with surface_normal.
 
 MeasuredValues measure_normal_projection(const Evidence& e) {
   const auto z = e.table("flat_press_normal_projection", "trajectory.csv").at("pz_m");
@@ -297,11 +302,11 @@ Finding judge_normal_projection(const MeasuredCase& m, const PublishedNumbers& p
 }
 
 // ---- F2, the law tandpasta.
-// energy_ratio: elastic energy of the weighted springs, divided by the energy of the unweighted springs.
+// energy_ratio: elastic energy of the weighted springs, divided by the elastic energy of the unweighted springs.
 // boosts: outward force at some prescribed tilts of the planar peg, divided by the outward force of unweighted springs
 //   in the same pose.
-// One value for each law: time [s] until the peg leaves the hole, without friction and with 1/100 of the time step, at
-//   which the motion has converged.
+// tandpasta, summation, shaped_stiffness: time [s] until the peg leaves the hole with this law, without friction and
+//   with 1/100 of the scenario's time step. With a smaller time step, the motion would be practically the same.
 
 constexpr double kEnergyKept = 1e-9;                      ///< largest relative change of a conserved energy
 constexpr double kBoostTilts[] = {0.08, 0.12, 0.2, 0.4};  ///< [rad]
@@ -368,8 +373,9 @@ Finding judge_tandpasta(const MeasuredCase& m, const PublishedNumbers& p) {
                   m["summation"], m["shaped_stiffness"])};
 }
 
-// ---- F4: depth of the drill of task 2 in the hole [m], turned by hands of constant force, with tandpasta and with the
-// plain sum, whose elastic energy tandpasta keeps. All points, no local average. One case for each force.
+// ---- F4: largest depth of the drill in the block in task 2 [m], while a hand of constant force presses it. Compares
+// the laws tandpasta and summation: tandpasta keeps the elastic energy of summation. All contact points are rendered,
+// without reduction and local average. One case for each force.
 
 constexpr double kTurningHands[] = {0.5, 1.0, 2.0};  ///< [N]
 
@@ -395,12 +401,11 @@ Finding judge_quick_penetration(const Measured& measured, const PublishedNumbers
   const auto less =
       std::ranges::count_if(measured, [](const MeasuredCase& m) { return m["tandpasta"] < m["summation"]; });
   const auto all = static_cast<std::ptrdiff_t>(measured.size());
-  return {
-      decide(less == all, less > 0),
-      fmt::format(
-          "the drill sinks in less than with the plain sum under {} of {} hands; n contacts have a stiffness of up to "
-          "n K, so the drill hardly sinks in with either law",
-          less, all)};
+  return {decide(less == all, less > 0),
+          fmt::format(
+              "under {} of {} hands, the drill sinks in less with tandpasta than with the plain sum; n contacts have a "
+              "stiffness of up to n K, so the drill hardly sinks in with either law",
+              less, all)};
 }
 
 }  // namespace

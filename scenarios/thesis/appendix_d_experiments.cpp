@@ -75,11 +75,12 @@ double half_a_digit(double printed) {
 
 /// Comparison of a measure with the published values.
 struct Compared {
-  bool agrees = false;    ///< true if significance and direction of the difference are as published
-  bool near = false;      ///< true if both means are near the published means; always true for the force
-  double t = 0.0;         ///< paired t statistic of original minus shaped
-  double farthest = 0.0;  ///< larger of the differences from the two published means [standard errors of the
-                          ///< difference]
+  bool agrees = false;  ///< true if significance and direction of the difference are as published
+  bool near = false;    ///< true if both means are near the published means; always true for the force
+  double t = 0.0;       ///< paired t statistic of original minus shaped
+  /// Larger of two differences [standard errors of the difference]: measured against published mean with the original
+  /// algorithm, and measured against published mean with stiffness shaping.
+  double farthest = 0.0;
 };
 
 /// Compares a measure with the published values. `id`, `published_difference`: see judge_experiment().
@@ -132,10 +133,10 @@ Finding judge_experiment(const Measured& measured, const PublishedNumbers& publi
                                   standard_error(a), mean_of(b), standard_error(b), c.t));
   }
   return {in_simulation(consistent),
-          (deviating.empty() ? std::string("every measure agrees with the published one in direction and significance")
+          (deviating.empty() ? std::string("every measure agrees with the thesis in direction and significance")
                              : "different from the published result: " + deviating) +
               fmt::format("; the {} differs most, by {:.2g} standard errors of the difference; subjects regulate the "
-                          "gauge, so the mean force is nearly an input",
+                          "force that the gauge shows, so the mean force is nearly an input",
                           farthest, largest),
           text, number};
 }
@@ -212,14 +213,16 @@ Measured measure_pilots(const Evidence& e) {
   return measured;
 }
 
-/// Result of one pilot experiment, which varies either the offset or the height of the targets. A member is about the
-/// original algorithm unless its comment names stiffness shaping.
+/// Result of one pilot experiment, which varies either the offset or the height of the targets.
 struct PilotResult {
-  bool easy = false;       ///< true if, at some position, most targets are removed
-  bool beyond = false;     ///< true if, at some position beyond the published position, the success rate is above
-                           ///< kHardlyAnyTarget
-  bool somewhere = false;  ///< true if, at some position, hardly any target is removed, but most targets are removed
-                           ///< with stiffness shaping
+  /// True if, at some position, most targets are removed with the original algorithm.
+  bool easy = false;
+  /// True if, at some position beyond the published position, the success rate with the original algorithm is above
+  /// kHardlyAnyTarget.
+  bool beyond = false;
+  /// True if, at some position, hardly any target is removed with the original algorithm, and most targets are removed
+  /// with stiffness shaping.
+  bool somewhere = false;
 
   bool as_published() const { return easy && !beyond; }
   const char* text() const {
@@ -229,8 +232,8 @@ struct PilotResult {
 
 Finding judge_pilots(const Measured& measured, const PublishedNumbers& published) {
   PilotResult offset, height;
-  double beyond = 0.0, easiest = 0.0;  // largest success rates of the original algorithm beyond the published positions
-                                       // and at all positions
+  // Largest success rate of the original algorithm: beyond the published positions, and at any position.
+  double beyond = 0.0, easiest = 0.0;
   std::string worse;  // positions at which stiffness shaping removes fewer targets than the original algorithm
   for (const MeasuredCase& m : measured) {
     const bool hardly_any = m["original"] <= kHardlyAnyTarget, is_offset = m.name == "offset";
@@ -253,8 +256,9 @@ Finding judge_pilots(const Measured& measured, const PublishedNumbers& published
       fmt::format("offset: {}; height: {}; stiffness shaping removes fewer targets than the original algorithm at: {}",
                   offset.text(), height.text(), worse.empty() ? "no position" : worse),
       "",
-      fmt::format("success rate of the original algorithm {:.2f} beyond, {:.2f} at the easiest position", beyond,
-                  easiest)};
+      fmt::format("success rate of the original algorithm {:.2f} beyond the published positions, {:.2f} at the easiest "
+                  "position",
+                  beyond, easiest)};
 }
 
 }  // namespace

@@ -56,8 +56,8 @@ std::string problem_of_run(const Evidence& evidence, const std::string& name) {
   }
 }
 
-/// Returns the mean number of colliding points over the steps with contact of a calibration's scenario, divided by the
-/// published number.
+/// Runs the scenario of a calibration. Returns the mean number of colliding points over the steps with contact, divided
+/// by the published mean number.
 double raw_ratio(const Assumptions& assumptions, const std::vector<std::string>& values, const Calibration& target) {
   Evidence evidence;
   evidence.overrides = [&](const Scenario& scenario) { return assumptions.overrides(scenario, values); };
@@ -77,7 +77,7 @@ bool calibrate(const Assumptions& assumptions, std::vector<std::string>& values,
   constexpr double kSmallestSlope = 0.3, kLargestSlope = 5.0;
   const double low = math::log(assumption.range->first), high = math::log(assumption.range->second);
   double at = math::log(finite_number(assumption.value).value()), slope = 1.0;
-  std::optional<std::pair<double, double>> before;  // logarithms of the earlier value and of its ratio
+  std::optional<std::pair<double, double>> before;  // log(value) and log(raw_ratio()) of the previous run
   for (int run = 0; run < kRuns; ++run) {
     values[index] = run == 0 ? assumption.value : fmt::format("{:.6g}", math::exp(at));
     const double ratio = raw_ratio(assumptions, values, *assumption.calibration);
@@ -87,7 +87,7 @@ bool calibrate(const Assumptions& assumptions, std::vector<std::string>& values,
       slope = std::clamp((excess - before->second) / (at - before->first), kSmallestSlope, kLargestSlope);
     before = {at, excess};
     at = std::clamp(at - excess / slope, low, high);
-    if (at == before->first) return false;  // an end of the range
+    if (at == before->first) return false;  // the value stays at an end of the range
   }
   return false;
 }
@@ -138,7 +138,7 @@ CalibratedSet calibrated(AssumptionSet set, const Assumptions& assumptions) {
   for (std::size_t i = 0; i < all.size(); ++i) {
     if (!all[i].calibration || result.set.given.contains(i)) continue;
     const std::vector<std::string> scenario = {all[i].calibration->scenario};
-    // Check whether another assumption changes the scenario.
+    // Check whether another assumption of the set changes the scenario of the calibration.
     bool changes = false;
     for (std::size_t other = 0; other < all.size(); ++other)
       changes = changes || (other != i && !all[other].fields.empty() && all[other].reaches(scenario, "") &&
@@ -157,8 +157,8 @@ std::vector<SetFinding> judge_set(const JudgingInputs& inputs, const CalibratedS
     fs::remove_all(directory, ignored);
   });
   std::set<std::string> used;
-  std::map<std::string, std::string> problems;  // for each scenario that was run: why its results cannot be used;
-                                                // empty if they can
+  // For each scenario that was run: the reason why its results cannot be used; empty if they can be used.
+  std::map<std::string, std::string> problems;
   Evidence evidence{inputs.assumptions.with_numbers(inputs.published, values),
                     directory,
                     {},

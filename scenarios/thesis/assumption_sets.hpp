@@ -26,11 +26,12 @@ struct AssumptionSet {
 /// options.
 std::vector<AssumptionSet> read_assumption_sets(const std::filesystem::path& file, const Assumptions& assumptions);
 
-/// Returns the assumptions whose values differ from the recorded values, as "servo.delay = 2, local.average = false".
+/// Returns the assumptions whose values differ from the recorded values, in the form "servo.delay = 2, local.average =
+/// false"; "as recorded" if no value differs.
 std::string difference_text(const AssumptionSet& set, const Assumptions& assumptions);
 
-/// Largest relative difference of the number of raw points (colliding points) from the published number at which an
-/// input counts as calibrated.
+/// An assumption counts as calibrated if the number of raw points (colliding points) differs from the published number
+/// by at most this fraction.
 inline constexpr double kCalibrationTolerance = 0.03;
 
 /// An assumption set whose calibrated assumptions have the values that give the published numbers of raw points.
@@ -42,7 +43,7 @@ struct CalibratedSet {
 /// Calibrates the inputs of a set, that is, the assumptions that have an Assumption::calibration. Leaves an input
 /// unchanged if its value is given, or if no other assumption of the set changes the scenario of its calibration. Uses
 /// the secant method on logarithms of the values, starts at the recorded value, and makes at most 8 runs for each
-/// input. Throws InputError.
+/// input. Throws InputError if a scenario of a calibration cannot run.
 CalibratedSet calibrated(AssumptionSet set, const Assumptions& assumptions);
 
 /// Overrides that reduce the experiments of appendix D: 4 of 15 targets at each position, for each of the six subjects.
@@ -67,7 +68,8 @@ inline constexpr const char* kNotMeasured = "not measured";
 
 /// Judges the claims under a set. Runs each scenario once, when a claim first needs it. A claim has the verdict "not
 /// judged" if it uses the scenario of an input that could not be calibrated. Writes results into `directory` and
-/// removes this directory at the end. Thread-safe if each call has a different directory. Throws IoError.
+/// removes this directory at the end. Thread-safe if each call has a different directory. Throws IoError if results
+/// cannot be written.
 std::vector<SetFinding> judge_set(const JudgingInputs& inputs, const CalibratedSet& calibrated,
                                   const std::vector<Claim>& claims, const std::filesystem::path& directory);
 

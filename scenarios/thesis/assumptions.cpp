@@ -33,10 +33,12 @@ namespace fs = std::filesystem;
 /// Returns the assumption of a JSON entry. Throws Json::exception if a key is missing or has a wrong type.
 Assumption assumption_of(const Json& json) {
   const Json& value = json.at("value");
+  Json without_prose = json;
+  for (const char* prose : {"what", "thesis", "chosen", "why"}) without_prose.erase(prose);
   Assumption assumption{.id = json.at("id").get<std::string>(),
                         .value = value.is_number() ? cell_text(value.get<double>()) : value.get<std::string>(),
                         .options = json.value("options", std::vector<std::string>()),
-                        .text = json_text(json)};
+                        .text = json_text(without_prose)};
   assumption.logarithmic = json.value("scale", "linear") == "log";
   if (json.contains("calibrated")) {
     const Json& to = json.at("calibrated");
@@ -86,7 +88,8 @@ std::vector<Location> locations_of(Json& scenario, const std::string& path) {
   return locations;
 }
 
-/// Returns the new value of a location, as text: `value`, or `value` times the present number. Throws InputError.
+/// Returns the new value of a location, as text. If `field.times` is false, returns `value`. If it is true, returns
+/// `value` times the number at the location, and throws InputError if the location has no number.
 std::string assumed_text(const Location& location, const AssumedField& field, const std::string& value) {
   if (!field.times) return value;
   if (!location.second->is_number())
@@ -144,9 +147,9 @@ std::vector<std::string> Assumptions::recorded_values() const {
 
 std::vector<std::string> Assumptions::overrides(const Scenario& scenario, std::span<const std::string> values) const {
   // Apply the assumptions one after the other to the scenario's JSON, and remember the text of each changed field.
-  Json changed = effective_scenario(scenario, scenario.directory);  // the scenario with all defaults, so that every
-                                                                    // field exists
-  Json texts = Json::object();                                      // new values, by path
+  // `changed` begins as the scenario with all defaults, so that every field exists.
+  Json changed = effective_scenario(scenario, scenario.directory);
+  Json texts = Json::object();  // new values, by path
   for (std::size_t i = 0; i < all_.size(); ++i) {
     for (const AssumedField& field : all_[i].fields) {
       if (!concerns(field, scenario.name)) continue;

@@ -22,12 +22,12 @@ namespace hapbench {
 struct AssumedField {
   std::vector<std::string> scenarios;  ///< names of bundled scenarios; '*' matches any characters
   std::string path;                    ///< dotted, as in --set; '*' matches every index of a list
-  bool times = false;                  ///< true: the assumption's value multiplies the value in the scenario; false: it
-                                       ///< replaces this value
+  /// true: the assumption's value multiplies the value in the scenario; false: it replaces the value in the scenario.
+  bool times = false;
 };
 
-/// Target of a calibration. `raw` is the published mean number of colliding points, over the steps with contact of the
-/// scenario.
+/// Target of a calibration. `raw` is the published mean number of colliding points over those steps of `scenario` that
+/// have a contact.
 struct Calibration {
   std::string scenario = {};
   double raw = 0.0;
@@ -36,14 +36,16 @@ struct Calibration {
 /// One open assumption. Exactly one of `range` and `options` is given.
 struct Assumption {
   std::string id = {};
-  std::string value = {};                               ///< recorded value as text for --set; the bundled scenarios
-                                                        ///< have this value
+  /// Recorded value as text for --set. The bundled scenarios have this value.
+  std::string value = {};
   std::optional<std::pair<double, double>> range = {};  ///< smallest and largest plausible value of a number
   bool logarithmic = false;                             ///< true: the middle of the range is the geometric mean
   std::vector<std::string> options = {};                ///< plausible values of a text, as for --set
-  std::vector<AssumedField> fields = {};        ///< empty for a number that rules of claims read by the assumption's id
-  std::optional<Calibration> calibration = {};  ///< given: the value is an input that is calibrated, and not free
-  std::string text = {};                        ///< JSON text of the whole entry
+  /// Scenario fields that the assumption sets. Empty for a number that the rules of claims read by the assumption's id.
+  std::vector<AssumedField> fields = {};
+  /// Given if the value follows from a published number of points by calibration. Empty if the value is free.
+  std::optional<Calibration> calibration = {};
+  std::string text = {};  ///< JSON text of the entry without its prose, for a hash of what can change verdicts
 
   /// Returns the plausible values other than the recorded value, as texts for --set: the other options, or the ends of
   /// the range and, with `middle`, the middle of the range. Omits a middle that differs from the recorded value by at
@@ -85,7 +87,8 @@ class Assumptions {
   std::string hash_;
 };
 
-/// Returns the JSON Schema (draft 7) of assumptions.json, results/reference/assumptions.schema.json. Throws InputError.
+/// Returns the JSON Schema (draft 7) of assumptions.json, read from results/reference/assumptions.schema.json. Throws
+/// InputError if this file cannot be read.
 Json assumptions_schema();
 
 }  // namespace hapbench

@@ -12,9 +12,9 @@
 #include "scenarios/thesis/claims.hpp"
 #include "scenarios/thesis/measurements.hpp"
 
-/// Claims of 1.2, 2.8, 3.4 and F.2: the computing time of contact points. Times differ between machines and runs, so
-/// that the numbers in two ledgers are not equal. The times are medians of repetitions. A verdict requires that two
-/// times differ by at least the factor rule.margin.
+/// Claims of thesis sections 1.2, 2.8, 3.4 and F.2: the computing time of the force for many contact points. Times are
+/// medians of repetitions. They differ between machines and runs, so that the numbers in two ledgers are not equal. A
+/// verdict requires that two times differ by at least the factor rule.margin.
 namespace hapbench {
 namespace {
 
@@ -48,8 +48,8 @@ class DenseShaping {
   std::vector<double> matrix_, ratio_;
 };
 
-// ---- T4, T4b: computing time [s] of one step for the largest number of contacts of a task: the extreme case of 2.8,
-// almost a thousand points, from task 3 with the drill upright and pressed against the wall.
+// ---- T4, T4b: computing time [s] of one step with almost a thousand contacts, the extreme case of thesis 2.8. The
+// contacts are the largest contact set of task 3 with the drill upright and pressed against the wall.
 
 MeasuredValues measure_deadline(const Evidence& e) {
   const LoadedScenario loaded =
@@ -76,18 +76,19 @@ Finding judge_dense_deadline(const MeasuredCase& m, const PublishedNumbers& publ
   return {decide(missed && met, met),
           missed ? fmt::format("in the dense form of the thesis, {}",
                                met ? "the reduction is needed and suffices" : "even the reduction does not suffice")
-                 : "on this machine the dense form does not clearly miss the deadline"};
+                 : "on this machine, the dense form does not clearly exceed the time limit"};
 }
 
 Finding judge_tensor_deadline(const MeasuredCase& m, const PublishedNumbers& published) {
   const double deadline = published["T4.step"].mean;
   const bool met = threshold(published, "margin") * m["tensor"] <= deadline;
-  return {found(met), met ? "with the 3 × 3 stiffness tensor, all points are shaped in time without a reduction"
-                          : "without the reduction the tensor form misses the deadline, too"};
+  return {found(met),
+          met ? "with the 3 × 3 stiffness tensor, all points are shaped within the time limit without a reduction"
+              : "without the reduction, the tensor form does not clearly meet the time limit"};
 }
 
-// ---- T5: computing time of one step divided by the time step [1], for the contacts of task 3, in the dense form and
-// in the tensor form.
+// ---- T5: computing time of one step divided by the time step (dimensionless), for the contacts of task 3, with the
+// dense form (n x n matrix) and with the tensor form of stiffness shaping.
 
 MeasuredValues measure_loop_load(const Evidence& e) {
   const LoadedScenario task = e.load("task3_spin_signed_distance");
@@ -116,14 +117,14 @@ Finding judge_loop_load(const MeasuredCase& m, const PublishedNumbers& p) {
   const bool falls = margin * m["reduced_3"] <= m["unreduced_3"];
   return {decide(small && falls, small || falls),
           fmt::format(
-              "the load of the iterations is {}; the reduction {} the load of the dense form and {} the load of the "
-              "tensor form",
+              "the computing time of the iterations is {}; the reduction {} the computing time of the dense form and "
+              "{} the computing time of the tensor form",
               small ? "small" : "not small", falls ? "lowers" : "does not lower",
               margin * m["tensor_reduced_3"] <= m["tensor_unreduced_3"] ? "lowers" : "does not lower")};
 }
 
-// ---- P2, F3: computing time of one step divided by the time step [1], of another algorithm and of stiffness shaping.
-// P2: the proxy in task 2. F3: tandpasta for the largest number of contacts of task 2.
+// ---- P2, F3: computing time of one step divided by the time step (dimensionless), of another algorithm and of
+// stiffness shaping. P2: the proxy in task 2. F3: tandpasta for the largest contact set of task 2.
 
 MeasuredValues measure_proxy_cost(const Evidence& e) {
   // Run both laws in turn, so that a change of the machine's speed affects both.

@@ -24,7 +24,7 @@
 #include "sim/core/math.hpp"
 #include "sim/core/random.hpp"
 
-/// Claims of 3.3: the number of points before and after the reduction.
+/// Claims of thesis section 3.3: the number of points before and after the reduction.
 namespace hapbench {
 namespace {
 
@@ -70,10 +70,10 @@ Finding judge_flat_reduction(const Measured& counts, const PublishedNumbers& pub
           one ? "on a flat all gradients are equal, so one point is left" : "more than one point is left on the flat"};
 }
 
-/// Returns two values: true if the mean of the counts is near the published mean of recording `one`, and true if their
-/// spread is near the published spread of recording `one`. The thesis publishes two recordings of a task, without
-/// uncertainties. A value is near recording `one` if its difference from this recording is at most the difference
-/// between the two recordings.
+/// Returns two values: true if the mean of the counts is near the published mean of recording `one`, and true if the
+/// spread of the counts is near the published spread of recording `one`. `counts` is "raw" or "reduced". The thesis
+/// publishes two recordings of a task, `one` and `other`, without uncertainties. A value is near recording `one` if its
+/// difference from this recording is at most the difference between the two recordings.
 std::pair<bool, bool> nearness(const MeasuredCase& c, const std::string& counts, const PublishedNumber& one,
                                const PublishedNumber& other) {
   const auto is_near = [](double value, double published, double elsewhere) {
@@ -90,8 +90,8 @@ struct CountsAgree {
   bool whole = false;  ///< true if, in addition, the spread after the reduction agrees and no step reaches the bound
 };
 
-/// Compares the counts of one density with both published recordings of a task: the counts of 3.3 and of appendix C.3
-/// differ. `bounded`: true if no step reaches the published bound.
+/// Compares the counts of one density with both published recordings of a task, in thesis 3.3 and in appendix C.3. The
+/// counts of the two recordings differ. `bounded`: true if no step reaches the published bound.
 CountsAgree agreement(const MeasuredCase& c, const PublishedNumbers& published, const std::string& task, bool bounded) {
   CountsAgree agree;
   for (const auto& [one, other] : {std::pair("", ".C3"), std::pair(".C3", "")}) {
@@ -111,8 +111,9 @@ std::string agreement_text(const CountsAgree& agree, bool bounded, double bound)
   if (agree.whole) return "as published";
   if (!agree.raw) return "the raw counts differ from the published counts";
   if (!agree.mean) return "the number of points left differs from the published number";
-  return "the number of points left is as published, " +
-         (bounded ? std::string("its spread is not") : fmt::format("some rows keep {} or more", bound));
+  return "the number of points left is as published, " + (bounded
+                                                              ? std::string("but its standard deviation is not")
+                                                              : fmt::format("but some steps keep {} or more", bound));
 }
 
 /// Judges the number of points after the reduction. The raw counts are an input: a density whose raw counts differ from

@@ -24,23 +24,24 @@
 #include "sim/core/math.hpp"
 #include "sim/core/random.hpp"
 
-/// Claims of 2.7, 3.5 and 4.5: the limit of the input force.
+/// Claims of thesis sections 2.7, 3.5 and 4.5: the limit of the input force.
 namespace hapbench {
 namespace {
 
-// ---- L1: displacement of the tool into the flat as a function of the measured force.
+// ---- L1: displacement of the tool into a flat surface as a function of the measured force.
 // deviation: rms difference, without the force limit, between the displacement and the ideal line of Fig. 6,
 //   (measured force - weight) / K, divided by the largest displacement.
 // onset: smallest measured force [N] at which, with the force limit, the displacement has reached its constant value.
 // plateau_spread: (max - min) / mean of the displacement beyond the onset.
 
-/// Displacements of the tool (depth) and of the handle into the flat [m], and the measured force [N], in a step with
-/// contact.
+/// A step with contact: displacements of the tool (`depth`) and of the handle (`handle`) into the flat surface [m], and
+/// the measured force [N].
 struct FlatRow {
   double depth, handle, force;
 };
 
-/// Returns the steps with contact of a scenario on the flat. Throws NothingToMeasure if there is none.
+/// Returns those steps of a scenario with a flat surface that have a contact. Throws NothingToMeasure if no step has a
+/// contact.
 std::vector<FlatRow> rows_on_flat(const Evidence& e, const std::string& scenario) {
   const auto table = e.table(scenario, "trajectory.csv");
   std::vector<FlatRow> rows;
@@ -84,8 +85,9 @@ Finding judge_force_limit(const MeasuredCase& m, const PublishedNumbers& publish
   const bool onset = std::abs(m["onset"] - published["L1.measured"].mean) <= threshold(published, "onset");
   const bool constant = m["plateau_spread"] <= threshold(published, "proportional");
   return {decide(proportional && onset && constant, proportional && constant),
-          fmt::format("{} without the limit; {} with it; {}", proportional ? "proportional" : "not proportional",
-                      constant ? "constant" : "not constant", onset ? "onset as published" : "onset elsewhere")};
+          fmt::format("the displacement is {} without the limit and {} with it; the onset force {} the published force",
+                      proportional ? "proportional" : "not proportional", constant ? "constant" : "not constant",
+                      onset ? "agrees with" : "differs from")};
 }
 
 // ---- L4: stiffness at the handle [N/m]: change of the measured force divided by the displacement of the handle, from
@@ -103,16 +105,17 @@ MeasuredValues measure_felt_stiffness(const Evidence& e) {
 
 Finding judge_felt_stiffness(const MeasuredCase& m, const PublishedNumbers& p) {
   const double times = m["on"] / m["off"];
-  return {decide(times >= threshold(p, "heavier"), times > 1.0),
-          fmt::format("{:.2g} times as stiff with the limit; the rest of the compliance is our servo and structure",
-                      times)};
+  return {
+      decide(times >= threshold(p, "heavier"), times > 1.0),
+      fmt::format("with the limit, the stiffness is {:.2g} times as large; our servo and structure limit the stiffness",
+                  times)};
 }
 
-// ---- L2: the steps of task 2 in contact in which the hand's force is at the input limit. Measures the magnitude of
+// ---- L2: the steps of task 2 with contact in which the hand's force is at the input limit. Measures the magnitude of
 // the spring force f (the reaction) [N] in these steps. Also measures the fraction of these steps in which |f| does not
 // grow along the velocity v: <v, grad |f|> = -K <f, S v> / |f| <= 0. At the limit the tool is near equilibrium, so that
-// the sign of v is a matter of chance. If the tool moves only where the reaction decreases, the reaction does not
-// exceed the limit.
+// v points in or against the direction of growing |f| by chance. If the tool moves only where the reaction decreases,
+// the reaction does not exceed the limit.
 
 MeasuredValues measure_saturated_motion(const Evidence& e) {
   // The hand pushes with more than the input limit of 2 N while the drill rotates once back and forth.
@@ -140,8 +143,8 @@ MeasuredValues measure_saturated_motion(const Evidence& e) {
 Finding judge_saturated_motion(const MeasuredCase& m, const PublishedNumbers& p) {
   const double bound = threshold(p, "around") * m["limit"];
   const bool held = m["p99"] <= bound, median = m["median"] <= bound;
-  return {decide(held, median), held ? "the reaction stays at the limit for every force of the hand"
-                                     : "the reaction exceeds the limit while the hand pushes on"};
+  return {decide(held, median), held ? "the reaction stays near the limit for every force of the hand"
+                                     : "the reaction exceeds the limit while the input force is limited"};
 }
 
 // ---- L3: a tool shaken in free air. One case for each frequency.
@@ -199,8 +202,10 @@ Finding judge_shaking(const Measured& measured, const PublishedNumbers& publishe
     heavier = heavier || factor >= threshold(published, "heavier");
   }
   return {decide(normal && heavier, heavier),
-          fmt::format("fast shaking {} like more mass; at {} Hz the force {}", heavier ? "feels" : "does not feel",
-                      kNormalShaking, normal ? "stays below the limit and nothing changes" : "reaches the limit")};
+          fmt::format("fast shaking {} the apparent mass; at {} Hz, {}", heavier ? "increases" : "does not increase",
+                      kNormalShaking,
+                      normal ? "the force stays below the limit and the apparent mass does not change"
+                             : "the force reaches the limit or the apparent mass changes")};
 }
 
 }  // namespace

@@ -25,8 +25,8 @@
 #include "sim/core/math.hpp"
 #include "sim/core/random.hpp"
 
-/// Claims of 2.4, 3.4, 4.3 and A.3: the stiffness ratios after some iterations and in the limit, and bounds of the
-/// combined stiffness.
+/// Claims of thesis sections 2.4, 3.4, 4.3 and A.3: the stiffness ratios after some iterations and in the limit of
+/// infinitely many iterations, and bounds of the combined stiffness.
 namespace hapbench {
 namespace {
 
@@ -35,7 +35,7 @@ namespace {
 // and _3 are the number of updates.
 // inside: fraction of the steps in which both ratios are in the published range.
 // min, max: smallest and largest ratio over all steps; in the cases of averages, the means of both ratios.
-// any_max: largest ratio after any number of updates.
+// any_max: largest ratio over all steps and all recorded numbers of updates, from 1 on.
 // damped: fraction of the steps in which the relative damping sqrt(ratio) zeta is, for both ratios, within a factor
 // rule.around of zeta.
 
@@ -131,8 +131,9 @@ double smallest_after_one_update(int parallel) {
   return smallest_ratio;
 }
 
-/// Judges the range of the stiffness ratios after `updates` updates: the averages over the tasks if `averaged`,
-/// otherwise the fraction of the steps whose ratios are all in the published range.
+/// Judges the range of the stiffness ratios after `updates` updates of the weights. If `averaged`, judges the averages
+/// of the smallest and of the largest ratio over all tasks, which are the cases after the first kTaskCases. Otherwise
+/// judges the fraction of the steps whose ratios are all in the published range.
 Finding judge_range(const Measured& measured, const PublishedNumbers& p, double updates, bool averaged) {
   const PublishedNumber& once = p["R1.once"];
   const double inside = smallest(measured, after("inside", updates));
@@ -146,9 +147,9 @@ Finding judge_range(const Measured& measured, const PublishedNumbers& p, double 
       averaged ? decide(averages, false) : decide(inside >= threshold(p, "nearly_all"), inside >= threshold(p, "most"));
   return {
       verdict,
-      fmt::format("after one update, one contact beside k parallel contacts has a ratio down to {:.2f}, {:.2f} and "
-                  "{:.2f} for k = 3, 4 and 5, and the reduction of the thesis keeps about 6 contacts; averages over "
-                  "all tasks are {:.2f} to {:.2f}",
+      fmt::format("after one update, the ratio of one contact beside k parallel contacts can be as small as {:.2f}, "
+                  "{:.2f} and {:.2f} for k = 3, 4 and 5, and the reduction of the thesis keeps about 6 contacts; the "
+                  "averages of the smallest and of the largest ratio over all tasks are {:.2f} to {:.2f}",
                   smallest_after_one_update(3), smallest_after_one_update(4), smallest_after_one_update(5), low, high),
       "",
       averaged ? fmt::format("averages {:.2f} to {:.2f}", low, high)
@@ -161,11 +162,16 @@ Finding judge_first_update(const Measured& measured, const PublishedNumbers& p) 
 
 Finding judge_three_updates(const Measured& measured, const PublishedNumbers& p) {
   Finding finding = judge_range(measured, p, p["R1.iterations"].mean, p["ratios.averaged"].mean == 1.0);
-  finding.why = "with three updates the range shrinks; the steps outside the range have many parallel contacts";
+  const auto width = [&](double updates) {
+    return largest(measured, after("max", updates)) - smallest(measured, after("min", updates));
+  };
+  finding.why = fmt::format("with three updates, the range of all ratios is {:.2f} wide, with one update {:.2f}",
+                            width(p["R1.iterations"].mean), width(p["ratios.one_iteration"].mean));
   return finding;
 }
 
-/// Returns a value of each task as text, formatted by `format`.
+/// Returns the measured number `value` times `factor` of each case with a single task, as a list in text form. `format`
+/// is the format of each number.
 std::string of_tasks(const Measured& measured, const char* value, const char* format, double factor = 1.0) {
   std::string text;
   for (const MeasuredCase& m : std::span(measured).first(kTaskCases))
@@ -176,17 +182,19 @@ std::string of_tasks(const Measured& measured, const char* value, const char* fo
 Finding judge_bound_in_tasks(const Measured& measured, const PublishedNumbers& p) {
   const double largest_ratio = largest(measured, "any_max"), bound = p["R1.bound"].at_most;
   return {decide(largest_ratio <= bound, false), "the bound (1 + √3)/2 = 1.366 of R2 is proved for all contacts",
-          "largest ratio after any update: " + of_tasks(measured, "any_max", "{:.3f}"),
+          "largest stiffness ratio after any number of updates: " + of_tasks(measured, "any_max", "{:.3f}"),
           fmt::format("largest ratio {:.3f}", largest_ratio)};
 }
 
 Finding judge_relative_damping_of_tasks(const Measured& measured, const PublishedNumbers& p) {
   const double share = smallest(measured, "damped_3"), around = threshold(p, "around");
-  return {decide(share >= threshold(p, "nearly_all"), share >= threshold(p, "most")),
-          "the relative damping is √ρ times that of one contact",
-          fmt::format("steps in which √ρ of both extremes is within a factor {} of 1: {}", plain(around),
-                      of_tasks(measured, "damped_3", "{:.0f} %", 100.0)),
-          fmt::format("relative damping within a factor {} in {:.0f} % of the steps", plain(around), 100.0 * share)};
+  return {
+      decide(share >= threshold(p, "nearly_all"), share >= threshold(p, "most")),
+      "the relative damping of combined contacts is √ρ times the damping ratio of one contact",
+      fmt::format("steps in which √ρ is within a factor {} of 1 for all contacts: {}", plain(around),
+                  of_tasks(measured, "damped_3", "{:.0f} %", 100.0)),
+      fmt::format("relative damping within a factor {} of the damping ratio of one contact in {:.0f} % of the steps",
+                  plain(around), 100.0 * share)};
 }
 
 // ---- R1b: the largest stiffness ratio after 160 iterations and in the exact limit, which is the projection of the
@@ -210,11 +218,10 @@ MeasuredValues measure_convergence(const Evidence& e) {
 
 Finding judge_convergence(const MeasuredCase& m, const PublishedNumbers& p) {
   const bool one = std::abs(m["limit_max"] - 1.0) <= threshold(p, "converged");
-  return {
-      one ? Verdict::replicated : Verdict::contradicted,
-      one ? "the exact limit is 1 at every contact of these runs"
-          : "the iteration converges to the projection of the identity onto the cone of contact tensors; there, the "
-            "ratio of a contact with weight 0 stays above 1"};
+  return {one ? Verdict::replicated : Verdict::contradicted,
+          one ? "the exact limit is 1 at every contact of these runs"
+              : "the iteration converges to the projection of the identity onto the cone of contact tensors; in this "
+                "limit, the ratio of a contact with weight 0 is above 1"};
 }
 
 // ---- R2: the largest stiffness in any direction, in units of K, over contact sets found by a random search. One case
@@ -326,16 +333,15 @@ Finding judge_guarantee(const Measured& measured, const PublishedNumbers& publis
   for (const MeasuredCase& m : measured) largest = std::max(largest, m["lambda_max"]);
   const bool holds = largest <= guaranteed;
   return {decide(holds, false),
-          !holds
-              ? fmt::format("a set of contacts exceeds {}", guaranteed)
-              : fmt::format(
-                    "{} (1 + √3)/2 = {:.5f}, which is proved to bound every direction after any number of iterations "
-                    "(BEYOND.md)",
-                    largest <= proved + kSearchRounding ? "no set exceeds" : "some set exceeds", proved)};
+          !holds ? fmt::format("a set of contacts exceeds {}", guaranteed)
+                 : fmt::format(
+                       "{} (1 + √3)/2 = {:.5f}; this bound is proved for every direction and any number of iterations "
+                       "(BEYOND.md)",
+                       largest <= proved + kSearchRounding ? "no set exceeds" : "some set exceeds", proved)};
 }
 
-// ---- R5, S3, F5: bounds of formulas, over random sets of contacts. Each bound follows from its formula; the sets
-// would reveal an error of the formula's implementation.
+// ---- R5, S3, F5: extreme values of formulas over random sets of contacts, compared with the bounds of the formulas.
+// Each bound follows from its formula. A value beyond the bound would reveal an error in the implementation.
 
 constexpr int kRandomSets = 2000;
 constexpr double kRounding = 1e-9;  // stated in the rules' texts
@@ -370,7 +376,7 @@ MeasuredValues measure_unshaped_ratios(const Evidence&) {
 Finding judge_unshaped_ratios(const MeasuredCase& m, const PublishedNumbers&) {
   const bool bounded = m["min"] >= 1.0 - kRounding && m["max_per_n"] <= 1.0 + kRounding;
   return {decide(bounded, false),
-          "each of the n squared inner products is at most 1, and the product of a gradient with itself is 1"};
+          "the ratio is a sum of n squared inner products of gradients; each is at most 1, and one of them is 1"};
 }
 
 Measured measure_bounded_laws(const Evidence&) {

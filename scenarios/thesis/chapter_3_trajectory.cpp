@@ -55,9 +55,9 @@ Finding judge_trajectory(const MeasuredCase& m, const PublishedNumbers& publishe
   const bool on_line = m["high_lateral"] <= lateral, shallow = m["inside"] <= depth;
   return {decide(follows && offset && on_line && shallow, follows && offset),
           fmt::format(
-              "below 2 N the tip {} the ideal trajectory; beyond 2 N the error of the height {}, the error of the "
-              "distance to the axis is {}, and the depth is {}",
-              follows ? "follows" : "leaves", offset ? "grows" : "does not grow",
+              "below 2 N, the tip {} the ideal trajectory; above 2 N, the error of the height {}, the error of the "
+              "distance to the axis is {}, and the depth in the wall is {}",
+              follows ? "follows" : "leaves", offset ? "is larger" : "is not larger",
               on_line ? "as published" : "larger than published", shallow ? "as published" : "larger than published")};
 }
 
@@ -103,7 +103,7 @@ Finding judge_local_average(const Measured& measured, const PublishedNumbers& p)
     inside = inside && without["inside"] <= around * (*with)["inside"];
   }
   return {decide(lateral && inside, lateral || inside),
-          fmt::format("without the local average the drill is {} off the axis and {} in the wall",
+          fmt::format("without the local average, the drill is {} from the axis and {} in the wall than with it",
                       lateral ? "no further" : "further", inside ? "no deeper" : "deeper")};
 }
 
@@ -112,8 +112,11 @@ Finding judge_local_average(const Measured& measured, const PublishedNumbers& p)
 Finding judge_hands(const Measured& measured, const PublishedNumbers& p) {
   const double largest = p["T2.raw"].mean + p["T2.raw"].spread;
   const auto firm = std::ranges::find_if(measured, [](const MeasuredCase& m) { return m["force"] >= 1.8; });
-  return {found(measured.front()["raw"] <= largest && (*firm)["raw"] > largest),
-          "the published counts fit a hand with about a tenth of the force of appendix D"};
+  const bool gentle_fits = measured.front()["raw"] <= largest, firm_fits = (*firm)["raw"] <= largest;
+  return {found(gentle_fits && !firm_fits),
+          gentle_fits && !firm_fits ? "the published counts fit a hand with about a tenth of the force of appendix D"
+          : gentle_fits             ? "the published counts also fit a hand with the force of appendix D"
+                                    : "the gentlest hand already has more points than published"};
 }
 
 // ---- J2: the tilt [rad] at which the lower edge of the tip leaves the hole, by bisection.
@@ -133,8 +136,8 @@ MeasuredValues measure_end_of_contact(const Evidence& e) {
 Finding judge_end_of_contact(const MeasuredCase& m, const PublishedNumbers& published) {
   const double tilt = m["tilt"], printed = published["J1.tilt"].at_most;
   const bool same = std::abs(tilt - printed) < 5e-4;  // half a unit of the last printed digit
-  return {decide(same, false),
-          same ? "π / 3 exactly, for a drill of half the hole's diameter" : "another tilt than printed"};
+  return {decide(same, false), same ? "the tilt is exactly π / 3, because the drill has half the diameter of the hole"
+                                    : "the tilt differs from the printed tilt"};
 }
 
 }  // namespace

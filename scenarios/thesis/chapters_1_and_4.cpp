@@ -17,19 +17,22 @@
 #include "scenarios/thesis/claims.hpp"
 #include "scenarios/thesis/measurements.hpp"
 
-/// Claims of chapters 1 and 4: how deep a drill that is pressed into the hole sinks in with other methods of merging
-/// forces and with the plain sum of forces (1.1, 1.2, B.3.1); both depth models (4.2); and other limitations that the
-/// thesis discusses.
+/// Claims of chapters 1 and 4 of the thesis:
+///   - How deep a pressed drill sinks into the block, with other methods of merging forces than stiffness shaping and
+///     with the plain sum of forces (1.1, 1.2, B.3.1).
+///   - Limitations of both depth models (4.2).
+///   - Other limitations that the thesis discusses.
 namespace hapbench {
 namespace {
 
-// ---- V1, V2: a hand presses a drill with a constant tilt, in the direction of the hand of task 2.
+// ---- V1, V2: a hand presses a drill into the hole. The tilt of the drill is constant, and the direction of the hand's
+// force is as in task 2.
 
 constexpr double kPressedTilts[] = {0.35, 0.68, 1.0};  ///< [rad]
 /// Number of steps between two evaluations of the depth; these steps take 4 ms of simulated time.
 constexpr std::uint64_t kStepsBetweenEvaluations = 8;
-/// Time from which on the depth is measured [s]. Before it, at some tilts, the drill has not yet reached its resting
-/// position.
+/// The depth is measured from this time on [s]. At an earlier time, the drill has not yet reached its resting position
+/// at some tilts.
 constexpr double kLanded = 0.5;
 
 /// Returns the largest depth of the drill in the block after kLanded, at each tilt [m]. The final depth would not be
@@ -76,9 +79,9 @@ Finding judge_sinking(const Measured& m, const PublishedNumbers& p) {
   return {decide(easily, more),
           fmt::format("with {} the drill sinks in {}", m.at(1).name,
                       easily ? "easily"
-                      : more ? "further than with stiffness shaping, but not easily"
-                             : "no further than with stiffness shaping"),
-          "", fmt::format("{:.2f} mm deep, stiffness shaping {:.2f} mm", 1e3 * law, 1e3 * shaped)};
+                      : more ? "deeper than with stiffness shaping, but not easily"
+                             : "no deeper than with stiffness shaping"),
+          "", fmt::format("largest depth {:.2f} mm, with stiffness shaping {:.2f} mm", 1e3 * law, 1e3 * shaped)};
 }
 
 Measured measure_averaging(const Evidence& e) {
@@ -87,15 +90,16 @@ Measured measure_averaging(const Evidence& e) {
           pressed(e, "mean after the reduction", "press_towards_rim", {"rendering.algorithm=mean"})};
 }
 
-// ---- B1b, B5: a drill turned in the hole as in B.3.1, with the proposed algorithm and with the original algorithm of
-// appendix B.
+// ---- B1b, B5: a drill turned in the hole as in thesis B.3.1, with the proposed algorithm and with the original
+// algorithm of appendix B.
 // B1b: largest depth [m] of the drill while it is near the hole, with a hand of 1 N; NaN if the run diverges.
 // B5: number of the hand forces kHands with which the drill passes through the surface. For the proposed algorithm, a
 //   run that diverges also counts.
 
 constexpr const char* kOriginalLaw = "original_averaging";
 
-/// Runs task 2 with a law and a hand of constant force [N].
+/// Runs task 2 with a law and a hand of constant force [N]. kOriginalLaw is run as in appendix B: with the shortest
+/// distance as depth model, without local average and reduction. Precondition: the law is kOriginalLaw or kProposedLaw.
 Result turned(const Evidence& e, const std::string& law, double force) {
   std::vector<std::string> overrides = {fmt::format("hand.force_N={}", force)};
   if (law == kOriginalLaw)
@@ -140,9 +144,9 @@ Finding judge_pop_through(const MeasuredCase& m, const PublishedNumbers&) {
                          : "the drill stays in the hole"};
 }
 
-// ---- S1, B4: the plain sum of all points (S1), and the highest depth along the averaged direction (B4), compared with
-// stiffness shaping, in the planar peg scene and in task 2. Each case has the values of vibration(), and "diverges"
-// (1 or 0).
+// ---- S1, B4: vibration of two laws, compared with stiffness shaping in the planar peg scene and in task 2. The law of
+// S1 is the plain sum of the forces of all points. The law of B4 renders the largest depth along the averaged
+// direction. Each case has the values of vibration(), and the value "diverges" (1 or 0).
 
 /// Returns four cases: planar peg with the law, planar peg with shaping, task with the law, task with shaping.
 Measured vibrations_beside_shaping(const Evidence& e, const std::string& law, const std::string& task,
@@ -203,9 +207,9 @@ Finding judge_median_line(const MeasuredCase& m, const PublishedNumbers&) {
 }
 
 // ---- G1b: the effect of the underestimated depth in task 2. The thesis calls the error negligible, because depths are
-// small on its system. The depth of the thesis (surface_normal) is compared with the depth along the normal
-// (normal_projection): depths and forces of the same contacts, in steps whose largest depth is at most the depth that
-// the thesis names; and the paths of the tool in two runs.
+// small on its system. Two depth models are compared: the model of the thesis (surface_normal), and the depth along the
+// normal (normal_projection). Depths and forces are compared for the same contacts, in steps whose largest depth is at
+// most the depth that the thesis names. The path of the tool is compared between two runs, one with each depth model.
 
 /// Steps between samples, about 30 samples in a second.
 constexpr std::uint64_t kStepsBetweenSamples = 64;
@@ -270,8 +274,8 @@ Finding judge_underestimation(const MeasuredCase& m, const PublishedNumbers& pub
                   force ? "negligible" : "not negligible", path ? "negligible" : "not negligible")};
 }
 
-// ---- G2: computing time of the depth of one contact [s], for contacts of task 2: along the normal, and as in the
-// thesis.
+// ---- G2: computing time of the depth of one contact [s], for contacts of task 2, with two depth models: along the
+// normal (normal_projection), and as in the thesis (surface_normal).
 
 MeasuredValues measure_depth_cost(const Evidence& e) {
   const std::vector<ContactBuffer> sets =
@@ -301,9 +305,9 @@ Finding judge_depth_cost(const MeasuredCase& m, const PublishedNumbers& p) {
                       times)};
 }
 
-// ---- C8: on the flat of task 1, the largest difference between the force of the law "highest_depth" on all points, as
-// in reference [3] of the thesis, and the force of stiffness shaping on the points after the reduction; divided by the
-// largest force.
+// ---- C8: largest difference between two forces on the flat surface of task 1, divided by the largest force. The first
+// force is computed by the law "highest_depth" from all points, as in reference [3] of the thesis. The second force is
+// computed by stiffness shaping from the points after the reduction.
 
 constexpr double kIdentical = 1e-9;  // stated in the rule's text
 
@@ -371,9 +375,11 @@ Finding judge_turn_into_wall(const Measured& measured, const PublishedNumbers& p
   const MeasuredCase &blind = measured.at(0), &seeing = measured.at(1);
   const double more = blind["velocity_variation"] / seeing["velocity_variation"];
   const bool reverses = blind["force_reversals"] > seeing["force_reversals"];
-  return {decide(more >= threshold(p, "turn") && reverses, more > 1.0),
-          fmt::format("the total variation of the velocity is {:.2g} times the value with damping that uses the turn",
-                      more)};
+  return {
+      decide(more >= threshold(p, "turn") && reverses, more > 1.0),
+      fmt::format("the total variation of the velocity is {:.2g} times the value with damping that uses the rotation "
+                  "of the tool",
+                  more)};
 }
 
 Finding judge_slow_turn(const Measured& measured, const PublishedNumbers& p) {

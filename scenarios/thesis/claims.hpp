@@ -42,10 +42,11 @@ std::vector<Claim> all_claims();
 /// A sentence of the thesis's abstract, and the claims that test it.
 struct AbstractSentence {
   std::string sentence;
-  std::vector<std::string> claims;  ///< ids
+  std::vector<std::string> claims;  ///< ids of the claims
 };
 
-/// Returns the sentences of the abstract that rules.json lists, in the order of the ledger. Throws InputError.
+/// Returns the sentences of the abstract that rules.json lists, in the order of the ledger. Throws InputError if
+/// rules.json cannot be read or lacks a key.
 std::vector<AbstractSentence> abstract_sentences();
 
 // The rules of each chapter or appendix, defined in the source file of the same name, with the ids of their claims.

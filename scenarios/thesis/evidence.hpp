@@ -21,15 +21,17 @@ struct Evidence {
   std::filesystem::path directory;  ///< has a subdirectory with the results of each scenario, named like the scenario
   /// Called with a scenario's name before its results are read. Runs the scenario if necessary.
   std::function<void(const std::string& scenario)> provide;
-  /// Returns the overrides with which load_scenario loads a bundled scenario. No function: no overrides.
+  /// Returns the overrides with which load_scenario loads a bundled scenario. If the function is empty, there are no
+  /// overrides.
   std::function<std::vector<std::string>(const Scenario&)> overrides = {};
-  /// Called by scene() with the name of the bundled scenario. Not called for scenarios whose result files are read
-  /// (`provide`). No function: nothing is called.
+  /// Called by scene() with the name of the bundled scenario. Not called for scenarios whose result files are read;
+  /// `provide` is called for these scenarios. May be an empty function.
   std::function<void(const std::string& scenario)> used = {};
   /// True: experiments with subjects have fewer targets (assumption_sets.hpp).
   bool reduced = false;
 
-  // All functions throw InputError, also if a result file is missing or has another format.
+  // All functions below throw InputError if a scenario cannot be loaded or run, or if a result file is missing or has
+  // another format.
 
   /// Returns a number of a scenario's summary.json at a dotted path, such as "metrics.force_max_N"; NaN if it is
   /// missing or null.

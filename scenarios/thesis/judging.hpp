@@ -83,7 +83,8 @@ struct MeasuredCase {
   std::string name;  ///< empty if the claim has a single case
   MeasuredValues values;
 
-  /// Returns the first number of a name. Throws std::out_of_range if there is none.
+  /// Returns the first of the numbers that are stored under the name `value`. Throws std::out_of_range if there is no
+  /// such number.
   double operator[](const std::string& value) const { return all(value).at(0); }
   const std::vector<double>& all(const std::string& value) const { return values.at(value); }
 };
@@ -94,7 +95,7 @@ using Measured = std::vector<MeasuredCase>;
 /// The result of judging a claim, computed from measured numbers.
 struct Finding {
   Verdict verdict = Verdict::not_testable;
-  std::string why = {};       ///< one sentence that names the condition of the rule that decided
+  std::string why = {};       ///< one sentence: the condition in the rule that led to the verdict
   std::string measured = {};  ///< the numbers as text; a judge leaves it empty if rules.json has the text
   std::string number = {};    ///< the number that decides, as a short text
   Measured cases = {};        ///< the measured numbers
@@ -106,7 +107,7 @@ struct NothingToMeasure : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Measures a claim. Throws NothingToMeasure, and InputError for a scenario that cannot run.
+/// Measures a claim. Throws NothingToMeasure if the run has nothing to measure, InputError if a scenario cannot run.
 using Measure = Measured (*)(const Evidence& evidence);
 /// Decides the verdict on a claim from measured and published numbers.
 using Judge = Finding (*)(const Measured& measured, const PublishedNumbers& published);
@@ -127,18 +128,19 @@ struct Claim {
   std::string claim = {};      ///< statement of the claim, in our words
   std::string published = {};  ///< published numbers, as text
   std::string rule = {};       ///< rule of the verdict with its thresholds, as text
-  std::string why = {};        ///< why no simulation can test the claim; empty if a simulation can
-  std::string measured = {};   ///< text with names of measured numbers, such as <rows>, or <40 N.depth> for the number
-                               ///< "depth" of the case "40 N"
-  std::string each = {};       ///< text that is appended to `measured` for each case; {} stands for the case's name
-  Measure measure = nullptr;   ///< `measure` and `judge` are null if no simulation can test the claim
+  std::string why = {};        ///< why no simulation can test the claim; empty if a simulation can test it
+  /// Text about the measured numbers. In it, <rows> stands for the measured number "rows", and <40 N.depth> for the
+  /// measured number "depth" of the case "40 N".
+  std::string measured = {};
+  std::string each = {};      ///< text that is appended to `measured` for each case; {} stands for the case's name
+  Measure measure = nullptr;  ///< `measure` and `judge` are null if no simulation can test the claim
   Judge judge = nullptr;
   bool timing = false;  ///< true: the finding contains run times, which differ between runs
   bool ours = false;    ///< true: a finding of this project, not counted as a claim of the thesis
   bool costly = false;  ///< true: slow to measure, so its verdicts in the record of sensitivity.hpp use fewer targets
   bool drawn = false;   ///< true: a figure plots the numbers of its cases, so the ledger stores them
 
-  std::string number = {};           ///< short text with the measured number that decides, in the form of `measured`
+  std::string number = {};           ///< short text with the measured number that decides; names as in `measured`
   std::string published_short = {};  ///< published number that is compared with `number`; empty: `published`
 
   /// A rule that was changed after its verdict was known. Empty for other claims.
@@ -166,7 +168,8 @@ class Measurements {
  public:
   /// Measures a claim and returns the verdict on it. Calls evidence.used with the name of each scenario that the
   /// measurement needs, also if the measurement was made for an earlier claim. If the run has nothing to measure, the
-  /// verdict is `not_judged`. Throws InputError.
+  /// verdict is `not_judged`. If the claim has no judge, the verdict is `not_testable` without a measurement. Throws
+  /// InputError if a scenario cannot run.
   Finding finding(const Claim& claim, const Evidence& evidence);
 
  private:

@@ -75,7 +75,7 @@ std::string seconds_text(const Json& claim) {
   return seconds < 1.0 ? "< 1 s" : fmt::format("{:.0f} s", seconds);
 }
 
-/// Returns the number of a claim for a table; a dash for a claim without a number.
+/// Returns the measured number that decides a claim, as text for a table; a dash for a claim without such a number.
 std::string ours(const Json& claim) {
   const std::string number = text_at(claim, "number");
   return number.empty() ? "–" : number;
@@ -153,15 +153,16 @@ std::string other_values(const Json& claims) {
     }
     if (claim.contains("sampled_verdict"))
       notes += fmt::format(
-          "\nThe record of {} uses fewer targets than the ledger. With these targets and the recorded assumptions, its "
-          "verdict is *{}*. The table has the values with which the verdict is another one.\n",
+          "\nFor {}, the record of sensitivity uses fewer targets than the ledger. With these targets and the recorded "
+          "assumptions, the verdict is *{}*. The table has the values that change this verdict.\n",
           link_to(claim), text_at(claim, "sampled_verdict"));
   }
   if (cells.empty()) return "";
   std::string text =
-      "\n### What other assumptions would change\n\nEach row has an assumption, and the values with which a claim has "
-      "another verdict, with the number of this case. [Sensitivity](../../scenarios/thesis/README.md#sensitivity) "
-      "states the meaning of each assumption. For example, the local average is off if `local.average` is false.\n\n"
+      "\n### What other assumptions would change\n\nEach row has an assumption. Each entry of a row has another "
+      "value of the assumption, a claim whose verdict changes with this value, the changed verdict, and the number "
+      "measured with this value. [Sensitivity](../../scenarios/thesis/README.md#sensitivity) states the meaning of "
+      "each assumption. For example, `local.average` false means that the local average is off.\n\n"
       "| assumption | other value: claim with its verdict |\n|---|---|\n";
   for (const auto& [assumption, cell] : cells) text += fmt::format("| `{}` | {} |\n", assumption, cell);
   return text + notes;
@@ -231,7 +232,8 @@ Json cases_json(const Measured& cases) {
   return json;
 }
 
-/// Adds what the record of sensitivity has about a claim: the number of cases, and the cases with another verdict.
+/// Adds to the JSON object of a claim the robustness of its verdict, the assumptions that decide the verdict, and from
+/// the record of sensitivity the number of cases and the cases with another verdict.
 void add_sensitivity(Json& claim, const JudgedClaim& judged, const SensitivityRecord& record) {
   const Json entry = record.entry(judged.claim.id, judged.reach);
   const Robustness robustness = robustness_of(judged, entry);
@@ -277,7 +279,7 @@ std::string headline_of(const Json& claims) {
       "assumption changes them), {} are sensitive to one assumption, {} depend on several assumptions",
       all, counts, sure[kExactVerdict], sure[kRobustVerdict], sure[kSensitiveVerdict], sure[kSeveralVerdict]);
   const std::size_t others = sure[kNotSampledVerdict];
-  if (others > 0) text += fmt::format(", {} were not sampled", others);
+  if (others > 0) text += fmt::format(", {} were not sampled (no other values were tried)", others);
   text += ".";
   if (timing > 0)
     text += fmt::format(" {} claims about computing time are counted separately, because times depend on the machine.",
@@ -327,8 +329,12 @@ std::string ledger_markdown(const Json& ledger) {
       "# The thesis, claim by claim\n\n*Reference.* " + text_at(ledger, "headline") +
       "\n\nIn the tables, *published* are numbers of the thesis, and *ours* are numbers of hapbench. "
       "Numbers such as 2.8 and A.3 are sections of the thesis. An id such as R1b links to the section of "
-      "the claim in [claim_pages.md](claim_pages.md), which has the rule of the verdict. A *stiffness "
-      "ratio* is the combined stiffness along a contact, divided by the stiffness K of one contact.\n\n"
+      "the claim in [claim_pages.md](claim_pages.md), which has the rule of the verdict. *Original* is the "
+      "original algorithm, *shaping* is stiffness shaping, the algorithm that the thesis proposes. A *stiffness ratio* "
+      "is the combined stiffness of all contacts in the direction of one contact, divided by the stiffness K of one "
+      "contact. *Raw points* are the colliding points before the reduction. In tasks 1 to 3, the drill moves over a "
+      "flat, rotates to and fro in a hole, and spins in a hole. The [glossary](../../scenarios/GLOSSARY.md) has the "
+      "other terms.\n\n"
       "## 1. What the abstract claims\n\n" +
       abstract_table(ledger) + "\nVerdicts:\n\n";
   for (const VerdictText& verdict : kVerdicts)
@@ -358,20 +364,20 @@ std::string ledger_markdown(const Json& ledger) {
   text += table_of(claims, "Findings of this project, which are no claims of the thesis",
                    [](const Json& claim) { return is(claim, "ours"); });
   return text +
-         "\n[Controls](../../scenarios/thesis/README.md#controls) are wrong laws and other values of K; the page "
-         "lists the verdicts that change with them.\n"
+         "\n[Controls](../../scenarios/thesis/README.md#controls) are runs with laws that are wrong on purpose, "
+         "and with other values of K; the linked page lists the verdicts that change.\n"
          "\n[ERRATA.md](ERRATA.md) lists misprints of the thesis; [figures.md](figures/figures.md) has the figures.\n";
 }
 
 std::string claim_pages(const Json& ledger) {
   std::string text =
       "# Claims, one section each\n\n*Reference.* This page has a section for each claim of [the ledger](claims.md). "
-      "`hapbench describe ID` prints the same.\n\n"
+      "`hapbench describe ID` prints the section of a claim.\n\n"
       "- **Published** and **Number**: the number of the thesis and the number of hapbench.\n"
       "- **Cases**: the numbers of all runs of the claim. `signed_distance` and `binary` are the two densities of the "
       "block from which its surface points are computed.\n"
-      "- **Rule**: the conditions of the verdict. *qualitatively* begins the weaker condition. **Rule before** quotes "
-      "an earlier rule in its earlier wording.\n"
+      "- **Rule**: the conditions of the verdict. After *qualitatively* follows the weaker condition, of the verdict "
+      "*qualitatively replicated*. **Rule before** quotes an earlier rule in its earlier wording.\n"
       "- **Sensitivity**: assumptions with another value, each with the verdict and the number that this value gives. "
       "Cases without a verdict (*not judged*, *not measured*) are listed but decide nothing.\n";
   for (const Json& claim : ledger.at("claims")) {

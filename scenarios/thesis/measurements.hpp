@@ -31,7 +31,7 @@ inline constexpr const char* kTasks[] = {"task1_flat", "task2_rotate", "task3_sp
 inline constexpr const char* kDensities[] = {"signed_distance", "binary"};
 
 /// Runs a scenario in memory and calls `row` for each time step. StepRecord::found has the contacts before the point
-/// stages. Throws InputError.
+/// stages (local average and reduction). Throws InputError if the scenario cannot run.
 void for_each_row(const CheckedScenario& checked, const std::function<void(const StepRecord&)>& row);
 
 /// The default drill, and a tool pose with its tip at the origin and its axis pointing down.
@@ -63,9 +63,9 @@ double seconds_of(int repetitions, Work work) {
   return *middle;
 }
 
-/// Returns `scenario`, in which a drill is in the block's hole, prepared for measuring contacts. An ideal device, which
-/// has no dynamics, replaces the device of `scenario` and keeps its input-force limit. The returned scenario lasts at
-/// most one period of the tilt (6 s) and records nothing.
+/// Returns a variant of `scenario` for measuring contacts. In `scenario`, a drill is in the block's hole. The variant
+/// has an ideal device, which has no dynamics, with the input-force limit of the device of `scenario`. It lasts at most
+/// one period of the tilt (6 s) and has the default RecordFields.
 Scenario drill_in_hole(Scenario scenario);
 
 /// The contacts before (`colliding`) or after (`rendered`) the scenario's point stages.
@@ -104,16 +104,17 @@ MeasuredCase reference_vibration(const std::string& name, const Result& run);
 
 /// Returns true if `a` has a larger velocity variation and a larger vibration power than `b`.
 bool vibrates_more(const MeasuredCase& a, const MeasuredCase& b);
-/// Returns true if `a` vibrates in comparison with a smooth algorithm `b`. With the factor f = rule.vibrates: either
-/// its velocity variation is at least f times, and its vibration power at least f^2 times, the value of `b`; or
-/// vibrates_more() is true and its number of force reversals is at least f times the number of `b`, or at least f if
-/// `b` has no force reversals.
+/// Returns true if `a` vibrates in comparison with the smooth run `b`, that is, if one of two conditions is true. With
+/// the factor f = rule.vibrates:
+///   - `a` has at least f times the velocity variation and at least f^2 times the vibration power of `b`.
+///   - vibrates_more() is true, and `a` has at least f times as many force reversals as `b`. If `b` has no force
+///     reversals, `a` has at least f force reversals.
 bool vibrates_much_more(const MeasuredCase& a, const MeasuredCase& b, const PublishedNumbers& p);
 
 /// Returns the damping ratio zeta of an oscillation about zero, from positions `x` [m], one for each time step. With
-/// the mean ratio q of the magnitudes of successive extremes, zeta = -ln q / sqrt(pi^2 + ln^2 q), or 0 if q is at least
-/// 1. Ignores the first extreme whose magnitude is below 1 um, and all later extremes: rounding and grazing contact are
-/// not oscillations. Empty with fewer than two extremes.
+/// the geometric mean q of the ratios of the magnitudes of successive extremes, zeta = -ln q / sqrt(pi^2 + ln^2 q), or
+/// 0 if q is at least 1. Ignores the first extreme whose magnitude is below 1 um, and all later extremes, because
+/// rounding and grazing contact are not oscillations. Returns nullopt if fewer than two extremes remain.
 std::optional<double> damping_ratio_of_swings(std::span<const double> x);
 
 }  // namespace hapbench

@@ -40,8 +40,9 @@ const PublishedNumber& PublishedNumbers::operator[](const std::string& id) const
 
 namespace {
 
-/// Returns a number in the format g, such as "1e+01", without its exponent if it is below 100,000: "10". Returns texts
-/// in other formats unchanged.
+/// Removes the exponent of a number whose text was written in the format g: "1e+01" becomes "10". Returns `text`
+/// unchanged if the format is not g, if the text has no positive exponent, or if the number's magnitude is 100,000 or
+/// more.
 std::string without_exponent(const std::string& text, std::string_view format) {
   constexpr double kLargest = 1e5;
   if (!format.ends_with('g') || text.find("e+") == std::string::npos) return text;

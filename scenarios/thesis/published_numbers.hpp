@@ -22,7 +22,7 @@ class PublishedNumbers {
  public:
   /// Creates an empty set.
   PublishedNumbers() = default;
-  /// Reads the file. Throws InputError.
+  /// Reads the numbers from `file`. Throws InputError if the file cannot be read or has another format.
   explicit PublishedNumbers(const std::filesystem::path& file);
   /// Returns the number with this id. Throws InputError for an unknown id.
   const PublishedNumber& operator[](const std::string& id) const;

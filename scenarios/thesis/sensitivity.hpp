@@ -35,9 +35,9 @@ class SensitivityRecord {
   /// Returns the entry of a claim; null if the record has no entry of this claim with the hash `reach`
   /// (Assumptions::reach).
   Json entry(const std::string& claim, const std::string& reach) const;
-  /// Begins the entry of a claim with the verdict under the recorded assumptions and the number of cases of a complete
-  /// entry. Keeps the cases of an earlier entry with the same hash, verdict and number; otherwise the entry has no
-  /// cases.
+  /// Begins the entry of a claim. `recorded` is the verdict under the recorded assumptions, and `complete` the number
+  /// of cases of a complete entry. If the record has an entry of the claim with the same hash, verdict and number, the
+  /// new entry keeps the cases of the old entry. Otherwise the new entry has no cases.
   void begin(const std::string& claim, const std::string& reach, const SetFinding& recorded, std::size_t complete);
   /// Returns true if the entry of the claim has this case. Precondition: begin().
   bool has(const std::string& claim, const std::string& assumption, const std::string& value) const;
@@ -49,7 +49,7 @@ class SensitivityRecord {
   std::string text() const;
 
  private:
-  Json claims_ = Json::object();  ///< entry by claim
+  Json claims_ = Json::object();  ///< the entries, by the id of the claim
 };
 
 /// Returns true if the verdict of a case is a verdict on the claim: neither "not judged" nor "not measured".
@@ -68,10 +68,12 @@ inline constexpr const char* kSensitiveVerdict = "sensitive to";  ///< one assum
 inline constexpr const char* kSeveralVerdict = "depends on several";
 inline constexpr const char* kNotSampledVerdict = "not sampled";  ///< the record has no complete entry for the claim
 
-/// Returns the robustness of a judged claim from its entry in the record; `entry` is null if the record has no entry. A
-/// case without a verdict (not judged, not measured) changes nothing. The robustness is kNotSampledVerdict if cases are
-/// missing and fewer than two assumptions change the verdict, for a claim about computing time, and for a claim that is
-/// not testable.
+/// Returns the robustness of a judged claim from its entry in the record; `entry` is null if the record has no entry.
+/// A case without a verdict on the claim (not judged, not measured) is ignored. The robustness is kNotSampledVerdict in
+/// each of these cases:
+///   - The claim is about computing time or is not testable.
+///   - Assumptions can change the claim, and the record has no entry.
+///   - The entry lacks cases, and its cases show fewer than two assumptions that change the verdict.
 Robustness robustness_of(const JudgedClaim& judged, const Json& entry);
 
 /// Returns the number of cases in the complete entry of a claim. `scenarios`: names of the scenarios that the claim
@@ -80,7 +82,7 @@ std::size_t case_count(const Assumptions& assumptions, const Claim& claim, const
 
 /// A case of the record: the claims that one value of one assumption can change.
 struct SensitivityCase {
-  std::size_t assumption = 0;  ///< index
+  std::size_t assumption = 0;  ///< index in Assumptions::all()
   std::string value = {};
   std::vector<Claim> claims = {};
 };

@@ -6,15 +6,17 @@
 #include "scenarios/thesis/claims.hpp"
 #include "scenarios/thesis/measurements.hpp"
 
-/// Claims about all three tasks of 3.2: stability throughout, and small depths (abstract, 4.2, C.3).
+/// Claims about all three tasks of thesis 3.2: rendering is stable during the whole task, and depths are small
+/// (abstract, 4.2, C.3).
 namespace hapbench {
 namespace {
 
 // ---- S2: one case for each task and density.
 // completes: 1 if the run has the outcome `completes`, otherwise 0.
-// buzz: rms of the force's part above 30 Hz, divided by the mean force; in settled contact.
-// pop: largest force step, divided by the mean force; in settled contact.
-// disturbed: number of rules of the diagnosis for low vibration whose threshold is exceeded.
+// buzz, pop: values of the diagnosis's rules with these names; 0 if a rule has no value. buzz is the rms of the force's
+//   part above 30 Hz, and pop the largest change of the force in one time step, both in settled contact and divided by
+//   the mean force.
+// disturbed: number of the diagnosis's rules for low vibration whose threshold is exceeded.
 
 MeasuredValues stability_values(const LoadedScenario& loaded) {
   const Result run = run_scenario(checked(loaded), std::nullopt, false);
@@ -48,7 +50,7 @@ Finding judge_stability(const Measured& measured, const PublishedNumbers&) {
     pop = std::max(pop, m["pop"]);
   }
   return {decide(undisturbed == measured.size(), completed == measured.size()),
-          fmt::format("{} of {} runs complete; in {} of them, the diagnosis finds no vibration or jumps", completed,
+          fmt::format("{} of {} runs complete; in {} of them, the diagnosis finds no vibration and no jumps", completed,
                       measured.size(), undisturbed),
           "",
           fmt::format("{} of {} runs complete; rms force above 30 Hz up to {:.2f} times the mean force", completed,
