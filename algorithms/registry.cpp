@@ -68,7 +68,7 @@ void check(const AlgorithmParameter& p) {
   require_text(p.meaning, which + "its meaning");
   const auto& [min, max, unit, above_min] = p.range;
   if (!(std::isfinite(min) && std::isfinite(max) && min < max))
-    refuse(which, "a range needs two finite ends, the lower first");
+    refuse(which, "a range needs two finite limits, the lower limit first");
   if (!(p.initial <= max && (above_min ? p.initial > min : p.initial >= min)))
     refuse(which, "its default is out of its range");
 }
@@ -87,7 +87,7 @@ void check(const AlgorithmEntry& entry) {
   std::set<std::string_view> seen;
   for (const AlgorithmParameter& p : entry.algorithm_parameters) {
     check(p);
-    if (!seen.insert(p.name).second) refuse("parameter \"", p.name, "\" is there twice");
+    if (!seen.insert(p.name).second) refuse("parameter \"", p.name, "\" occurs twice");
   }
 }
 

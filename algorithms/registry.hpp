@@ -56,8 +56,8 @@ struct AlgorithmEntry {
   std::function<std::unique_ptr<ForceLaw>(const RenderingConfig&)> make_law = {};
   /// Creates an algorithm that is not a force law, for one run.
   std::function<std::unique_ptr<ForceAlgorithm>(const RenderingConfig&)> make = {};
-  /// Upper bound of |f_spring| / K [m] in one step with n contacts and the largest depth `depth` [m]; null if
-  /// unknown. The derivation is documented with the algorithm.
+  /// Upper bound of |f_spring| / K [m] in the first step after a reset, with n contacts and the largest depth `depth`
+  /// [m]; null if unknown. The derivation is documented with the algorithm.
   double (*force_bound)(const RenderingConfig& config, const ToolShape& tool, std::size_t n, double depth) = nullptr;
   /// Depth model that is part of the algorithm's definition; empty if the scenario chooses it.
   std::string_view fixed_depth_model = {};

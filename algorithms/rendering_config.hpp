@@ -12,7 +12,7 @@
 
 namespace hapbench {
 
-/// Parameters of the gradient-based point reduction (thesis C.3, 2.8).
+/// Parameters of the gradient-based point reduction (thesis sections C.3 and 2.8).
 struct ReductionConfig {
   double threshold = 0.995;      ///< alpha_TH: gradients with a larger inner product count as similar
   std::size_t max_points = 100;  ///< n_ext: largest number of contacts kept
@@ -34,7 +34,7 @@ inline constexpr const char* kContactPlugin = "plugin";
 /// Dry friction instead of the thesis's viscous friction; see stages/damping_and_limits.hpp.
 struct DryFrictionConfig {
   double mu = 0.3;                  ///< friction coefficient, dimensionless
-  std::optional<double> stiffness;  ///< K_t of the bristle [N/m]; nullopt: K
+  std::optional<double> stiffness;  ///< K_t, stiffness of the bristle [N/m]; nullopt: K
   double damping_ratio = 1.0;       ///< zeta_t, damping ratio of the bristle with the virtual mass
 };
 
@@ -46,9 +46,10 @@ struct EnergyTankConfig {
   double initial = 0.0;   ///< energy at the start, in addition to the energy of the springs in the first step [J]
 };
 struct ActuatorLimitedPassivityConfig {
-  std::optional<Vec3> max_force;      ///< F, largest force of the actuators along each world axis [N]; nullopt: no
-                                      ///< limit
-  std::optional<double> max_damping;  ///< b, largest damping [N s/m]; nullopt: M / dt of the virtual tool
+  /// F, largest force of the actuators along each world axis [N]; nullopt: no limit.
+  std::optional<Vec3> max_force;
+  /// b, largest damping [N s/m]; nullopt: M / dt with the mass M of the virtual tool.
+  std::optional<double> max_damping;
 };
 using ForceStageConfig = std::variant<EnergyTankConfig, ActuatorLimitedPassivityConfig>;
 
@@ -66,7 +67,7 @@ struct RenderingConfig {
   std::optional<ReductionConfig> reduction;
 
   double stiffness = 20000.0;                     ///< K, stiffness of one penalty spring [N/m]
-  double damping_ratio = 0.7;                     ///< zeta, damping ratio
+  double damping_ratio = 0.7;                     ///< zeta, damping ratio of one spring-damper
   double mass = 0.2;                              ///< M, mass of the virtual tool [kg]
   std::optional<double> damping;                  ///< B, normal damping [N s/m]; nullopt: 2 zeta sqrt(K M)
   double mu_s = 0.0;                              ///< viscous friction [N s/m]
@@ -75,13 +76,14 @@ struct RenderingConfig {
   /// chi [s/m], coefficient of Hunt and Crossley's damping, which grows with the depth and replaces B; nullopt: B is
   /// used.
   std::optional<double> hunt_crossley;
-  std::optional<double> max_damping;       ///< B_max, limit of the damping [N s/m]; nullopt: no limit
-  std::optional<double> max_force;         ///< F_max, limit of the force [N]; nullopt: no limit
+  std::optional<double> max_damping;       ///< B_max, largest normal damping [N s/m]; nullopt: no limit
+  std::optional<double> max_force;         ///< F_max, largest norm of the force [N]; nullopt: no limit
   std::optional<double> virtual_coupling;  ///< K_vc, stiffness of the coupling spring [N/m]; nullopt: K
   double regularisation = 0.01;            ///< eps, regularisation of the law least_squares, dimensionless
 
-  bool angular_damping = false;  ///< true: damping and friction use the velocity of the tool's material at each
-                                 ///< contact; false: the velocity of the tip centre
+  /// Velocity that damping and friction use. true: velocity of the tool's material at each contact; false: velocity of
+  /// the tip centre.
+  bool angular_damping = false;
   /// Cut-off frequency of the low-pass filter of the tool's angular velocity, for `angular_damping` [Hz]; nullopt: no
   /// filter.
   std::optional<double> angular_velocity_cutoff = 20.0;

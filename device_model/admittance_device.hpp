@@ -10,8 +10,8 @@
 
 namespace hapbench {
 
-/// Input-force limiter (thesis 2.7, C.4.4): returns the measured force [N], scaled down to norm `limit` [N] if its
-/// norm exceeds `limit`. Without a limit, returns the measured force unchanged. While the limiter acts, a harder
+/// Input-force limiter (thesis sections 2.7, C.4.4): returns the measured force [N], scaled down to norm `limit` [N] if
+/// its norm exceeds `limit`. Without a limit, returns the measured force unchanged. While the limiter acts, a harder
 /// push of the hand does not push the virtual tool deeper, so the surface feels infinitely stiff.
 inline Vec3 limit_input_force(const Vec3& measured, std::optional<double> limit) noexcept {
   const double length = limit ? measured.norm() : 0.0;
@@ -37,7 +37,8 @@ class IdealDevice final : public Device {
   HandleState handle_;
 };
 
-/// Parameters of the errors that the force sensor adds to the hand's force (thesis 3.5). The thesis has no noise.
+/// Parameters of the errors that the force sensor adds to the hand's force (thesis section 3.5; the noise is not in the
+/// thesis).
 struct ForceSensorConfig {
   double weight = 0.7;           ///< weight of the dummy drill [N]; the sensor measures it along `down`
   Vec3 down = {0.0, 0.0, -1.0};  ///< direction of gravity, unit vector in the world frame
@@ -205,12 +206,12 @@ struct AdmittanceDeviceConfig {
   HandleMechanicsConfig mechanics;
 };
 
-/// Admittance-control device of the dental trainer (thesis 2.7, 3.1, Fig. 3, C.5, C.6):
+/// Admittance-control device of the dental trainer (thesis sections 2.7, 3.1, C.5, C.6, Fig. 3):
 ///
 ///   hand -> sensor -> limiter -> [ virtual mass ] -> position servo -> carriage -> structure -> handle -> hand
 ///
-/// The simulation integrates the virtual mass. The servo gets the state of the virtual mass one step after the force
-/// that moved it.
+/// The simulation integrates the virtual mass. In each step, the virtual mass moves first. The servo then follows the
+/// state of the virtual mass at the end of the step.
 class AdmittanceDevice final : public Device {
  public:
   explicit AdmittanceDevice(const AdmittanceDeviceConfig& config)

@@ -16,8 +16,8 @@ namespace {
 constexpr double kMaxStep = 0.25;
 constexpr int kTerms = 20;
 
-/// Returns the solution by power series in time: of S and V, whose derivatives are V and -damping V - stiffness S,
-/// and of the products p = S^2, q = S V and r = V^2, whose integrals are Z, S^2 / 2 and W.
+/// Returns the solution, computed by power series in time. S and V have the derivatives V and -damping V - stiffness S.
+/// The integrals of p = S^2 and r = V^2 are Z and W; the derivatives of p and r contain q = S V.
 FreeMotion by_series(const MotionLaw& law, double time) noexcept {
   FreeMotion m{.time = time, .V = 0.0};
   double S = 0.0, V = 1.0, p = 0.0, q = 0.0, r = 1.0;
@@ -39,7 +39,7 @@ FreeMotion by_series(const MotionLaw& law, double time) noexcept {
   return m;
 }
 
-/// Returns the solution after twice the time of `m`.
+/// Returns the solution of `law` after twice the time `m.time`, computed from the solution `m`.
 FreeMotion doubled(const MotionLaw& law, const FreeMotion& m) noexcept {
   const double k = law.stiffness, S2 = m.S * m.S;
   // The handle starts at rest under an acceleration g and reaches x = P g. At this position, the spring reduces the
@@ -145,10 +145,13 @@ using TransitionMatrix = ElasticMotion::Matrix;
 
 // The search for the times at which motors stop or start begins with its longest step and halves it. In the longest
 // step, the phase of the fastest mode advances by at most kMaxStep radians.
-constexpr std::size_t kChangeHalvings = 40;  ///< number of halvings of the longest step, to locate the time of a change
-constexpr std::size_t kSkipHalvings = 12;    ///< number of halvings that give the shortest time between two changes
-constexpr std::size_t kMaxHalvings = 52;     ///< number of halvings of a period: the number of bits in a double's
-                                             ///< mantissa
+/// Number of halvings of the longest step that locate the time of a change.
+constexpr std::size_t kChangeHalvings = 40;
+/// The motors stop or start at a change (advance_to_change). The first step after a change is not searched for a further
+/// change. Its length is the longest step, halved kSkipHalvings times.
+constexpr std::size_t kSkipHalvings = 12;
+/// Largest number of halvings of an interval: the number of bits in a double's mantissa.
+constexpr std::size_t kMaxHalvings = 52;
 
 /// Returns the matrix M for which z^T M z is the integral of u^T form u over `time`, where u(0) = z and u' = rates u.
 /// Uses a power series in time.
@@ -171,7 +174,7 @@ static TransitionMatrix exponential(const TransitionMatrix& rates, double time) 
   return sum;
 }
 
-/// Returns the solution after twice the time of `p`.
+/// Returns the solution after twice the time of the solution `p`.
 static ElasticMotion::Transition doubled(const ElasticMotion::Transition& p) {
   return {p.map * p.map, p.dissipated + p.map.transpose() * p.dissipated * p.map,
           p.hand + p.map.transpose() * p.hand * p.map};
@@ -199,7 +202,7 @@ ElasticMotion::Matrix ElasticMotion::rates(bool sticking) const {
 }
 
 ElasticMotion::Stretch ElasticMotion::stretch(double time) const {
-  // Quadratic forms of the dissipated powers.
+  // Matrices M of the dissipated powers z^T M z [W]: `dissipated` for the device, `hand` for the hand's damper.
   Matrix dissipated = Matrix::Zero(), hand = Matrix::Zero();
   const double d = transmission_.damping;
   dissipated(kMotorSpeed, kMotorSpeed) = viscous_ + d;
@@ -289,9 +292,9 @@ void ElasticMotion::apply(Axis& axis, const Transition& transition) noexcept {
   axis.z = next;
 }
 
-/// Advances by at most the fraction `left` of the interval, until the motors stop or start to move. Returns the
-/// fraction of the interval that remains after this. If `skip` > 0, the first step is taken without a check, so that
-/// the search does not find the previous change again. The length of this first step is the longest search step, halved
+/// Advances until the motors stop or start to move, but by at most the fraction `left` of the interval. Returns the
+/// fraction of the interval that then remains. If `skip` > 0, the first step is taken without a check, so that the
+/// search does not find the previous change again. The length of this first step is the longest search step, halved
 /// `skip` times.
 double ElasticMotion::advance_to_change(Axis& axis, const Stretch& stretch, double left, std::size_t skip) noexcept {
   const std::vector<Transition>& transitions = axis.sticks ? stretch.sticking : stretch.moving;

@@ -82,7 +82,7 @@ class HandleMotionBase {
 /// with m = handle_mass, b = viscous, c = coulomb of the device, and the force f of the motors. Coulomb friction is
 /// exact: a closed form gives the instant at which the handle stops. The handle then sticks as long as the sum of the
 /// other forces is at most c, and otherwise starts to move in the direction of this sum. A step of T seconds has at
-/// most 2 + w T / pi stops, where w is the angular frequency of the handle on the hand's spring.
+/// most 2 + w T / pi stops, where w is the angular frequency [rad/s] of the handle on the hand's spring.
 class HandleMotion : public HandleMotionBase {
  public:
   HandleMotion(const ImpedanceDeviceConfig& device, const AttachedHand& hand);
@@ -107,7 +107,7 @@ class HandleMotion : public HandleMotionBase {
   void move(Eigen::Index axis, double motors, double friction, const FreeMotion& motion) noexcept;
 
   double handle_mass_;
-  double mass_;  ///< sum of handle and hand [kg]
+  double mass_;  ///< mass of handle and hand [kg]
   MotionLaw law_;
 };
 
@@ -125,11 +125,12 @@ struct Transmission {
 ///   m_h x_h'' = f_hand                    + k (x_m - x_h) + d (x_m' - x_h')
 ///
 /// Indices m and h denote motors and handle: m_m = motor_share handle_mass, m_h is the remaining mass. Friction (b, c)
-/// and the motors' force f act on the motors' side, the hand's force on the handle, as in HandleMotion. With Coulomb
-/// friction the motors stop, stick as long as the sum of the other forces is at most c, and then start to move. No
-/// closed form gives these instants. They are located to rounding accuracy by bisection between points in time between
-/// which the phase of the fastest mode advances by at most a quarter radian. Two changes between neighbouring points
-/// may therefore be missed.
+/// and the motors' force f act on the motors' side; the hand's force acts on the handle. The symbols b, c, f and f_hand
+/// have the same meaning as in HandleMotion. With Coulomb friction the motors stop, stick as long as the sum of the
+/// other forces is at most c, and then start to move. No closed form gives the instants at which the motors stop or
+/// start. The motion is tested at points in time between which the phase of the fastest mode advances by at most a
+/// quarter radian. Bisection then locates a change between two neighbouring points to rounding accuracy. Two changes
+/// between neighbouring points may be missed.
 class ElasticMotion : public HandleMotionBase {
  public:
   /// State of one axis: (x_m, v_m, x_h, v_h, force on the motors, force on the handle) [m, m/s, m, m/s, N, N].
@@ -146,7 +147,7 @@ class ElasticMotion : public HandleMotionBase {
   /// sticking motors. `sticking` is empty without Coulomb friction. Takes about a millisecond to compute.
   struct Stretch {
     std::vector<Transition> moving, sticking;
-    std::size_t first = 0;  ///< index of the longest step in the search for instants at which the motors stop
+    std::size_t first = 0;  ///< index of the longest step in the search for instants at which the motors stop or start
   };
 
   ElasticMotion(const ImpedanceDeviceConfig& device, const Transmission& transmission, const AttachedHand& hand);

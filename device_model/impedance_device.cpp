@@ -127,8 +127,8 @@ static Vec3 rounded_to(const Vec3& v, double step) noexcept {
   return {std::round(v.x() / step) * step, std::round(v.y() / step) * step, std::round(v.z() / step) * step};
 }
 
-// The ring buffer holds the command of this period, the commands of the whole periods of the delay, and one more
-// command for the fraction of a period in the delay.
+// The ring buffer holds the command of this period, one command for each whole period of the delay, and one more
+// command for the rest of the delay, a fraction of a period.
 ForcePath::ForcePath(const ImpedanceDeviceConfig& config, double dt)
     : config_(config),
       max_change_(config.force_slew.value_or(0.0) * dt),

@@ -69,14 +69,14 @@ struct DifferenceFilter {};
 /// straight line through the window's ends.
 struct AdaptiveWindowFilter {
   double noise = 1e-5;  ///< largest error of a sample [m]; half the encoder's resolution for a rounded position
-  /// Longest window [samples] (our choice). With this window, one encoder step changes the velocity by 1/15 of the
-  /// change of a simple difference. The velocity is delayed by half the window, 7.5 ms at 1 kHz.
+  /// Longest window [samples] (our choice). With this window, one encoder step changes the estimated velocity by 1/15
+  /// of the change that DifferenceFilter would give. The estimate is delayed by half the window, 7.5 ms at 1 kHz.
   static constexpr std::size_t kLongest = 15;
 };
 
-/// Method of estimating the velocity. LowPassFilter: the continuous low-pass filter, whose input is the difference d_k
-/// = (x_k - x_(k-1)) / T, held over the period. For order 1, v_k = v_(k-1) + (1 - e^(-2 pi f T)) (d_k - v_(k-1)), with
-/// f the cutoff.
+/// Method of estimating the velocity. The method LowPassFilter filters the differences d_k = (x_k - x_(k-1)) / T; each
+/// difference is held over one period as input of the continuous filter. For order 1, this gives v_k = v_(k-1) + (1 -
+/// e^(-2 pi f T)) (d_k - v_(k-1)), with the cutoff f.
 using VelocityFilterConfig = std::variant<DifferenceFilter, LowPassFilter, AdaptiveWindowFilter>;
 
 /// Estimates the velocity from sampled positions, as a controller does. Allocates only in the constructor.
@@ -119,8 +119,8 @@ struct ImpedanceDeviceConfig {
   std::optional<double> force_max = {};   ///< norm of the force at which the motors saturate [N]; empty: no limit
   double force_step = 0.0;                ///< resolution of each force component [N]; 0: exact
   std::optional<double> force_slew = {};  ///< largest rate of change of the force (norm) [N/s]; empty: no limit
-  std::optional<LowPassFilter> position_filter = {};  ///< filter of the measured positions from which the force is
-                                                      ///< computed
+  /// Filter of the measured positions from which the force is computed; the velocity filter gets unfiltered positions.
+  std::optional<LowPassFilter> position_filter = {};
   double position_noise = 0.0;  ///< standard deviation of the noise of each axis, added before rounding [m]
   std::uint64_t seed = 0;       ///< seed of the noise's random numbers
   std::optional<Transmission> transmission = {};  ///< elastic transmission between motors and handle; empty: rigid

@@ -17,8 +17,8 @@ constexpr ModelInfo kShortestDistanceInfo = {
     .summary = "distance to the nearest surface of the tool, with the gradient towards it",
     .formula = "d = |q - x|, u = (q - x) / d, with q the point of the tool's surface nearest to x",
     .source =
-        "thesis B.1; uses the smallest depth >= 0 (as printed, negative depths would pull the tool "
-        "in)",
+        "thesis B.1; uses the smallest depth >= 0 (the printed formula allows negative depths, which would pull the "
+        "tool in)",
     .known_failure = "the gradient flips by 180 degrees when a point crosses the tool's median line (thesis B.3.1)",
 };
 
@@ -36,7 +36,8 @@ constexpr ModelInfo kSurfaceNormalInfo = {
     .summary = "depth of shortest_distance, gradient against the surface normal (default)",
     .formula = "d as in shortest_distance, u = -n",
     .source = "thesis C.1, 2.3",
-    .known_failure = "underestimates the depth; on a flat it saturates at half the tool's width (thesis C.1, F.1)",
+    .known_failure =
+        "underestimates the depth; on a flat surface the depth saturates at half the tool's width (thesis C.1, F.1)",
 };
 
 class SurfaceNormal final : public DepthModel {
@@ -75,7 +76,8 @@ constexpr ModelInfo kContinuousNormalProjectionInfo = {
     .summary = "starts as the shortest distance, then follows the tool's motion along the gradient up to its exit",
     .formula =
         "u = -n, d = d_sd when the point enters, then d <- min(d_np, max(d_sd, d + <dx, u>)); d_sd of "
-        "shortest_distance, d_np of normal_projection, dx = dp + turn x (x - p) of the tool at the point",
+        "shortest_distance, d_np of normal_projection, dx = dp + rotation x (x - p), the displacement of the tool at "
+        "the point x",
     .source =
         "thesis F.1 names the jump (Fig. F.4) and two remedies with their flaws; this remedy is not in the thesis",
     .known_failure =
@@ -97,11 +99,10 @@ constexpr ModelInfo kContinuousNormalProjectionInfo = {
 ///    tool sideways, some energy is lost.
 ///
 /// A depth that depends only on the pose cannot be both continuous and free of saturation. Continuity at entry requires
-/// depth 0 everywhere on the tool's surface. Without saturation, a point that was pressed through the whole tool to the
-/// opposite surface would have the tool's diameter as depth on this surface. Subtracting the depth at entry is no
-/// solution: while a tool slides over a flat surface, points enter it from the side all the time, and the tool would
-/// lose its support.
-/// O(n).
+/// depth 0 everywhere on the tool's surface. Without saturation, a point that was pressed through the whole tool would
+/// have the tool's diameter as depth when it reaches the opposite surface. Subtracting from d_np its value at entry is
+/// no solution: while a tool slides over a flat surface, points enter it from the side all the time, and the tool would
+/// lose its support. O(n).
 class ContinuousNormalProjection final : public DepthModel {
  public:
   void prepare(const PointShell& shell) override {
@@ -125,7 +126,7 @@ class ContinuousNormalProjection final : public DepthModel {
       Memory& point = memory_[contacts.index[i]];
       const bool stays = point.step + 1 == step_;
       const double pressed = stays ? point.depth + (moved + turned.cross(x - pose.position)).dot(u) : 0.0;
-      // Rounding may move a point on the surface slightly outside.
+      // Rounding may make the depth of a point on the surface slightly negative.
       const double shortest = std::max(contacts.depth[i], 0.0);
       point = {std::min(std::max(shortest, pressed), exit_[i]), step_};
       contacts.depth[i] = point.depth;

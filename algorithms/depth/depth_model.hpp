@@ -12,19 +12,21 @@
 
 namespace hapbench {
 
-/// Computes the penetration depth d_i >= 0 [m] and the gradient u_i of every colliding point (thesis B.1, C.1, F.1;
-/// signs as in ContactBuffer). Most models depend only on the pose of the tool. A model with a memory holds the state
-/// of one run. A model costs one virtual call in each step.
+/// Computes the penetration depth d_i >= 0 [m] and the gradient u_i of every colliding point (thesis sections B.1, C.1,
+/// F.1). u_i is the unit vector from the point to where the point would leave the tool (ContactBuffer). Most models
+/// depend only on the pose of the tool. A model with a memory holds the state of one run. A model costs one virtual
+/// call in each step.
 class DepthModel {
  public:
   virtual ~DepthModel() = default;
-  /// Called before the first step with the shell of the contacts. Only this function may allocate.
+  /// Called before the first step. `shell` contains all points that may become contacts. Only this function may
+  /// allocate.
   virtual void prepare(const PointShell& shell) { static_cast<void>(shell); }
   /// Resets the memory of the model to t = 0.
   virtual void reset() noexcept {}
-  /// Writes depth and gradient of all contacts and pads the buffer. Called once in every step. In consecutive
-  /// steps without contacts, all calls but the first may be skipped. Precondition: every point lies inside the
-  /// tool or on its surface.
+  /// Writes depth and gradient of all contacts and pads the buffer. Called once in every step. The caller may omit
+  /// the call in a step without contacts that follows another step without contacts. Precondition: every point lies
+  /// inside the tool or on its surface.
   virtual void evaluate(const ToolShape& tool, const ToolPose& pose, ContactBuffer& contacts) noexcept = 0;
 };
 

@@ -140,13 +140,14 @@ constexpr AlgorithmParameter kSaturation[] = {
      30.0,
      "F_s: largest force of the coupling spring; default: the force limit of the trainer"}};
 
-/// Limits of Newton's method in StaticCoupling: number of Newton steps, and smallest fraction of a Newton step that is
-/// tried. If the method ends before the forces on the copy of the tool balance, the rendered force is still the force
-/// of the coupling at the last displacement.
+/// Limits of Newton's method in StaticCoupling, which finds the displacement at which the forces on the copy of the
+/// tool balance: number of Newton steps, and lower limit of the fraction of a Newton step that is tried. If the method
+/// ends before the forces balance, the rendered force is the force of the coupling at the last displacement.
 constexpr int kMaxSteps = 30;
 constexpr double kMinFraction = 1e-6;
-/// Smallest stiffness of the coupling along its force, relative to the stiffness perpendicular to it. Far beyond
-/// saturation, rounding would make this stiffness zero or negative.
+/// Lower limit that StaticCoupling sets for the stiffness of its coupling along the coupling force, relative to the
+/// stiffness perpendicular to this force. Far beyond saturation, rounding would make the stiffness along the force zero
+/// or negative.
 constexpr double kMinStiffnessRatio = 1e-12;
 /// Tolerated norm of the sum of the forces on the copy of the tool (see StaticCoupling), relative to K sqrt(sum p_i^2)
 /// with the depths p_i of the contacts in the copy. The rounding error of a sum of n forces is below 1e-16 sqrt(n)
@@ -158,14 +159,15 @@ double saturation_of(const RenderingConfig& config) {
 }
 
 /// Static virtual coupling: the tool is connected by a saturating spring to a massless copy of itself, displaced by s
-/// [m] from the tool. The copy is in balance with its contacts. Newton's method with halved steps finds the balance,
-/// the minimum of the convex energy
+/// [m] from the tool. The forces of the spring and of the contacts on the copy balance. This balance is the minimum of
+/// the convex energy
 ///
 ///   W(s) + K/2 sum p_i^2,  W(s) = F_s^2 / K_vc (sqrt(1 + (K_vc |s| / F_s)^2) - 1)
 ///
 /// with the depths p_i of the contacts in the copy, the stiffness K_vc of the spring at s = 0 and its saturation force
-/// F_s. The balance depends only on the current contacts and not on the previous step. The force is therefore the
-/// derivative of a potential energy.
+/// F_s. Newton's method finds the minimum; a step that does not reduce the imbalance of the forces is halved. The
+/// balance depends only on the current contacts and not on the previous step. The force is therefore the derivative of
+/// a potential energy.
 class StaticCoupling final : public ForceLaw {
  public:
   explicit StaticCoupling(const RenderingConfig& config)
@@ -240,8 +242,8 @@ class StaticCoupling final : public ForceLaw {
   double coupling_energy(const Vec3& s) const noexcept { return K_vc_ * s.squaredNorm() / (1.0 + saturation(s)); }
   Mat3 coupling_stiffness(const Vec3& s) const noexcept {
     const double q = saturation(s);
-    Vec3 r = K_vc_ / (F_s_ * q) * s;  // |r|^2 = 1 - 1 / q^2, and 1 - |r|^2 is the stiffness along s relative to the
-                                      // stiffness perpendicular to s
+    // |r|^2 = 1 - 1 / q^2, and 1 - |r|^2 is the stiffness along s relative to the stiffness perpendicular to s.
+    Vec3 r = K_vc_ / (F_s_ * q) * s;
     if (const double along = r.squaredNorm(); along > 1.0 - kMinStiffnessRatio)
       r *= std::sqrt((1.0 - kMinStiffnessRatio) / along);
     return K_vc_ / q * (Mat3::Identity() - r * r.transpose());
@@ -271,8 +273,9 @@ class StaticCoupling final : public ForceLaw {
   double K_vc_;                       ///< stiffness of the coupling before saturation [N/m]
   double F_s_;                        ///< saturation force of the coupling [N]
   Vec3 displacement_ = Vec3::Zero();  ///< displacement s of the copy for the last contacts [m]
-  Mat3 transmission_ = Mat3::Zero();  ///< C (C + P)^-1 for the stiffness C of the coupling and P of the contacts: maps
-                                      ///< the contacts' force on a tool without coupling to the force with coupling
+  /// C (C + P)^-1 with the stiffness C of the coupling and the stiffness P of the contacts. Maps the contacts' force on
+  /// a tool without coupling to the force with coupling.
+  Mat3 transmission_ = Mat3::Zero();
 };
 
 /// Bound of |f_spring| / K for n contacts with depths <= d: the coupling force equals the sum of the contact forces,
@@ -294,8 +297,8 @@ AlgorithmEntry virtual_coupling_entry() {
       .summary = "all springs in series with one quasi-static coupling spring",
       .formula =
           "f = -K_vc (K_vc I + K S_sum)^-1 K sum d_i u_i, S = K_vc (K_vc I + K S_sum)^-1 S_sum, S_sum = sum u u^T; "
-          "along the sum g of the depths alone: f = -q K g, S = q S_sum, q = K_vc / (K_vc + K <u, S_sum u>), u = g "
-          "/ |g|",
+          "with along_sum 1, along g = sum d_i u_i only: f = -q K g, S = q S_sum, q = K_vc / (K_vc + K <u, S_sum u>), "
+          "u = g / |g|",
       .source = "thesis Fig. 2d",
       .known_failure =
           "limits the stiffness, but the force still follows the direction with the largest number of points",
@@ -324,7 +327,7 @@ AlgorithmEntry least_squares_entry() {
           "/ eps",
       .known_failure =
           "with a small eps, S jumps when the first contact along a direction appears or the last one disappears, and "
-          "nearly opposite contacts push the tool out by up to 1 / (2 sqrt eps) times the norm of their depths",
+          "with nearly opposite contacts, the force may reach K / (2 sqrt eps) times the norm of their depths",
       .parameters = kParameters,
   };
   return {.info = &kInfo, .make_law = law_of<LeastSquares>, .force_bound = least_squares_bound, .may_reduce = false};
@@ -341,8 +344,8 @@ AlgorithmEntry static_coupling_entry() {
           "a massless copy of the tool, in equilibrium between its contacts and a coupling spring that saturates",
       .formula =
           "f = g(|s|) s / |s|, g(x) = K_vc x / sqrt(1 + (K_vc x / F_s)^2), where the copy's displacement s from the "
-          "tool balances -K sum p_i u_i = f; p_i = d_i + <u_i, s> where it has the sign of d_i, else 0; S = -df/dp "
-          "/ K",
+          "tool balances -K sum p_i u_i = f; p_i = d_i + <u_i, s> if this sum has the sign of d_i, otherwise 0; S = "
+          "-df/dp / K",
       .source =
           "static virtual coupling of Barbic and James, Six-DoF haptic rendering of contact between geometrically "
           "complex reduced deformable models (IEEE Trans. Haptics 1, 2008); the shape of g and the solution to "

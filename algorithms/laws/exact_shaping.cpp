@@ -25,12 +25,12 @@ constexpr int kDirectSteps = 6;
 /// Decreasing values of epsilon, the weight of the regularisation. The solver uses one value after the other if it has
 /// not converged after kDirectSteps steps with the final epsilon (see solve).
 constexpr double kPath[] = {1e-2, 1e-4, kEps};
-constexpr int kMaxNewtonSteps = 1000;  ///< maximum number of Newton steps for each epsilon; never reached in exact
-                                       ///< arithmetic
+/// Maximum number of Newton steps for each value of kPath; never reached in exact arithmetic.
+constexpr int kMaxNewtonSteps = 1000;
 constexpr int kMaxLineSearchSteps = 40;
 constexpr int kMaxRefinements = 5;
-/// A residual of the optimality condition up to this value counts as rounding error. S, which the residual contains, is
-/// the sum of up to n terms of at most 1 each, added in eight partial sums.
+/// A residual of the optimality condition up to this value counts as rounding error. The residual contains S, whose
+/// rounding error has this size: S is the sum of up to n terms of at most 1 each, added in eight partial sums.
 constexpr double kResidualRounding = 1e-14;
 
 /// The identity tensor in the basis of TensorPack.
@@ -62,7 +62,7 @@ struct TensorPack {
 struct TensorSums {
   Mat6 G;            ///< sum a_i a_i^T over the active tensors (c_i > 0)
   Vec6 S;            ///< sum c_i a_i
-  bool same_active;  ///< true if no tensor changed between active and inactive
+  bool same_active;  ///< true if the last change of the weights made no tensor active or inactive
 };
 
 /// Sets the weight of every tensor to c_i = max(0, weight_of(a_i, previous c_i)) and returns the sums.
@@ -118,8 +118,8 @@ Vec6 dual_gradient(const Vec6& w, double eps, const TensorSums& sums) noexcept {
 /// `target` to a point where the slope of the dual function along this line is at most half of `slope_at_w`, the slope
 /// at the start (both as absolute values). The function is convex and piecewise quadratic, so its slope is monotone.
 /// The line search decreases the function, and Newton's method therefore converges from any start. On entry `sums`
-/// holds the sums at `target`, on return at w. Returns false if no such point is found, because `slope_at_w` is only
-/// rounding.
+/// holds the sums at `target`, on return the sums at the new w. Returns false if kMaxLineSearchSteps bisections find no
+/// such point; `slope_at_w` is then only rounding.
 template <class Tensors>
 bool line_search(const Tensors& tensors, const Vec6& target, double eps, double slope_at_w, Vec6& w,
                  TensorSums& sums) noexcept {
@@ -162,9 +162,9 @@ bool newton(const Tensors& tensors, double eps, int max_steps, Vec6& w, TensorSu
   return false;
 }
 
-/// Removes the rounding of the last solve, which the factor 1/eps has amplified: w += (eps I + G)^-1 R, with
-/// the residual R of the optimality condition. The small product a_i . correction is added to the weights,
-/// which keeps the digits that a_i . w would lose.
+/// Removes the rounding error of the last solve, which the factor 1/eps has amplified: adds the correction
+/// (eps I + G)^-1 R to w, with the residual R of the optimality condition. Adds the small product a_i . correction to
+/// each positive weight c_i; computing the weight again as a_i . w would lose digits.
 template <class Tensors>
 void refine(const Tensors& tensors, Vec6 w, TensorSums sums) noexcept {
   const simd::Pack zero(0.0);
@@ -235,15 +235,17 @@ class ExactShaping final : public ForceLaw {
   }
 };
 
-/// Number of cells along each edge of a cube whose faces are divided into cells. A direction belongs to the cell that
-/// it crosses. The number gives 1350 cells of about 6 degrees, the angle up to which the point reduction counts
-/// gradients as similar by default. It is odd, so that the coordinate axes lie in the middle of cells.
+/// Number of cells along each edge of a cube whose faces are divided into square cells. A direction belongs to the cell
+/// that a ray from the cube's centre in this direction crosses. 15 cells along each edge give 1350 cells of about 6
+/// degrees, the angle up to which the point reduction counts gradients as similar by default. The number is odd, so
+/// that the coordinate axes cross the middle of cells.
 constexpr int kDirectionCells = 15;
 
 constexpr std::size_t kFaces = 6, kCells = kFaces * kDirectionCells * kDirectionCells;
 
-/// Returns the index of the cell, along one edge of a face, that contains `tangent`: the ratio of two components of a
-/// direction, in [-1, 1].
+/// Returns the index along one edge of a face, from 0 to kDirectionCells - 1, of the cells that contain `tangent`.
+/// `tangent` is the position along this edge, in [-1, 1]: a component of the direction, divided by the magnitude of the
+/// largest component.
 std::size_t edge_cell(double tangent) noexcept {
   // The negated comparison is true also for NaN, which gets the cell 0.
   const double position = 0.5 * kDirectionCells * (tangent + 1.0);
@@ -251,7 +253,7 @@ std::size_t edge_cell(double tangent) noexcept {
   return position < kDirectionCells ? static_cast<std::size_t>(position) : kDirectionCells - 1;
 }
 
-/// Returns the cell of a direction: the face of the cube that it crosses, and the position on this face.
+/// Returns the index of the cell that the direction (x, y, z) crosses, in [0, kCells).
 std::size_t cell_of(double x, double y, double z) noexcept {
   const double ax = std::abs(x), ay = std::abs(y), az = std::abs(z);
   std::size_t face = 0;
@@ -273,8 +275,8 @@ std::size_t cell_of(double x, double y, double z) noexcept {
 
 using PerCell = std::array<double, simd::padded(kCells)>;
 
-/// The tensors of the groups divided by their traces, in the order of the cells. One array for each of the six tensor
-/// components.
+/// The tensors of the groups, each divided by its trace, in the order of the cells. Each of the six tensor components
+/// has its own array.
 struct Groups {
   std::size_t size = 0, padded_size = 0;
   double* weight = nullptr;
@@ -397,7 +399,7 @@ AlgorithmEntry exact_shaping_entry() {
           "not in the thesis; the iteration is the multiplicative update of Sha, Lin, Saul, Lee, Neural Computation "
           "2007",
       .known_failure =
-          "force jumps when contacts appear or disappear, larger than under shaped_stiffness; ratios above 1 where "
+          "the force jumps when contacts appear or disappear, by more than with shaped_stiffness; ratios above 1 where "
           "the weight is zero; soft in the direction out of a wedge, 2 sin^2 w / (1 + cos^2 2w) K for half angle w, "
           "about w^2 K",
       .parameters = kStiffnessAlone,
@@ -414,10 +416,10 @@ AlgorithmEntry merged_shaping_entry() {
       .formula =
           "groups: 1350 fixed cells of directions; S = sum c_k T_k, T_k = sum u u^T, f = -K sum c_k sum d u; C_k = c_k "
           "tr T_k = argmin ½|S - I|²_F + (epsilon/2)|C|² over C >= 0, epsilon = 1e-6",
-      .source = "not in the thesis; replaces the reduction of thesis C.3 and 4.1; takes no reduction",
+      .source = "not in the thesis; replaces the reduction of thesis C.3 and 4.1; always without reduction",
       .known_failure =
           "contacts of a group share a weight, so that single ratios deviate from 1 by about the square of a cell's "
-          "angle; the force jumps when a gradient turns across the border of a cell",
+          "angle; the force jumps when a gradient moves from one cell to another",
       .parameters = kStiffnessAlone,
   };
   return {.info = &kInfo, .make_law = law_of<MergedShaping>, .force_bound = kBound, .may_reduce = false};

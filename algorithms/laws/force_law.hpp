@@ -66,8 +66,8 @@ class SingleSpringLaw : public ForceLaw {
   bool gives_weights() const noexcept override { return gives_weights_; }
 
  protected:
-  bool gives_weights_ = false;  ///< true if the last `evaluate` wrote weights that define the force; may differ from
-                                ///< step to step
+  /// True if the last `evaluate` wrote weights that define the force. May change from step to step.
+  bool gives_weights_ = false;
 };
 
 /// Sets the weight of every contact to c; the padding stays zero. O(n).

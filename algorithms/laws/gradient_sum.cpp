@@ -12,9 +12,9 @@ namespace {
 /// noise, and the force is zero.
 constexpr double kMinMeanGradient = 1e-9;
 
-/// A law with one spring, compressed by d_r = depth(contacts, |sum u_i|) [m]. original_averaging and highest_depth
-/// define no point of application. All weights are therefore set to 1, so that the force acts at the mean position of
-/// the contacts.
+/// A law with one spring, compressed by d_r = depth(contacts, |sum u_i|) [m]. The laws original_averaging and
+/// highest_depth do not define the point at which the force acts. All weights are therefore set to 1, so that the force
+/// acts at the mean position of the contacts.
 template <double (*depth)(const ContactBuffer&, double) noexcept>
 class AveragedDirection final : public SingleSpringLaw {
  public:
@@ -77,9 +77,9 @@ class Tandpasta final : public ForceLaw {
   }
 
  private:
-  /// Returns the ratio beta of the gradient u: 1 if no other gradient opposes u, 0 if the inner products of u with all
-  /// gradients sum to zero. This sum is the inner product of u with `total`, the sum of the gradients. Only the sum of
-  /// the magnitudes needs the O(n) loop.
+  /// Returns the ratio beta = |sum_j <u, u_j>| / sum_j |<u, u_j>| of the gradient u: 1 if no gradient u_j opposes u, 0
+  /// if the inner products cancel. The numerator equals |<u, total>| with the sum `total` of all gradients, so only the
+  /// denominator needs a loop over the contacts. O(n).
   static double cancelling_ratio(const ContactBuffer& c, const Vec3& u, const Vec3& total) noexcept {
     using simd::load, simd::Pack;
     const Pack x(u.x()), y(u.y()), z(u.z());
@@ -109,7 +109,7 @@ AlgorithmEntry original_averaging_entry() {
           "u_r = sum u_i / |sum u_i|, d_r = sum d_i / |sum u_i|, f = -K d_r u_r, S = u_r u_r^T; "
           "zero force when |sum u_i| <= 1e-9 n",
       .source = "thesis B.2, Eq. B.1; always with depth model shortest_distance and without reduction",
-      .known_failure = "opposite gradients make d_r very large and flip u_r by 180 degrees (thesis B.3.3): vibration",
+      .known_failure = "nearly opposite gradients make d_r very large and flip u_r by 180 degrees (thesis B.3.3): vibration",
       .parameters = kStiffnessAlone,
   };
   return {.info = &kInfo,

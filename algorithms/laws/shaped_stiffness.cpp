@@ -75,9 +75,10 @@ AlgorithmEntry shaped_stiffness_entry() {
       .source = "thesis 2.4, C.4.2; rho through the 3x3 tensor, Eq. 3 and 4",
       .known_failure =
           "the force jumps when contacts appear or disappear, so that its bounds hold only between such events; rho_i "
-          "stays above 1 where the weight tends to zero (it is a projection onto a cone); soft in the direction out "
-          "of a wedge, because only ratios along contacts are regulated: 2 sin^2 w / (1 + cos^2 2w) K, about w^2 K, "
-          "for half angle w (10 degrees: 0.032 K), and in a cone 2 sin^2 w / (cos^4 w + 2 sin^4 w) K, about 2 w^2 K",
+          "stays above 1 where the weight tends to zero (the limit of the iteration is a projection onto a cone); soft "
+          "in the direction out of a wedge, because only ratios along contacts are regulated: 2 sin^2 w / (1 + cos^2 "
+          "2w) K, about w^2 K, for half angle w (10 degrees: 0.032 K), and in a cone 2 sin^2 w / (cos^4 w + 2 sin^4 w) "
+          "K, about 2 w^2 K",
       .parameters = kShapingParameters,
   };
   return shaping_entry(kInfo);
@@ -104,7 +105,8 @@ AlgorithmEntry continuous_normal_projection_entry() {
           "its exit (see depth model continuous_normal_projection)",
       .source = "not in the thesis, based on thesis F.1; always with depth model continuous_normal_projection",
       .known_failure =
-          "depends on the path: under a face that it entered from the side, the tool feels only the shortest distance",
+          "depends on the path: under a face that the tool entered from the side, the depth is only the shortest "
+          "distance",
       .parameters = kShapingParameters,
   };
   return shaping_entry(kInfo, "continuous_normal_projection");

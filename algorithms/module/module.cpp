@@ -89,7 +89,7 @@ bool ModuleState::call_guarded(const char* function, const Call& call) noexcept 
     if (call(text.data())) return true;
     text.back() = '\0';
     std::snprintf(problem.data(), problem.size(), "fails in %s: %s", function,
-                  text[0] == '\0' ? "it does not say why" : text.data());
+                  text[0] == '\0' ? "no reason given" : text.data());
   } catch (const std::exception& thrown) {
     std::snprintf(problem.data(), problem.size(), "throws in %s: %s", function, thrown.what());
   } catch (...) {
@@ -167,7 +167,7 @@ LawForce ModuleLaw::failed(const char* problem) noexcept {
 
 LawForce ModuleLaw::evaluate(ContactBuffer& contacts) noexcept {
   if (contacts.empty()) return {};
-  // Fill the weights and the cells before and after them with guard values, and call the module.
+  // Fill the weights, and kGuards elements before and after them, with guard values. Then call the module.
   set_weights(contacts, 0.0);
   const std::size_t n = contacts.size();
   std::fill_n(weights_.begin(), n + 2 * kGuards, std::bit_cast<double>(kUnwritten));

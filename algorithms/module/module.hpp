@@ -34,12 +34,13 @@ class ModuleState {
   ModuleState(const ModuleState&) = delete;
   ModuleState& operator=(const ModuleState&) = delete;
 
-  /// Creates a new state for `run`, after setting HapbenchRun::data from the module's table. Returns false after a
-  /// fault.
+  /// Creates a new state for `run`, after setting HapbenchRun::data from the module's table. Returns false if the
+  /// module cannot create the state, which counts as a fault.
   bool create(const double* values, const char* config, HapbenchRun run) noexcept;
   /// Resets the state to t = 0 and clears the fault. Does nothing if the state could not be created.
   void reset() noexcept;
-  /// Evaluates one step. Returns false after a fault in this step or in an earlier step.
+  /// Evaluates one step. Returns false if a fault has happened in this step or, since the last reset, in an earlier
+  /// step.
   bool step(const HapbenchPose* pose, HapbenchContacts& contacts, HapbenchForce* force) noexcept;
   /// Records `problem`, a problem with the result of the module, as a fault. The text of the fault begins with the
   /// names of module and file.

@@ -49,8 +49,9 @@ struct Split {
   Vector<N> along = Vector<N>::Zero();   ///< coefficients of the projection as a combination of the active gradients
 };
 
-/// The active set: at most N constraints that hold the point back, with linearly independent gradients. Keeps
-/// the factorisation gradients = Q R by Gram and Schmidt, which takes a few operations for few columns.
+/// The active set: at most N constraints with linearly independent gradients and multipliers lambda >= 0, which hold
+/// the point x back from t. Keeps the factorisation Q R of the matrix of the gradients, computed by Gram and Schmidt's
+/// method, which is fast for so few columns.
 template <int N>
 class ActiveSet {
  public:

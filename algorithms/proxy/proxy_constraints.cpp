@@ -64,7 +64,8 @@ constexpr std::size_t kSpacingSamples = 100;
 /// Radius of a patch (see add_edges), relative to the typical spacing of the shell points. In a square lattice of
 /// points, the patches cover the centre between four points, which is 0.707 spacings away from each of these points.
 constexpr double kPatch = 0.75;
-/// Largest depth at which an edge constraint applies, relative to the spacing of the shell points.
+/// Largest depth of the tool below a patch at which the constraint of the patch applies (see add_edges), relative to
+/// the typical spacing of the shell points.
 constexpr double kMaxPatchDepth = 0.1;
 
 /// Points closer than this fraction of the diagonal of the shell's bounding box count as one point, because a shell may
@@ -93,10 +94,10 @@ double distance_to_second(const PointShell& shell, std::size_t from) {
   return std::sqrt(second2);
 }
 
-/// Returns the typical distance from a shell point to its neighbours [m]; 0 for fewer than three points. It is the
-/// median, over a sample of points, of the distance to the second nearest position, which is the spacing of a square
-/// lattice and of a line. Points at the same position count as one point. O(size), about a hundred distances for each
-/// point.
+/// Returns the typical distance from a shell point to its neighbours [m]; 0 for fewer than three points. For each point
+/// of a sample, computes the distance to the second nearest position. In a square lattice and in a row of points, this
+/// distance is the spacing. Returns the median of these distances. Points at the same position count as one point.
+/// O(size), with kSpacingSamples distances for each shell point.
 double typical_spacing(const PointShell& shell) {
   if (shell.size() < 3) return 0.0;
   const std::size_t samples = std::min(kSpacingSamples, shell.size());
@@ -150,7 +151,8 @@ ShellConstraints::ShellConstraints(const PointShell& shell, const ToolShape& too
 ///
 /// The surface around each point x_i with normal n_i is assumed to be flat up to the neighbouring points. This flat
 /// piece is called a patch. Let v_i be the tool's support point towards the surface: the point q of the tool with the
-/// smallest <q, n_i>. If v_i lies above or below the patch, the tool must be above the patch after the move x:
+/// smallest <q, n_i>. If the projection of v_i along n_i lies on the patch, the tool must be above the patch after the
+/// move x:
 ///
 ///   <n_i, v_i + x - x_i> >= 0, appended as a contact with depth <n_i, x_i - v_i> and gradient -n_i.
 ///
@@ -166,7 +168,7 @@ void ShellConstraints::add_edges(const ToolPose& proxy, ContactBuffer& contacts)
   const Pack highest(margin_), deepest(-kMaxPatchDepth * spacing_), patch2(kPatch * spacing_ * kPatch * spacing_);
   const MutablePointArrays support{support_x_.data(), support_y_.data(), support_z_.data()};
   tool_->support_points(proxy, contacts, support);
-  // For each contact whose support point lies above or below the contact's patch, append the constraint of the patch.
+  // Append the constraint of each contact's patch if the projection of the contact's support point lies on the patch.
   for (std::size_t i = 0; i < padded; i += simd::lanes) {
     const Pack nx = load(&contacts.nx[i]), ny = load(&contacts.ny[i]), nz = load(&contacts.nz[i]);
     const Pack dx = load(&support.x[i]) - load(&contacts.x[i]), dy = load(&support.y[i]) - load(&contacts.y[i]),

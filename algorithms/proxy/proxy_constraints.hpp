@@ -41,8 +41,8 @@ struct AllowedMove {
 /// constraint counts as satisfied if its violation is at most kViolationTolerance times the largest of the depths and
 /// of the components of t.
 ///
-/// If no x satisfies all contacts (opposite walls of a slot narrower than the tool), x is the unique minimiser
-/// of
+/// If no x satisfies all contacts, for example between opposite walls of a slot narrower than the tool, x is the unique
+/// minimiser of
 ///
 ///   1/2 sum max(0, d_i + <u_i, x>)^2 + epsilon/2 |x - t|^2,   epsilon = 1e-6,
 ///
@@ -61,12 +61,13 @@ AllowedMove nearest_allowed(const Vec3& wanted, ContactBuffer& contacts) noexcep
 /// computations per step.
 inline constexpr double kProxyMargin = 0.2;
 
-/// Speed at which a proxy leaves points that are inside it, in half widths of the tool per second. For a drill
-/// of 1 mm it is 0.02 m/s, the highest speed at which the simulated subjects move the drill.
+/// Speed at which a proxy leaves points that are inside it, in half widths of the tool per second. For a drill with a
+/// diameter of 1 mm, the speed is 0.02 m/s, the highest speed at which the simulated subjects move the drill.
 inline constexpr double kProxyRecoverySpeed = 40.0;
 
-/// Maximum number of passes of a proxy in a step; most steps need two. The first passes bring the proxy near its goal,
-/// the last makes the constraints exact at its final position.
+/// Maximum number of passes of a proxy in a step; most steps need two. Each pass computes the constraints at the
+/// proxy's position and moves the proxy. The first passes bring the proxy near its final position, and the last pass
+/// computes the constraints there.
 inline constexpr int kMaxProxyPasses = 64;
 
 /// Keeps a proxy of the tool out of an environment by linear constraints on its next move x: d_i + <u_i, x> <=

@@ -13,11 +13,11 @@
 namespace hapbench {
 namespace {
 
-/// Eigenvalue of sum u u^T below which its eigenvector counts as outside the span of the gradients.
+/// An eigenvector of sum u u^T whose eigenvalue is at most this value counts as outside the span of the gradients u.
 constexpr double kNoSpan = 1e-6;
-/// A pass that moves the proxy by less than this fraction of the margin is the last pass. The constraints are exact
-/// at the start of the move. At its end the error is the squared length of the move divided by the width of the tool:
-/// 9 nm for a drill of 1 mm.
+/// A pass that moves the proxy by at most this fraction of the margin is the last pass. The linear constraints are
+/// exact at the start of the move. At the end of the move, their error is the squared length of the move divided by the
+/// width of the tool: at most 9 nm for a drill with a diameter of 1 mm.
 constexpr double kConverged = 0.03;
 /// Longest cycle of proxy positions that is recognised, in passes.
 constexpr std::size_t kLongestCycle = 4;
@@ -36,11 +36,12 @@ constexpr AlgorithmParameter kOwnParameters[] = {
     {kRotationalStiffness,
      {0.0, 1e12, "N m/rad", true},
      std::numeric_limits<double>::infinity(),
-     "stiffness of the spring that turns the proxy to the tool; null: infinite, so that the proxy has the tool's "
-     "orientation"}};
+     "rotational stiffness of the spring that aligns the proxy with the tool; null (default): infinite, so that the "
+     "proxy has the tool's orientation"}};
 
-/// Calls `use(i)` for each contact i that holds the proxy back, in ascending i. Tests eight contacts at a time, because
-/// only about three of some hundred contacts near the proxy hold it back. Precondition: the contacts are padded.
+/// Calls `use(i)` for each contact i that holds the proxy back (its weight is positive), in ascending i. Tests eight
+/// contacts at a time, because only about three of some hundred contacts near the proxy hold the proxy back.
+/// Precondition: the contacts are padded.
 template <class Use>
 void for_each_holding(const ContactBuffer& contacts, const Use& use) {
   for (std::size_t i = 0; i < contacts.padded_size(); i += simd::lanes) {
@@ -49,21 +50,21 @@ void for_each_holding(const ContactBuffer& contacts, const Use& use) {
   }
 }
 
-/// Constraint-based rendering with a proxy (Zilles and Salisbury, 1995, for a point). The proxy is a copy of
-/// the tool that never enters the environment. It follows the tool, and a spring pulls the tool to the proxy.
-/// The orientation is scripted and equals the tool's, so only the translation x of the proxy is free: three
-/// unknowns.
+/// Constraint-based rendering with a proxy (Zilles and Salisbury, 1995, who describe it for a point instead of a tool).
+/// The proxy is a copy of the tool that never enters the environment. The proxy follows the tool, and a spring pulls
+/// the tool to the proxy. The proxy always has the orientation of the tool, so only the translation x of the proxy is
+/// free: three unknowns.
 ///
 /// Each pass computes the constraints on the proxy (ProxyConstraints) and moves it to the allowed position
 /// nearest to the tool (nearest_allowed). A move is at most as long as the margin, so that the proxy cannot
 /// reach points beyond the margin, for which it has no constraints.
 ///
-/// Guarantee: after a pass, no shell point is inside the proxy by more than kViolationTolerance times the margin,
-/// if the contacts of this pass do not contradict each other and the move was not scaled because points were
-/// inside. Reason: the constraints are conservative (the tool is convex), and for a proxy without penetration
-/// they also hold for a part of the move. If contacts contradict each other (a slot narrower than the tool),
-/// the proxy takes the least-squares compromise, and each wall that it enters counts as one more spring of
-/// stiffness K.
+/// Guarantee: after a pass, no shell point is inside the proxy by more than kViolationTolerance times the margin, if
+/// the contacts of this pass do not contradict each other and the pass did not scale the depths (see below). Reason:
+/// the linear constraints are conservative, because the tool is convex. If no point is inside the proxy, they also hold
+/// for a move that is shortened to the margin. If contacts contradict each other, for example in a slot narrower than
+/// the tool, the proxy takes the least-squares compromise, and each wall that the proxy enters counts as one more
+/// spring of stiffness K.
 ///
 /// Points may be inside the proxy if the proxy was placed on them, or if walls leave no room for it. Moving the proxy
 /// out in one step would throw the tool out. The depths are therefore scaled so that the deepest point leaves at
@@ -140,9 +141,9 @@ class ProxyRendering final : public ForceAlgorithm {
     out.friction = damping_and_limits_.friction_state();
   }
 
-  /// Returns the energy stored in the spring between tool and proxy, in friction and in violated contacts, and a moment
-  /// about the proxy's tip centre. It is the moment of the forces K lambda_i with which the points that hold the proxy
-  /// back push the proxy.
+  /// Returns an energy and a moment. The energy is stored in the spring between tool and proxy, in friction and in
+  /// violated contacts. The moment about the proxy's tip centre is the moment of the forces K lambda_i with which the
+  /// points that hold the proxy back push the proxy.
   SpringState spring_state(const ToolState&, const ContactBuffer&) const noexcept override {
     if (K_ == 0.0) return {};
     SpringState state{spring_.squaredNorm() / (2.0 * K_) + damping_and_limits_.stored_energy(), Vec3::Zero()};
@@ -290,7 +291,8 @@ class ProxyRendering final : public ForceAlgorithm {
     }
   }
 
-  /// Moves the proxy towards the tool in passes. Returns false if kMaxProxyPasses passes were not enough.
+  /// Moves the proxy towards the tool in passes. A proxy with points inside makes only one pass. Returns false if this
+  /// pass was shortened to the margin, or if kMaxProxyPasses passes were not enough.
   // NOLINTNEXTLINE(readability-function-cognitive-complexity): the passes share one state.
   bool follow(const ToolPose& tool) noexcept {
     const double margin = constraints_->margin();
@@ -363,8 +365,8 @@ class ProxyRendering final : public ForceAlgorithm {
   std::optional<std::uint64_t> last_query_row_;  ///< step of the last query whose points were searched
   /// Proxy position for which the constraints of the last pass were computed [m].
   Vec3 constraint_position_ = Vec3::Zero();
-  AlignedDoubles constraint_depth_;  ///< depths [m] of the constraints at constraint_position_; used only with linear
-                                     ///< multi-rate contacts
+  /// Depths [m] of the constraints at constraint_position_. Used only if MultiRateSchedule::linear is true.
+  AlignedDoubles constraint_depth_;
 
   bool has_proxy_ = false;  ///< false before the first step
   Vec3 proxy_ = Vec3::Zero();
@@ -382,8 +384,8 @@ class ProxyRendering final : public ForceAlgorithm {
   AlgorithmWork work_;
 };
 
-/// Bound of |f_spring| / K: a proxy placed on the tool moves by at most one margin in each pass, however deep
-/// the contacts are.
+/// Bound of |f_spring| / K in the first step after a reset. The proxy starts at the tool and moves by at most one
+/// margin in each pass, however deep the contacts are. In later steps, the proxy may be farther away from the tool.
 double proxy_bound(const RenderingConfig&, const ToolShape& tool, std::size_t, double) {
   return kMaxProxyPasses * kProxyMargin * tool.half_width();
 }
@@ -395,18 +397,19 @@ AlgorithmEntry proxy_entry() {
       .name = "proxy",
       .summary = "a proxy of the tool never enters the environment, and a spring pulls the tool to the proxy",
       .formula =
-          "x = argmin |x - p|^2 with <m_i, x - x_proxy> <= g_i for all points within the margin (g_i signed "
-          "distance of the point to the tool, m_i the tool's normal there), and with the tool's foremost edge above "
-          "the surface's flat patch about each point; f_spring = K (x - p), S = projector onto the span of the "
-          "active gradients. With a finite rotational_stiffness k the proxy turns, too: (x, theta) = argmin "
-          "K/2 |x - p|^2 + k/2 |Log(phi^T theta)|^2 with no point inside it",
+          "x = argmin |x - p|^2 with <m_i, x - x_proxy> <= g_i for all points within the margin (g_i signed distance "
+          "of the point to the tool, m_i the tool's normal there), and with the tool's foremost edge above the "
+          "surface's flat patch about each point; f_spring = K (x - p), S = projector onto the span of the active "
+          "gradients. With a finite rotational_stiffness k, the proxy also rotates: (x, theta) = argmin K/2 |x - p|^2 "
+          "+ k/2 |Log(phi^T theta)|^2 with no point inside the proxy, where (p, phi) is the pose of the tool",
       .source =
           "not in the thesis; after Zilles and Salisbury 1995 (god-object) and Ruspini et al. 1997, which thesis 1.2 "
           "rejects",
       .known_failure =
-          "after a start in deep penetration, or in a hole that the turned tool does not fit into, points remain "
-          "inside the proxy, which leaves them at 40 half widths of the tool per second; a flat face of the tool "
-          "bumps on a surface whose normals are wrong by more than 6 degrees; no depth model or reduction applies",
+          "after a start in deep penetration, or in a hole that is too narrow for the rotated tool, points remain "
+          "inside the proxy; the proxy then moves out at 40 half widths of the tool per second; a flat face of the "
+          "tool moves unevenly on a surface whose normals are wrong by more than 6 degrees; no depth model or "
+          "reduction applies",
       .parameters = kStiffnessAlone,
   };
   return {.info = &kInfo,

@@ -64,8 +64,8 @@ class TurningProxy final : public ForceAlgorithm {
     out.friction = damping_and_limits_.friction_state();
   }
 
-  /// Returns the energy of both springs and of friction, and the moment about the proxy's tip centre of the forces with
-  /// which the points that hold the proxy push it.
+  /// Returns an energy and a moment. The energy is stored in both springs and in friction. The moment about the proxy's
+  /// tip centre is the moment of the forces with which the points that hold the proxy push the proxy.
   SpringState spring_state(const ToolState&, const ContactBuffer&) const noexcept override {
     if (springs_.stiffness == 0.0) return {};
     const Vec3 twist = spring_torque(springs_, proxy_);

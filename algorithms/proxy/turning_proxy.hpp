@@ -15,8 +15,8 @@ bool turns(const RenderingConfig& config);
 /// |Log(phi^T theta)|^2 among the poses in which every shell point is outside of the proxy (six_dof::ToolEquilibrium).
 /// The force is f_spring = K (x - p); the moment of the rotational spring is not rendered.
 ///
-/// `force_point`: distance [m] from the tip centre back to the force point. The translational spring acts at this
-/// point, and the proxy rotates about it.
+/// `force_point`: distance [m] from the tip centre to the force point, along the tool's axis and away from the tip. The
+/// translational spring acts at the force point, and the proxy rotates about the force point.
 ///
 /// S = U^T (U U^T + K/k V V^T)^-1 U with the rows u_i of U and r_i x u_i of V, for the points that hold the proxy. r_i
 /// is the vector from the force point to point i. S satisfies 0 <= S <= I. Apart from a term from the curvature of the

@@ -21,9 +21,10 @@ constexpr double kMaxSubsteps = 64.0;
 /// counts as converged when this imbalance changes by at most this value [N] between two calls at the same pose. The
 /// rounding error of a force of 20 000 N/m times 10 mm is 1e-13 N.
 constexpr double kExact = 1e-11;
-/// Change of the force for difference quotients [N]. It moves the handle by 20 nm at 500 N/m.
+/// Change of the force for difference quotients [N]. It moves the handle by 20 nm if the hand has a stiffness of 500
+/// N/m.
 constexpr double kForceStep = 1e-5;
-/// Smallest fraction of a Newton step in the line search.
+/// Smallest fraction of a Newton step that the line search tries.
 constexpr double kSmallestStep = 1.0 / 1024.0;
 
 /// Limits for a law with a memory. kMaxSettling: largest number of repeated calls at one pose. kStillMoves: if the line

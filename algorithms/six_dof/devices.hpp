@@ -11,13 +11,13 @@
 /// force (3-DOF). Both follow the same path of the hand's intent, which starts in free space.
 namespace hapbench::six_dof {
 
-/// A hand that holds a handle, and the coupling between handle and tool.
+/// Springs of a hand that holds a handle, and of the coupling between handle and tool.
 struct HandAndCoupling {
-  double coupling = 0.0;           ///< K_t [N/m]
-  double coupling_rotation = 0.0;  ///< K_r [N m/rad]
-  double hand = 0.0;               ///< K_h [N/m]
-  double hand_rotation = 0.0;      ///< K_phi [N m/rad], about the grip
-  double force_point = 0.0;        ///< distance from the tip centre back to the force point [m]
+  double coupling = 0.0;           ///< K_t, translational stiffness of the coupling [N/m]
+  double coupling_rotation = 0.0;  ///< K_r, rotational stiffness of the coupling [N m/rad]
+  double hand = 0.0;               ///< K_h, translational stiffness of the hand [N/m]
+  double hand_rotation = 0.0;      ///< K_phi, rotational stiffness of the hand about the grip [N m/rad]
+  double force_point = 0.0;        ///< distance from the tip centre to the force point, away from the tip [m]
   double grip = 0.0;               ///< c, distance from the force point to the grip, towards the tip [m]
 
   /// Returns K_r K_phi / (K_r + K_phi) [N m/rad]. A proxy with this rotational stiffness renders the force of a 6-DOF
@@ -27,7 +27,7 @@ struct HandAndCoupling {
 
 /// Pose to which the hand pulls the handle.
 struct Intent {
-  Vec3 grip = Vec3::Zero();                                         ///< q* [m]
+  Vec3 grip = Vec3::Zero();                                         ///< q*, position of the grip [m]
   Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();  ///< phi*, from the tool frame to the world frame
 };
 
@@ -45,9 +45,10 @@ struct Handle {
 inline constexpr double kJump = 0.1;
 inline constexpr int kBisections = 6;
 
-/// Reference device that renders force and torque: tool, coupling and hand are in equilibrium. When the intent changes
-/// continuously, the equilibrium is the local minimum of the energy that follows continuously. It need not be the
-/// global minimum, which for a tool in a hole may lie outside of the hole.
+/// Reference device that renders force and torque: tool, coupling and hand are in equilibrium, at a local minimum of
+/// the energy. When the intent changes continuously, the device follows the local minimum that changes continuously
+/// with the intent. This local minimum need not be the global minimum: for a tool in a hole, the global minimum may lie
+/// outside of the hole.
 class SixDofDevice {
  public:
   /// Shell and tool must outlive the device.
@@ -56,10 +57,12 @@ class SixDofDevice {
   void reset() noexcept;
   /// Result of follow().
   struct Step {
-    bool solved = true;   ///< true if the pose is an equilibrium; false if there is no room for the tool or the search
-                          ///< did not converge
-    bool jumped = false;  ///< true if the pose does not continuously follow from the previous pose
-    double residual = 0.0;  ///< largest residual of the step's equilibria [N]; see ToolEquilibrium::Outcome
+    /// True if the pose is an equilibrium. False if there is no room for the tool or the search did not converge.
+    bool solved = true;
+    /// True if the tool jumped: in a sub-step that was not bisected again, a point of the tool moved farther than kJump
+    /// allows.
+    bool jumped = false;
+    double residual = 0.0;  ///< largest residual of the equilibria in the step [N]; see ToolEquilibrium::Outcome
   };
   /// Moves the intent from its previous value to `intent`, and the tool to the equilibrium. The first call starts in
   /// free space. Allocates nothing.
@@ -88,7 +91,8 @@ class SixDofDevice {
 inline constexpr double kBalanced = 1e-3;
 
 /// A device that renders the force of a law and no torque. The hand yields to the force f and to its moment about the
-/// grip: K_phi Log(phi*^T phi) = -c e x f, with the symbols of PoseSprings.
+/// grip: K_phi Log(phi*^T phi) = -c e x f, with the rotation phi and the axis e of the handle, the intended rotation
+/// phi* and the distance c from the force point to the grip.
 class ThreeDofDevice {
  public:
   /// `config`: the force law or proxy, and its stiffness. `dt`: time step [s]. Shell and tool must outlive the device.

@@ -14,8 +14,8 @@ Mat3 symmetric(const Mat3& m) noexcept {
 }
 
 /// Returns `rest` plus the second derivative of K/2 |w|^2 with respect to the handle's rotation, with w = x + c e - q*,
-/// `arm` = c e and `force` = K w. Omits the term with the second derivative of e if this term would make the sum
-/// indefinite, which can happen with a large force towards the grip.
+/// `arm` = c e and `force` = K w (symbols: see PoseSprings). Omits the term with the second derivative of e if this
+/// term would make the sum indefinite, which can happen with a large force towards the grip.
 Mat3 grip_hessian(const PoseSprings& springs, const Vec3& arm, const Vec3& force, const Mat3& rest) noexcept {
   const Mat3 cross = cross_matrix(arm);
   const Mat3 first = springs.stiffness * cross.transpose() * cross;

@@ -19,11 +19,11 @@ using Mat6 = Eigen::Matrix<double, 6, 6>;
 /// where p is the handle's force point; the hand pulls the grip to q*. K = K_t K_h / (K_t + K_h) is the stiffness of
 /// coupling (K_t) and hand (K_h) in series, because p is eliminated exactly. If K_phi is infinite, phi = phi*.
 struct PoseSprings {
-  double stiffness = 0.0;                                      ///< K [N/m]
-  double coupling_rotation = 0.0;                              ///< K_r [N m/rad]
-  double hand_rotation = 0.0;                                  ///< K_phi [N m/rad]; may be infinite
-  double grip = 0.0;                                           ///< c [m], from the force point towards the tip
-  Vec3 grip_target = Vec3::Zero();                             ///< q* [m]
+  double stiffness = 0.0;                                      ///< K [N/m], of coupling and hand in series
+  double coupling_rotation = 0.0;                              ///< K_r [N m/rad], of the coupling
+  double hand_rotation = 0.0;                                  ///< K_phi [N m/rad], of the hand; may be infinite
+  double grip = 0.0;                                           ///< c [m], from force point to grip, towards the tip
+  Vec3 grip_target = Vec3::Zero();                             ///< q*, to which the hand pulls the grip [m]
   Eigen::Quaterniond target = Eigen::Quaterniond::Identity();  ///< phi*, from the tool frame to the world frame
 
   bool handle_turns() const noexcept;

@@ -19,15 +19,16 @@ constexpr double kQueryMargin = 1.0 + 1e-6;
 /// Relative step of the difference quotients for the second derivatives of the constraints. Their error, of second
 /// order in the step, affects the speed of convergence but not the solution.
 constexpr double kDifference = 1e-4;
-/// Tolerances of a quadratic program, relative to its largest length (1e-4 m). The second tolerance is used only if the
-/// program is not solved with the first. The first corresponds to 1e-17 m, ten times the rounding error of a depth.
-/// Constraints of points on one straight line of the tool's surface are linearly dependent up to rounding, and may
-/// contradict each other within the first tolerance. The second corresponds to 1e-15 m, or 2e-11 N at 20 000 N/m.
+/// Tolerances of a quadratic program, relative to the largest of the depths and of the components of the wanted motion,
+/// about 1e-4 m. The second tolerance is used only if the program is not solved with the first. The first corresponds
+/// to 1e-17 m, ten times the rounding error of a depth. Constraints of points on one straight line of the tool's
+/// surface are linearly dependent up to rounding, and may contradict each other within the first tolerance. The second
+/// corresponds to 1e-15 m, or 2e-11 N at 20 000 N/m.
 constexpr double kProgramTolerances[] = {1e-13, 1e-11};
-/// Length of the first move off a saddle, in margins. Later moves are longer.
+/// Length of the first move off a saddle of the energy, relative to margin(). Later moves are longer.
 constexpr double kNudge = 0.02;
-/// Smallest move off a saddle relative to the first move, used if another point blocks a longer move: 2e-12 m for a
-/// drill of 1 mm.
+/// Smallest move off a saddle relative to the first move, used if another point blocks a longer move. It is 2e-12 m for
+/// a drill with a diameter of 1 mm.
 constexpr double kShortestNudge = 1e-6;
 /// Smallest stiffness in any direction of a quadratic program, relative to the stiffness of the springs in this
 /// direction.
@@ -114,8 +115,8 @@ void ToolEquilibrium::find_constraints(const CoupledPose& pose) noexcept {
     if (contacts_.depth[i] > 0.0) contacts_.depth[i] *= recovery_ / deepest_;
 }
 
-/// Returns the sum of lambda_i times the second derivative of -g_i with respect to the tool's motion, over the points
-/// that held the tool in the last pass.
+/// Returns the sum, over the points that held the tool in the last pass, of the load lambda_i times the second
+/// derivative of -g_i with respect to the tool's motion. g_i is the signed distance of point i to the tool.
 Mat6 ToolEquilibrium::curvature(const CoupledPose& pose) noexcept {
   Mat6 sum = Mat6::Zero();
   if (holding_count_ == 0) return sum;
@@ -243,9 +244,9 @@ double ToolEquilibrium::room(const Vec6& z) const noexcept {
   return fraction;
 }
 
-/// Returns the n-th move off a saddle, n >= 0. The energy decreases equally in both directions, but other points may
-/// block one of them. The first move takes the direction with more room, the second the opposite direction. Each
-/// further pair of moves is twice as long.
+/// Returns the n-th move off a saddle, n >= 0. The energy decreases equally along +`descent` and -`descent`, but other
+/// points may block one of these directions. The first move takes the direction with more room, the second move takes
+/// the opposite direction. Each further pair of moves is twice as long.
 Vec6 ToolEquilibrium::nudge(const Vec6& descent, int n) const noexcept {
   const double first = kNudge * margin_;
   Vec6 z = first / displacement(descent) * descent;

@@ -45,8 +45,9 @@ class ToolEquilibrium {
   /// outlive the object.
   ToolEquilibrium(const PointShell& shell, const ToolShape& tool, double force_point, Skips skips);
 
-  /// Result of a search. `residual` [N] is the largest of these values: the unbalanced force; the unbalanced moment
-  /// divided by the reach of the tool; K times the violation of a constraint; and lambda_i |g_i| divided by the margin.
+  /// Result of a search. `residual` [N] is the largest of these values: the unbalanced force on the tool; the
+  /// unbalanced moments on tool and handle, divided by the reach of the tool; K times the largest violation of a
+  /// constraint; and lambda_i |g_i| of each point that holds the tool, divided by the margin.
   struct Outcome {
     bool solved = false;    ///< the residual is at most kSolved, and the second derivatives show a minimum
     bool feasible = false;  ///< the constraints of the last pass do not contradict each other
@@ -78,8 +79,8 @@ class ToolEquilibrium {
   double deepest() const noexcept { return deepest_; }
   /// Sets the largest depth [m] in the constraints of a pass, so that points inside the tool leave it slowly. If a
   /// point is deeper than `depth`, one factor scales all positive depths, so that the largest depth becomes `depth`. A
-  /// search ends after a pass with scaled depths. If `depth` is finite, it also ends after a pass without room for the
-  /// tool. `depth` is infinite by default.
+  /// search ends after a pass with scaled depths. If `depth` is finite, it also ends after a pass whose constraints no
+  /// pose satisfies. `depth` is infinite by default.
   void set_recovery(double depth) noexcept { recovery_ = depth; }
   void reset() noexcept;
   const SearchWork& work() const noexcept { return near_->work(); }

@@ -27,9 +27,9 @@ const ModelInfo kEnergyTankInfo = {
     .formula = "T <- min(C, T + absorbed); f - (<f, v> dt - max(T, 0)) / (|v|^2 dt) v where <f, v> dt > max(T, 0)",
     .source = "Franken, Stramigioli, Misra, Secchi and Macchelli 2011; Ferraguti et al. 2015; along the velocity: ours",
     .known_failure =
-        "with a capacity below the energy of the pressed springs, their push back is reduced; it reduces push and "
-        "never damps, so that a vibration that creates no energy continues; it does not predict energy that an "
-        "explicit step of a virtual mass creates within the step",
+        "with a capacity below the energy of the pressed springs, the force with which they push back is reduced; the "
+        "tank reduces forces but adds no damping, so that a vibration that creates no energy continues; the tank does "
+        "not predict energy that an explicit step of a virtual mass creates within the step",
     .parameters = kTankParameters,
 };
 
@@ -37,15 +37,15 @@ const ModelInfo kActuatorLimitedPassivityInfo = {
     .name = "actuator_limited_passivity",
     .summary = "force stage: time-domain passivity control with damping that every actuator can render",
     .formula =
-        "W = <f, v> - E / dt > 0 is dissipated by f1 = f - a1 <v, n> n, n = f / |f|, then f2 = f1 - a2 (v - <v, n> "
-        "n); a1 = W / <v, n>^2 and a2 = (W - a1 <v, n>^2) / |v - <v, n> n|^2, each at most b and such that |f_j| <= "
-        "F_j; the rest stays owed",
+        "W = <f, v> - E / dt > 0 is dissipated by f1 = f - a1 <v, n> n, n = f / |f|, then f2 = f1 - a2 (v - <v, n> n); "
+        "a1 = W / <v, n>^2 and a2 = (W - a1 <v, n>^2) / |v - <v, n> n|^2, each at most b and such that |f_j| <= F_j; "
+        "the rest of W is dissipated in later steps",
     .source =
         "Hannaford and Ryu 2002; priority of the force's direction and limits of each actuator after the abstract of "
         "Porcini and Frisoli 2026 (arXiv 2603.26347); the formulas are our derivation",
     .known_failure =
-        "predicts the next step by the velocity alone: energy of a force that throws the tool within a step is "
-        "dissipated only afterwards, too late if the explicit step of a virtual mass is unstable; dissipated energy "
+        "predicts the next step by the velocity alone: the energy of a force that accelerates the tool within a step "
+        "is dissipated only afterwards, too late if the explicit step of a virtual mass is unstable; dissipated energy "
         "is credit, which may hide a vibration; a rotation of the tool that lifts it counts as created energy",
     .parameters = kActuatorParameters,
 };
@@ -86,9 +86,9 @@ Vec3 ActuatorLimitedPassivity::force(const StageStep& step) noexcept {
   double owed = f.dot(v) - step.energy / dt_;  // power to dissipate [W]
   if (size == 0.0 || !(owed > 0.0)) return f;
   const Vec3 limit = config_.max_force.value_or(Vec3::Constant(std::numeric_limits<double>::infinity()));
-  // Returns the force g plus a damping force on the velocity component `part`. The damping a is the smallest that
-  // dissipates the power `owed`, but at most max_damping_. Keeps the force within the limits, |g - a part|_j <= F_j for
-  // each axis j.
+  // Returns g - a `part`: the force g, minus the damping a times the velocity component `part`. a is the smallest
+  // damping that dissipates the power `owed`. It is at most max_damping_, and at most the damping that keeps the force
+  // within the limits, |g - a part|_j <= F_j for each axis j.
   const auto damped = [&](const Vec3& g, const Vec3& part) -> Vec3 {
     double a = std::min(max_damping_, owed / part.squaredNorm());
     for (int j = 0; j < 3; ++j) {
@@ -144,7 +144,7 @@ void StagedRendering::compute(const ToolState& tool, ContactBuffer& contacts, Re
   const Vec3 answer =
       limited_to(stage_->force({out.rendered, tool.velocity, rendered_energy_.energy()}), config_.max_force);
   rendered_energy_.answer(tool, answer, springs);
-  // Store the change for further states within the step.
+  // Store the change of the force. It is also added at further states that an integrator evaluates within the step.
   if (answer == out.rendered) {
     change_.setZero();
     return;

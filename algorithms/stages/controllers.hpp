@@ -136,10 +136,11 @@ class StagedRendering final : public ForceAlgorithm {
 /// the largest change of rotation between two steps so far. For this uncertainty the controller keeps an energy in
 /// reserve: the norm of the moment times this largest change. In free air the controller renders nothing.
 ///
-/// Guarantee for the leapfrog integrator and a free position: E is never negative, up to rounding, while no
-/// change of the rotation exceeds twice the largest earlier change. (In a run that starts in contact, the first
-/// rotation exceeds it.) The force is bitwise unchanged for a law whose observed energy stays >= 0 without the
-/// controller, if the axis is fixed; if the axis turns, it is unchanged while this energy stays above the reserve.
+/// Guarantee for the leapfrog integrator and a free position: E is never negative, up to rounding, while no change of
+/// the rotation between two steps exceeds twice the largest earlier change. In a run that starts in contact, the first
+/// rotation exceeds this bound, because there is no earlier change. For a law whose observed energy stays >= 0 without
+/// the controller, the force is bitwise unchanged if the tool's axis is fixed. If the axis turns, the force is
+/// unchanged while this energy stays above the reserve.
 /// Another integrator, or a jerk for which the reserve is too small, may make E negative; the next steps in contact
 /// then dissipate this debt.
 class PassivityController final : public ForceAlgorithm {

@@ -75,11 +75,11 @@ const ModelInfo kDampingAndLimitsInfo = {
     .name = "damping_and_limits",
     .summary = "normal damping, tangential friction and optional limits, the same for every algorithm",
     .formula =
-        "f_dn = -B S v, B = 2 zeta sqrt(K M); f_dt = -(mu_s + mu_f |f_spring|)(v - S v); B scaled to "
-        "lambda_max(B S) <= B_max; |f_render| <= F_max. With angular_damping S v + sum c_i <omega x r_i, u_i> u_i in "
-        "place of S v, v + omega x r_mean in place of v. Hunt-Crossley damping: f_dn = -chi sum N_i <v, u_i> u_i, "
-        "N_i = K c_i d_i. Dry friction: g = K_t e + (K_t dt + B_t) P v cut to mu sum N_i, P = I - sum N_i u_i u_i^T / "
-        "sum N_i, e <- (dt g + B_t e) / (K_t dt + B_t), f_dt = -P g",
+        "f_dn = -B S v, B = 2 zeta sqrt(K M); f_dt = -(mu_s + mu_f |f_spring|)(v - S v); B scaled to lambda_max(B S) "
+        "<= B_max; |f_render| <= F_max. With angular_damping, S v + sum c_i <omega x r_i, u_i> u_i replaces S v, and v "
+        "+ omega x r_mean replaces v. Hunt-Crossley damping: f_dn = -chi sum N_i <v, u_i> u_i, N_i = K c_i d_i. Dry "
+        "friction: g = K_t e + (K_t dt + B_t) P v, limited to mu sum N_i, P = I - sum N_i u_i u_i^T / sum N_i, e <- "
+        "(dt g + B_t e) / (K_t dt + B_t), f_dt = -P g",
     .source =
         "thesis 2.5, 2.6, A.2.1, B.2, C.4.3; mu_s and mu_f, called Coulomb friction there, are viscous; "
         "angular_damping is not in the thesis and follows the future work of 4.3 and 4.4; dry friction after Kikuuwe "

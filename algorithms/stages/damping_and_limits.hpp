@@ -82,16 +82,16 @@ inline Vec3 limited_to(const Vec3& force, const std::optional<double>& limit) no
   return limit && length > *limit ? Vec3(force * (*limit / length)) : force;
 }
 
-/// Damping, friction and limits, identical for all laws (thesis 2.5, 2.6, A.2.1, B.2, C.4.3). Formulas and symbols:
-/// kDampingAndLimitsInfo. The friction coefficients mu_s and mu_f are viscous, although the thesis calls them Coulomb
-/// friction.
+/// Damping, friction and limits, identical for all laws (thesis sections 2.5, 2.6, A.2.1, B.2, C.4.3). Formulas and
+/// symbols: kDampingAndLimitsInfo. The friction coefficients mu_s and mu_f are viscous, although the thesis calls them
+/// Coulomb friction.
 ///
-/// Without angular damping, a tool that only rotates is not damped (thesis 4.4). With angular damping, the velocity at
-/// contact i is the velocity of the tool's material at this contact, v_i = v + omega x r_i, where r_i is the vector
-/// from the tip centre to the contact. omega is the angular velocity of the previous step after a low-pass filter,
-/// because a trembling hand rotates the tool much faster than it translates it. `ContactVelocity::mean` uses the mean
-/// of the arms r_i with the weights c_i of the contacts. u_i is the unit vector along the spring force of contact i.
-/// For a law that is not made of weighted springs, ForceLaw::turning_velocity defines the normal velocity.
+/// Without angular damping, a tool that only rotates is not damped (thesis section 4.4). With angular damping, the
+/// velocity at contact i is the velocity of the tool's material at this contact, v_i = v + omega x r_i, where r_i is
+/// the vector from the tip centre to the contact. omega is the angular velocity of the previous step after a low-pass
+/// filter. The filter is needed because, when the hand trembles, the velocities omega x r_i are much larger than v.
+/// `ContactVelocity::mean` uses the mean of the arms r_i with the weights c_i of the contacts. u_i is the gradient of
+/// contact i. For a law that is not made of weighted springs, ForceLaw::turning_velocity defines the normal velocity.
 ///
 /// Guarantee: the dampers of weighted springs take the power B sum c_i <v_i, u_i>^2 >= 0 from the motion of the tool.
 ///

@@ -168,14 +168,14 @@ class GradientReduction final : public PointStage {
     // Keep the pointers in local variables, so that the program does not load them again for each test.
     const double *const ux = c.ux.data(), *const uy = c.uy.data(), *const uz = c.uz.data(), *const d = c.depth.data();
     const auto first = [i](unsigned lanes) { return i + static_cast<std::size_t>(std::countr_zero(lanes)); };
-    // Returns the lanes, out of `lanes`, that are not similar to the contact at index `index`, which is kept as
-    // number k.
+    // Writes the kept contact k: the contact at index `index`, or the contact in `lanes` that replaces this contact.
+    // Returns the subset of `lanes` whose contacts are not similar to the kept contact.
     const auto refused_by = [&](std::size_t k, std::size_t index, unsigned lanes) {
       unsigned refused = 0;
       for (;;) {
         const Pack inner = x * Pack(ux[index]) + y * Pack(uy[index]) + z * Pack(uz[index]);
         const unsigned similar = simd::bits(inner > threshold) & lanes;
-        // Most kept contacts are similar to none of the eight, so their depth is not compared.
+        // Most kept contacts are similar to no contact of the pack. Skip the comparison of depths for them.
         const unsigned deeper = similar == 0 ? 0 : simd::bits(depth > Pack(d[index])) & similar;
         if (deeper == 0) {
           if (index != k) c.copy(index, k);

@@ -9,9 +9,9 @@ namespace hapbench {
 
 /// Number of projections of a position onto the local plane in SmoothedSurface::nearest.
 constexpr int kProjections = 3;
-/// A path ends where the sine of the angle between its direction and the normal falls below this value. The path also
-/// ends if a step advances by less than this value squared times the length of the step: beyond the border of a
-/// surface, all projections lie on the border.
+/// A path ends where the sine of the angle between its direction and the surface's normal falls below kMinProgress. The
+/// path also ends if a step of length h advances along its direction by less than kMinProgress^2 h. Such a step occurs
+/// at the border of the surface, because all positions beyond the border are projected onto the border.
 constexpr double kMinProgress = 0.1;
 
 /// Calls visit(i) for all points i in the grid cells that intersect the cube with this centre and half width [m]. Some
@@ -118,8 +118,8 @@ SurfacePath SurfacePath::over(const SmoothedSurface& surface, std::span<const Ve
   return {surface, projections};
 }
 
-/// Returns positions on the surface from `first` along the unit vector `forward`, about `step` [m] apart, over `length`
-/// [m]. Ends earlier where a path ends (kMinProgress).
+/// Returns positions on the surface, about `step` [m] apart, on a path of `length` [m] that starts at `first` and
+/// follows the unit vector `forward`. The path is shorter if it ends earlier (kMinProgress).
 static std::vector<SurfacePoint> walk(const SmoothedSurface& surface, const SurfacePoint& first, const Vec3& forward,
                                       double length, double step) {
   std::vector<SurfacePoint> points = {first};

@@ -27,10 +27,11 @@ class SmoothedSurface {
   SmoothedSurface(const PointShell& shell, double radius) : shell_(shell), grid_(shell), radius_(radius) {}
 
   double radius() const { return radius_; }
-  /// Returns the projection of `at` [m] onto the surface, and the outward normal there. Starts at the nearest shell
-  /// point and projects `at` three times onto the plane near the last position. Stops before a position without
-  /// neighbours, for example further than R beyond the surface's border. Cost: if `at` has the distance a to the shell,
-  /// visits the points within about a of `at` once, and the points within R three times.
+  /// Returns the projection of `at` [m] onto the surface, and the outward normal there. The first position is the
+  /// nearest shell point. Three times, the projection of `at` onto the plane of the last position's neighbours becomes
+  /// the new position. Stops before a position without neighbours, for example a position further than R beyond the
+  /// surface's border. Cost: visits the shell points within about a of `at` once, where a is the distance from `at` to
+  /// the shell, and the shell points within R of each position.
   SurfacePoint nearest(const Vec3& at) const;
 
  private:
@@ -105,11 +106,11 @@ struct Drag {
 ///
 ///   f = -F n + (I - n n^T) (k (q - x) + b (dq/dt - v)) - b_n <v, n> n.
 ///
-/// with k, b and b_n as in Drag. Along the normal only F and a damping act, so the tool presses with F whatever the
-/// stiffness of the surface. Before the first contact, the same rule lowers the tool. Normals on the path alone
-/// would not be enough: a tool pressed along a fixed direction slides sideways off a ridge of radius r if F / r >
-/// k. The force does not depend on the rendered force, so the hand is the same for every algorithm. A step takes a
-/// dozen table look-ups and allocates nothing.
+/// with k, b and b_n as in Drag. Along the normal, only F and the damping b_n act, so the tool presses with F whatever
+/// the stiffness of the surface. Before the first contact, the same force lowers the tool. n must also change to the
+/// sides of the path: if the direction of F were fixed there, the tool would slide sideways off a ridge of radius r if
+/// F / r > k. The hand's force does not depend on the rendered force, so the hand is the same for every algorithm. A
+/// step takes a dozen table look-ups and allocates nothing.
 class DragHand final : public Hand {
  public:
   DragHand(Drag drag, std::shared_ptr<const SurfacePath> path) : drag_(std::move(drag)), path_(std::move(path)) {}
@@ -142,8 +143,8 @@ class DragHand final : public Hand {
 /// the path. The position is free. Allocates nothing.
 class DragOrientation final : public Motion {
  public:
-  /// The tool leans by `tilt` [rad] away from the outward normal. It leans towards the direction of travel, rotated
-  /// by `azimuth` [rad] about the normal. `speed` [m/s] as in Drag.
+  /// The shank of the tool is tilted by `tilt` [rad] from the outward normal. The direction of the tilt is the
+  /// direction of travel, rotated by `azimuth` [rad] about the normal. `speed` [m/s] as in Drag.
   DragOrientation(std::shared_ptr<const SurfacePath> path, double speed, double tilt, double azimuth)
       : path_(std::move(path)), speed_(speed), tilt_(tilt), azimuth_(azimuth) {}
 

@@ -43,8 +43,8 @@ struct Subject {
 /// of Subject. Allocates only in the constructor.
 class TrackingHand final : public Hand {
  public:
-  /// `initial_tilt`: tilt of the wrist [rad], which changes only with the height display. `dt`: sampling interval
-  /// [s].
+  /// `initial_tilt`: tilt of the wrist at the start [rad]. The tilt changes later only if the display is the height
+  /// meter. `dt`: sampling interval [s].
   TrackingHand(const Subject& subject, TargetTask task, double initial_tilt, double dt, std::uint64_t seed);
 
   void reset() noexcept override;

@@ -33,14 +33,14 @@ class MountRotation {
 struct LiveRendererConfig {
   bool is_admittance = false;
   bool wants_torque = false;
-  HapbenchMount mount = HAPBENCH_MOUNT_INIT;  ///< checked mount, in which each force limit is the smaller of the limits
-                                              ///< of the mount and of the scenario
+  /// The caller's mount after all checks. Each force limit is the smaller of the limits of caller and scenario.
+  HapbenchMount mount = HAPBENCH_MOUNT_INIT;
   std::optional<VelocityFilterConfig> velocity_filter = {};
   std::optional<LowPassFilter> position_filter = {};
   std::optional<double> input_force_limit = {};  ///< [N]
 };
 
-/// Renders measured poses, call by call. Allocates in the constructor only.
+/// Computes the force for one measured pose in each call of `step`. Allocates in the constructor only.
 class LiveRenderer {
  public:
   /// Throws the exceptions of the constructor of LiveLoop.

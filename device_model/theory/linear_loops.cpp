@@ -19,7 +19,7 @@ Eigen::VectorXcd eigenvalues(const Eigen::MatrixXd& A) {
 namespace {
 
 /// Range of K T^2 / m (dimensionless) in which linear_stability_limit() searches. Below this range, the eigenvalues are
-/// so close to 1 that rounding decides about the stability.
+/// so close to 1 that rounding decides whether the loop counts as stable.
 constexpr double kMinLimit = 1e-8;
 constexpr double kMaxLimit = 1e6;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -37,8 +37,9 @@ bool has_sampled_hand(const SampledLoop& loop) {
   return loop.sampled_stiffness != 0.0 || loop.sampled_damping != 0.0;
 }
 
-/// Returns motion_rate for an elastic transmission; the state is (x, T v) of the motors, (x, T v) of the handle and
-/// the scaled forces.
+/// Returns the matrix of motion_rate() for a device with an elastic transmission. The components of z are x and T v of
+/// the motors, x and T v of the handle, and the scaled forces: T^2/m f on the motors and, with a sampled hand, T^2/m
+/// f_hand on the handle.
 Eigen::MatrixXd elastic_motion_rate(const SampledLoop& loop, const Transmission& transmission) {
   const double T = loop.period, motor = transmission.motor_share * loop.device.handle_mass,
                handle = loop.moving_mass() - motor, k = transmission.stiffness * T * T, d = transmission.damping * T;
@@ -54,8 +55,8 @@ Eigen::MatrixXd elastic_motion_rate(const SampledLoop& loop, const Transmission&
 }
 
 /// Returns the matrix A of the motion dz/ds = A z, where s is time in periods, z = (x, T v, T^2/m f) and the force
-/// f is constant; with a sampled hand, its constant force T^2/m f_hand is the last component. Sizes here and below
-/// are dynamic, so that the compiler instantiates the matrix exponential only once.
+/// f is constant. With a sampled hand, its constant force gives one more component, T^2/m f_hand. The sizes of the
+/// matrices in this file are dynamic, so that the compiler instantiates the matrix exponential only once.
 Eigen::MatrixXd motion_rate(const SampledLoop& loop) {
   if (loop.device.transmission) return elastic_motion_rate(loop, *loop.device.transmission);
   const double m = loop.moving_mass(), T = loop.period;
@@ -215,9 +216,10 @@ struct ToolStep {
   Eigen::MatrixXd force;  ///< 2 d x d
 };
 
-/// Returns the state matrix of an admittance device in d dimensions, with d components for each component of
-/// AdmittanceLoop::state_matrix(). `hand_stiffness` [N/m], `hand_damping` [N s/m]: linearised force of the hand.
-/// `input`: derivative of the force that drives the virtual mass with respect to the hand's force. All three are d x d.
+/// Returns the state matrix of an admittance device in d dimensions. The state has d components for each component of
+/// the state of AdmittanceLoop::state_matrix(). `hand_stiffness` [N/m], `hand_damping` [N s/m]: linearised force of the
+/// hand. `input`: derivative of the force that drives the virtual mass with respect to the hand's force. These three
+/// matrices are d x d.
 static Eigen::MatrixXd admittance_matrix(const AdmittanceLoop& loop, const ToolStep& tool,
                                          const Eigen::MatrixXd& hand_stiffness, const Eigen::MatrixXd& hand_damping,
                                          const Eigen::MatrixXd& input) {
@@ -341,7 +343,7 @@ bool is_stable_loop(const std::vector<Eigen::MatrixXd>& loop) {
 }
 
 std::vector<Eigen::MatrixXd> contact_loop(const SampledLoop& loop, const LinearContact& contact) {
-  // The map is linear in the four coefficients of wall and sampled hand. A stiffness of `unit`, or a damping of
+  // The map is an affine function of the four coefficients of wall and sampled hand. A stiffness of `unit`, or a damping of
   // `damping_unit`, changes entries of the map by about 1, so that the differences from the free map are accurate.
   const double unit = loop.moving_mass() / (loop.period * loop.period), damping_unit = unit * loop.period;
   const auto map = [&loop](double K, double B, double k, double c) {
@@ -394,8 +396,9 @@ std::optional<double> colgate_schenkel(const SampledLoop& loop) {
   return std::max(0.0, 2.0 * (loop.device.viscous - std::abs(loop.wall_damping)) / loop.period);
 }
 
-/// Coefficients of the passivity condition b > K p + B r at one angle theta = omega T. T is the period and d the delay
-/// in samples. With e = exp(-j theta) and the transfer functions F of the velocity filter and G of the position filter:
+/// Coefficients p and r of the passivity condition b > K p + B r at one angle theta = omega T. b is the viscous
+/// friction of the handle, K and B are stiffness and damping of the wall, T is the period and d the delay in samples.
+/// With e = exp(-j theta) and the transfer functions F of the velocity filter and G of the position filter:
 ///
 ///   p = T/2 Re{(1 - e) G e^d} / (1 - cos theta),   r = 1/2 Re{(1 - e)^2 F e^d} / (1 - cos theta)
 struct PassivityAt {
@@ -411,14 +414,14 @@ PassivityAt passivity_at(const SampledLoop& loop, double theta) {
     return sum;
   };
   const std::complex<double> F = response(velocity_modes(loop)), G = response(position_modes(loop));
-  // Uses 1 - e = 2 j sin(theta/2) e^(1/2) and (1 - e)^2 = -2 (1 - cos theta) e
+  // The formulas follow from 1 - e = 2 j sin(theta/2) e^(1/2) and (1 - e)^2 = -2 (1 - cos theta) e.
   return {loop.period * (G.real() * math::sin(half_delay_angle) - G.imag() * math::cos(half_delay_angle)) /
               (2.0 * math::sin(0.5 * theta)),
           -(F.real() * math::cos(full_delay_angle) + F.imag() * math::sin(full_delay_angle))};
 }
 
-/// Returns the smallest value of f between the angles `low` and `high`. Evaluates f on eight grids; each grid covers
-/// the neighbourhood of the best point of the previous grid.
+/// Returns the smallest value of f between the angles `low` and `high`. Evaluates f on eight grids. Each grid after the
+/// first covers the neighbourhood of the angle at which the previous grids gave the smallest value.
 template <class Function>
 double minimum(Function f, double low, double high, int points) {
   double smallest = kInfinity;
@@ -482,21 +485,21 @@ constexpr StiffnessLimit kLimits[] = {
      .formula = "K < 2 (b - |B|) / T",
      .source =
          "J. E. Colgate, G. Schenkel, Passivity of a class of sampled-data systems, J. Robotic Systems 14(1), 1997",
-     .applies = "no delay, velocity by the difference; passive for every passive hand",
+     .applies = "no delay, velocity filter of type difference; passive for every passive hand",
      .largest = colgate_schenkel},
     {.name = "passive_with_delay",
      .formula = "b > max over theta of K T sin((d + 1/2) theta) / (2 sin(theta/2)) - B Re{F e^(-j (d + 1) theta)}",
      .source =
          "derived for this wall from the general condition of Colgate and Schenkel; F is the velocity filter, and "
          "includes a filter of the position",
-     .applies = "whole delays; passive for every passive hand",
+     .applies = "delay of whole time steps; passive for every passive hand",
      .largest = passive_with_delay},
     {.name = "stable_gil_hulin",
-     .formula = "K < (b + B) / (T/2 + t_d), b with the hand's",
+     .formula = "K < (b + B) / (T/2 + t_d), where b includes the damping of the hand",
      .source = "J. J. Gil, E. Sanchez, T. Hulin, C. Preusche, G. Hirzinger, J. Comput. Inf. Sci. Eng. 9(1), 2009",
      .applies =
-         "an approximation for low damping and short delays, (b + B)(T + t_d) / m <= 0.15 (there at most 14 % above "
-         "the exact limit); velocity by the difference",
+         "an approximation for low damping and short delays, (b + B)(T + t_d) / m <= 0.15, where it is at most 14 % "
+         "above the exact limit; velocity filter of type difference",
      .largest = gil_hulin},
     {.name = "passive_abbott_okamura",
      .formula = "K <= min(2 b / T, 2 c / q)",
@@ -507,7 +510,7 @@ constexpr StiffnessLimit kLimits[] = {
     {.name = "exact_undamped_handle",
      .formula = "K T^2/m < 2 beta (2 - beta) / (2 + beta), beta = B T/m",
      .source = "derived",
-     .applies = "no delay, velocity by the difference, no damping of handle and hand, no spring of the hand",
+     .applies = "no delay, velocity filter of type difference, no damping of handle and hand, no stiffness of the hand",
      .largest = undamped_handle},
 };
 

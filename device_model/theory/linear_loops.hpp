@@ -101,10 +101,11 @@ std::span<const AttachedHand> typical_hands();
 /// hand of `loop`.
 double worst_hand_stability_limit(SampledLoop loop);
 
-/// A limit from the literature on the stiffness K that an impedance device can render. In the texts, b is the
-/// damping of the handle, m the moving mass, B the wall's damping, T the period and t_d = d T the delay.
+/// A limit on the stiffness K that an impedance device can render, from the literature or derived for this project. In
+/// `formula` and `applies`, b is the damping of the handle, m the moving mass, B the wall's damping, T the period and
+/// t_d = d T the delay.
 struct StiffnessLimit {
-  const char* name;     ///< name of the table column and of the curve
+  const char* name;     ///< name of the limit's column in tables and of its curve in plots
   const char* formula;  ///< formula with the symbols defined above
   const char* source;   ///< citation, or "derived"
   const char* applies;  ///< conditions under which the limit is valid

@@ -42,7 +42,8 @@ AtomicFile::AtomicFile(fs::path target)
   // Reject devices and pipes as a target, because the renaming would replace them.
   if (std::error_code unknown; fs::exists(target_, unknown) && !fs::is_regular_file(target_, unknown))
     throw IoError("write", target_, std::make_error_code(std::errc::not_supported));
-  // Open and lock the temporary file. Another writer may rename it between our open and our lock; then open again.
+  // Open and lock the temporary file. If another writer renames the file between our open and our lock, open the
+  // temporary file again.
   int descriptor = -1;
   do {
     descriptor = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
@@ -70,8 +71,8 @@ void AtomicFile::append(std::string_view bytes) noexcept {
 void AtomicFile::complete() {
   assert(file_);
   if (!error_ && std::fflush(file_.get()) != 0) error_ = last_error();
-  // Network file systems report late errors on close. Closing a duplicate of the descriptor checks for them and
-  // keeps the lock.
+  // Network file systems report some write errors only on close. Closing a duplicate of the descriptor reports these
+  // errors and keeps the lock.
   if (!error_) {
     const int duplicate = ::dup(::fileno(file_.get()));
     if (duplicate < 0 || ::close(duplicate) != 0) error_ = last_error();
@@ -108,7 +109,7 @@ void FileSet::commit() {
     if (::unlink(name.c_str()) != 0 && errno != ENOENT && errno != ENOTDIR) throw IoError("remove", name, last_error());
   }
   for (AtomicFile& file : files_) file.rename();
-  // Remove temporary files that a killed process may have left.
+  // Remove the temporary files of the removed files, which a killed process may have left.
   for (const fs::path& name : removed_) ::unlink(temporary_of(name).c_str());
 }
 

@@ -41,8 +41,9 @@ class AtomicFile {
   void append(std::string_view bytes) noexcept;
 
   /// Completes the file and renames it, which replaces an existing target. If an earlier write failed (such as on a
-  /// full disk), removes the temporary file and throws IoError with the first error. If `together` is not null, only
-  /// moves the file to this set, and FileSet::commit completes and renames it. Call once, after the last `append`.
+  /// full disk), removes the temporary file and throws IoError with the first error. If `together` is not null, instead
+  /// only moves the file to this set; FileSet::commit then completes and renames the file. Call once, after the last
+  /// `append`.
   void commit(FileSet* together = nullptr);
 
  private:
@@ -63,9 +64,9 @@ class AtomicFile {
 };
 
 /// A set of files that replace their earlier versions together: if one file cannot be written, all earlier versions
-/// stay. If the process is killed between the first and the last renaming, which takes microseconds a file, a
-/// mixture of old and new files remains. The file added last, such as a summary, is renamed last, so its presence
-/// shows that the set is complete.
+/// stay. Renaming a file takes microseconds. If the process is killed between the first and the last renaming, a
+/// mixture of old and new files remains. The file added last, such as a summary, is renamed last, so its presence shows
+/// that the set is complete.
 class FileSet {
  public:
   /// Adds a file, which gets its final name in `commit`.

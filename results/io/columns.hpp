@@ -69,8 +69,8 @@ inline constexpr Column kTimeColumn = {"time_s", "s", "time of the row, k times 
 /// One cell of a table: empty (an empty cell in CSV, null in JSON), a count, a number, a boolean, or text.
 using Cell = std::variant<std::monostate, std::uint64_t, double, bool, std::string>;
 
-/// Returns the cell that holds a number, count, boolean or text, or an optional of these. An empty optional gives
-/// an empty cell; a Cell is returned unchanged.
+/// Converts a number, count, boolean or text, or an optional of these, to a cell. An empty optional gives an empty
+/// cell; a Cell is returned unchanged.
 template <class Value>
 Cell cell_of(const Value& value) {
   if constexpr (requires { value.has_value(); }) {
@@ -160,7 +160,8 @@ const Metric* find_metric(const MetricList& list, std::string_view name);
 Cell value_of(const MetricList& list, std::string_view name);
 /// Returns a count or a number as a double; empty for all other cells.
 std::optional<double> number_of(const Cell& value);
-/// Returns the value of the metric with this name as a double; empty without such a metric or without a value.
+/// Returns the value of the metric with this name as a double; empty if no metric has this name, or if its value is not
+/// a number.
 inline std::optional<double> number_of(const MetricList& list, std::string_view name) {
   return number_of(value_of(list, name));
 }

@@ -51,8 +51,9 @@ Vec3 HighPass::filter(const Vec3& sample) noexcept {
   return x;
 }
 
-// In steady state the first section maps the constant x to 0, so b0 x + s1 = 0 and s2 = b2 x; the input of the
-// second section is zero. These equations only double numbers and change their signs, so the output is exactly zero.
+// In steady state the first section maps the constant input x to 0, so s1 = -b0 x and s2 = b2 x = b0 x. The input of
+// the second section is then 0. The output is exactly 0, because `filter` then only adds b0 x, -b0 x and -2 b0 x, which
+// involves no rounding.
 void HighPass::settle_at(const Vec3& value) noexcept {
   biquads_[0].s1 = -(biquads_[0].b0 * value);
   biquads_[0].s2 = biquads_[0].b0 * value;
@@ -62,7 +63,7 @@ void HighPass::settle_at(const Vec3& value) noexcept {
 namespace {
 
 std::uint64_t rows_in(double time, double dt) noexcept {
-  // The bound 2^62 exceeds every possible number of steps, and fits into the integer.
+  // The bound 2^62 exceeds every possible number of steps, and fits into std::uint64_t.
   return static_cast<std::uint64_t>(std::min(std::round(time / dt), 0x1p62));
 }
 
@@ -150,8 +151,8 @@ void ContactForces::begin() noexcept {
 
 ContactForces::Phase ContactForces::phase_of_next_row(bool in_contact) noexcept {
   if (in_contact) {
-    // A first touch follows the settling time without contact. If the settling time is 0, one step without contact is
-    // enough.
+    // A first touch is a contact after at least the settling time without contact, or the first contact of the trial
+    // (`begin` sets rows_away_ to settling_rows_). If the settling time is 0, one step without contact is enough.
     const bool first_touch = rows_away_ >= settling_rows_ && (rows_away_ > 0 || !touched_);
     rows_away_ = 0;
     if (first_touch) {
@@ -175,8 +176,8 @@ Vec3 ContactForces::filtered(const Vec3& force, Phase phase) noexcept {
   }
   if (!filtering_) return Vec3::Zero();
   if (rows_away_ <= settling_rows_) return high_pass_->filter(force);
-  // After a long time without contact the output has decayed. Set it to zero, because denormal numbers would be
-  // slow.
+  // After a long time without contact, the output of the filter has decayed. Set the output to zero, because denormal
+  // numbers would be slow.
   if (rows_away_ == settling_rows_ + 1) high_pass_->settle_at(Vec3::Zero());
   return Vec3::Zero();
 }
@@ -207,10 +208,11 @@ ContactForces::Phase ContactForces::add(const Vec3& force, const ForceChange& ch
 void ContactForces::report(Section& s) const {
   const bool landed = landing_rows_ > 0, is_settled = has_settled();
   const auto rows = static_cast<double>(settled_rows_);
-  s.metric("landings", "1",
-           "number of first touches: steps in contact (colliding of trajectory.csv > 0) that follow at least "
-           "metrics.settling_s without contact, or the start of the run; times are rounded to whole steps",
-           landings_);
+  s.metric(
+      "landings", "1",
+      "number of first touches: the first step in contact of the run (colliding of trajectory.csv > 0), and each step "
+      "in contact that follows at least metrics.settling_s without contact; times are rounded to whole steps",
+      landings_);
   s.metric(
       "landing_force_max_N", "N",
       "largest norm of the rendered force, max ||f||, during landings (metrics.settling_s from a first touch on, or "
@@ -249,11 +251,10 @@ void ContactForces::report(Section& s) const {
   s.metric(
       "force_rms_above_30Hz_N", "N",
       "vibration of the rendered force: root mean square of f = (fx_N, fy_N, fz_N) of trajectory.csv after the 30 Hz "
-      "high-pass (as vibration_power_above_30Hz_m2_per_s2) over the steps in settled contact; the filter starts in "
-      "steady state at the first step in settled contact after each landing and also filters the steps without contact "
-      "that follow, until the next landing; after more than metrics.settling_s without contact it restarts at rest; no "
-      "value at sampling rates of "
-      "60 Hz or less or if settled_s < 1/30 s",
+      "high-pass (as vibration_power_above_30Hz_m2_per_s2) over the steps in settled contact. The filter starts in "
+      "steady state at the first step in settled contact after each landing. Until the next landing, it also filters "
+      "the steps without contact, and is reset to zero after more than metrics.settling_s without contact. No value at "
+      "sampling rates of 60 Hz or less or if settled_s < 1/30 s",
       if_any(is_settled && high_pass_.has_value(), std::sqrt(above_cutoff_squares_ / rows)), Better::less);
   s.metric("force_reversals_per_s", "1/s",
            "number of reversals in settled contact per second: steps whose force has a negative inner product with the "

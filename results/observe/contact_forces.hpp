@@ -19,7 +19,7 @@ class MagnitudeHistogram {
   /// sqrt(33 / 32) - 1 = 1.55 %.
   static constexpr double kRelativeError = 0.0078;
   static constexpr double kSmallest = 0x1p-30;  ///< numbers below this value count as 0
-  static constexpr double kLargest = 0x1p20;    ///< numbers from this value on count as infinite
+  static constexpr double kLargest = 0x1p20;    ///< numbers >= this value count as infinite
 
   /// Counts the number whose square is `square`. Precondition: square >= 0; at most 2^32 - 1 numbers in total.
   void add_square(double square) noexcept { ++counts_[bin_of(square)]; }
@@ -32,7 +32,7 @@ class MagnitudeHistogram {
   static constexpr int kDroppedBits = 52 - 5;
   static constexpr std::uint64_t kFirst = std::bit_cast<std::uint64_t>(kSmallest * kSmallest) >> kDroppedBits;
   static constexpr std::uint64_t kEnd = std::bit_cast<std::uint64_t>(kLargest * kLargest) >> kDroppedBits;
-  /// Number of bins, including one bin below kSmallest and one bin from kLargest on.
+  /// Number of bins, including one bin for all numbers < kSmallest and one bin for all numbers >= kLargest.
   static constexpr std::size_t kBins = kEnd - kFirst + 2;
 
   static std::size_t bin_of(double square) noexcept {
@@ -103,7 +103,7 @@ class Vibration {
 /// planned step.
 class LastQuarterVibration {
  public:
-  /// The run has at most `steps` steps of `dt` seconds. Allocates here only.
+  /// The run has at most `steps` steps of `dt` seconds. Only the constructor allocates.
   LastQuarterVibration(std::uint64_t steps, double dt) : steps_(steps), vibration_(dt) {
     if (steps > 0) squares_.reserve(steps / 4 + 1);
   }
@@ -145,18 +145,18 @@ class EvaluationWindow {
   std::optional<std::uint64_t> begin_;
 };
 
-/// If settled contact in a run lasts shorter than this [s], its metrics have no value. The limit is one period at
-/// kVibrationCutoff. Without this minimum, a run in which the tool repeatedly hits the surface and hardly settles would
-/// have the smallest vibration.
+/// Minimum duration of settled contact in a run [s]. If settled contact is shorter, the metrics of settled contact have
+/// no value. The minimum is one period at kVibrationCutoff. Without a minimum, a run in which the tool repeatedly hits
+/// the surface and hardly settles would have the smallest vibration.
 inline constexpr double kMinSettledTime = 1.0 / kVibrationCutoff;
 
-/// Separates landings from settled contact, because the impact of a landing is similar under every algorithm. A
-/// first touch is a step in contact after at least the settling time without contact, or since the start. The steps
-/// within the settling time after a first touch are a landing; all other steps in contact are settled contact.
-/// Times are rounded to whole steps.
+/// Separates landings from settled contact, because the impact of a landing is similar under every algorithm. A first
+/// touch is the first contact of a trial, or a step in contact after at least the settling time without contact. All
+/// steps within the settling time after a first touch are a landing, even steps without contact. All other steps in
+/// contact are settled contact. Times are rounded to whole steps.
 struct SettlingRule {
-  /// If given [s]: all steps before this time are a landing, and all steps in contact from this time on are
-  /// settled.
+  /// Fixed time at which landing ends [s]: all steps before `from` are a landing, and all later steps in contact are
+  /// settled contact. Empty: first touches decide, as described above.
   std::optional<double> from;
   double time = 0.05;  ///< settling time [s]
 };
@@ -177,7 +177,7 @@ class ContactForces {
   /// `dt`: time step [s], > 0.
   ContactForces(double dt, const SettlingRule& rule);
 
-  /// Begins the next trial, without contact so far.
+  /// Begins the next trial, in which the tool has not been in contact yet. Keeps the statistics of earlier trials.
   void begin() noexcept;
   /// Adds the next step and returns its phase. `force`: rendered force [N].
   Phase add(const Vec3& force, const ForceChange& change, bool in_contact) noexcept;
@@ -209,7 +209,7 @@ class ContactForces {
   /// In settled contact: sum of ||f|| [N], and sum of the squared norm of the high-pass filtered force [N^2].
   double sum_ = 0.0, above_cutoff_squares_ = 0.0;
   MagnitudeHistogram steps_;     ///< force steps ||f_k - f_(k-1)|| in settled contact [N]
-  std::uint64_t reversals_ = 0;  ///< steps whose f_k has a negative inner product with f_(k-1)
+  std::uint64_t reversals_ = 0;  ///< steps in settled contact with a negative inner product of f_k and f_(k-1)
 };
 
 }  // namespace hapbench

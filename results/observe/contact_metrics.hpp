@@ -13,8 +13,8 @@
 namespace hapbench {
 
 /// Measures the age of the contacts that a run uses. The age in a step is the time since the contact query whose result
-/// the step uses. Counts the steps of each age. `begin` allocates a counter for each step of the trial, at most a
-/// million.
+/// the step uses. For each age, counts the steps that use contacts of this age. `begin` allocates one counter for each
+/// step of the trial, at most about a million counters.
 class ContactAgeObserver final : public MetricObserver {
  public:
   /// Precondition: the source of the trial's contacts has a schedule.
@@ -38,9 +38,8 @@ class ContactAgeObserver final : public MetricObserver {
   void report(Section& s) const override {
     s.metric(
         "age_p50_s", "s",
-        "median age of the contacts in use (in no file), from the contact query to the step that uses its result; no "
-        "value if no "
-        "step used contacts",
+        "median age of the contacts in use, from the contact query to the step that uses its result (written to no "
+        "file); no value if no step used contacts",
         age_of_rank(0.5));
     s.metric(
         "age_p95_s", "s",
@@ -52,7 +51,7 @@ class ContactAgeObserver final : public MetricObserver {
         "largest age of the contacts in use, from the contact query to the step that uses its result; no value if no "
         "step used contacts",
         if_any(rows_ > 0, dt_ * static_cast<double>(oldest_)));
-    s.metric("searches", "1", "number of contact queries (in no file), including queries whose result was lost",
+    s.metric("searches", "1", "number of contact queries (written to no file), including queries whose result was lost",
              requested_);
     s.metric("lost_share", "1",
              "fraction of the contact queries (contacts.searches) whose result was lost; no value without a query",
@@ -60,8 +59,8 @@ class ContactAgeObserver final : public MetricObserver {
   }
 
  private:
-  /// Returns the age [s] that the fraction `share` of the steps does not exceed, by nearest rank; empty if no
-  /// step used contacts.
+  /// Returns a quantile of the age over all steps that used contacts, by nearest rank: the smallest age [s] that is not
+  /// exceeded in at least the fraction `share` of these steps. Empty if no step used contacts.
   std::optional<double> age_of_rank(double share) const noexcept {
     if (rows_ == 0) return std::nullopt;
     auto left = static_cast<std::uint64_t>(std::ceil(share * static_cast<double>(rows_)));
@@ -135,12 +134,12 @@ class FrictionObserver final : public MetricObserver {
     s.metric(
         "stick_share", "1",
         "fraction of the steps with a friction load in which dry friction sticks (instead of sliding); no value if no "
-        "step has a friction load; the state of each step is in no file",
+        "step has a friction load; the state of each step is written to no file",
         per(sticking_, with_load));
     s.metric(
         "slips_per_s", "1/s",
         "number of changes from sticking to sliding per second of the run; no value if no step has a friction load; "
-        "the state of each step is in no file",
+        "the state of each step is written to no file",
         if_any(with_load > 0, per(slips_, dt_ * static_cast<double>(rows_))));
   }
 
@@ -162,13 +161,15 @@ class ForceStageObserver final : public MetricObserver {
     work_ = algorithm_->work();
   }
   void report(Section& s) const override {
-    s.metric("changed_share", "1",
-             "fraction of the steps in which the force stage changes the force; counted in the run, in no file",
-             per(work_.steps_staged, rows_));
-    s.metric("removed_J", "J",
-             "energy that the force stage removed: force change of the stage, integrated along the tool's path; "
-             "the force before the stage is in no file",
-             if_any(rows_ > 0, work_.energy_staged))
+    s.metric(
+        "changed_share", "1",
+        "fraction of the steps in which the force stage changes the force; counted during the run, written to no file",
+        per(work_.steps_staged, rows_));
+    s.metric(
+         "removed_J", "J",
+         "energy that the force stage removed: force change of the stage, integrated along the tool's path; the force "
+         "before the stage is written to no file",
+         if_any(rows_ > 0, work_.energy_staged))
         .has_either_sign();
   }
 

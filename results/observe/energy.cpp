@@ -34,7 +34,8 @@ void EnergyLedger::on_step(const StepRecord& record) noexcept {
   const auto& index = record.rendered->index;
   rendered_.assign(index.begin(), index.begin() + static_cast<std::ptrdiff_t>(record.rendered->size()));
   std::sort(rendered_.begin(), rendered_.end());
-  // Update the kinetic and the stored energy. From the second step on, also add the works.
+  // Update the kinetic and the stored energy. In every step after the first, also add the works since the previous
+  // step.
   balance_.kinetic = record.handle_moves_tool ? 0.0 : 0.5 * mass_ * record.tool.velocity.squaredNorm();
   balance_.stored = record.springs.energy;
   if (has_row_) {
@@ -71,8 +72,8 @@ EnergyLedger::Works EnergyLedger::works_until(const StepRecord& now) const noexc
 }
 
 void EnergyLedger::add_step(const StepRecord& now) noexcept {
-  // Add the works on the tool. The change of energy that they do not explain is assigned to the integrator, the
-  // script or rounding.
+  // Add the works on the tool. The change of kinetic energy that these works do not explain is assigned to the
+  // integrator, the script or rounding.
   EnergyBalance& b = balance_;
   const Works w = works_until(now);
   b.input += w.input;
@@ -130,11 +131,11 @@ void EnergyLedger::add_event(const StepRecord& now, double created) noexcept {
 
 void EnergyLedger::report(Section& s) const {
   const EnergyBalance& b = balance_;
-  s.metric("created_sum_J", "J",
-           "created energy, summed over only the steps in which it is positive (positive changes of created_J of "
-           "energy.csv; "
-           "energy that later steps take back is not subtracted)",
-           created_sum_, Better::less);
+  s.metric(
+      "created_sum_J", "J",
+      "sum of the positive changes of the created energy (created_J of energy.csv) over the steps; energy that later "
+      "steps remove again is not subtracted",
+      created_sum_, Better::less);
   s.metric("created_max_J", "J", "largest created energy of a single step (change of created_J of energy.csv)",
            created_max_, Better::less);
   s.metric(
@@ -185,9 +186,8 @@ void EnergyLedger::report(Section& s) const {
       .varies_smoothly()
       .has_either_sign();
   s.metric("residual_max_J", "J",
-           "largest |kinetic energy that no other term of the balance explains| over the steps (|residual_J| of "
-           "energy.csv); a correct balance leaves "
-           "rounding errors only",
+           "largest absolute value, over the steps, of the kinetic energy that no other term of the balance explains "
+           "(|residual_J| of energy.csv); a correct balance leaves only rounding errors",
            residual_max_, Better::less);
 }
 
@@ -236,12 +236,12 @@ void PassivityObserver::report(Section& s) const {
   const Extremes e = worst();
   s.metric(
        "energy_min_J", "J",
-       "smallest energy that the rendering held: minimum over the steps of the work that the tool's translation and "
-       "rotation did on the rendering; negative if the rendering returned more energy than it had received. E starts "
-       "with the energy of the springs (stored_J of energy.csv); step k subtracts f_(k-1) . (v_(k-1) + v_k) dt / 2, "
-       "with "
-       "f and v of trajectory.csv, or f_(k-1) . (p_k - p_(k-1)) if the handle moves the tool, or (f_(k-1) + f_k) / 2 . "
-       "(p_k - p_(k-1)) along a prescribed path, and adds the change of rotation_J of energy.csv",
+       "smallest energy that the rendering held: minimum of E over the steps; negative if the rendering returned more "
+       "energy than it had received. E is the energy of the springs at the start (stored_J of energy.csv) plus the "
+       "work that the tool's translation and rotation did on the rendering. In step k, the translation adds -f_(k-1) . "
+       "(v_(k-1) + v_k) dt / 2, with f and v of trajectory.csv. If the handle moves the tool, it adds -f_(k-1) . (p_k "
+       "- p_(k-1)) instead, and along a prescribed path -(f_(k-1) + f_k) / 2 . (p_k - p_(k-1)). The rotation adds the "
+       "change of rotation_J of energy.csv",
        if_any(e.rows, e.energy_min))
       .has_either_sign();
   s.metric("time_of_min_s", "s", "time_s of the step at which energy_min_J is first reached",

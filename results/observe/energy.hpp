@@ -17,27 +17,28 @@ namespace hapbench {
 ///
 ///   kinetic + stored = initial values + input + damping + rotation + created + integration + script + residual
 ///   input = hand + actuator                                        (when the handle is the tool)
-///   device.stored = device.hand + device.actuator + device.dissipated   (when the device has its own mechanics)
+///   device.stored = device.hand + device.actuator + device.dissipated   (when the device has its own mechanics;
+///                                                                    device.dissipated <= 0)
 ///
 /// A tool that follows the handle has no virtual mass. Then kinetic, input and residual are zero, the work of a
 /// force is the force of a step times the displacement to the next step, and script is the work of the handle
 /// against the rendered force.
 ///
 /// If the integrator holds the force of a step until the next step (leapfrog), the work is force times dt times the
-/// mean of the velocities before and after: exactly the change of the kinetic energy. Other integrators evaluate
-/// forces at states that are not recorded. For them, the work is the mean of the forces of both steps (f_in is
-/// held) times the displacement, and the remaining change of kinetic energy is assigned to the integrator. A
-/// prescribed motion is treated the same way, but the remainder is the work of the script. If a contact of
-/// stiffness K begins or ends between two steps that are a distance d apart, the trapezoidal rule has an error of
-/// up to K d^2 / 8.
+/// mean of the velocities at the beginning and at the end of the step: exactly the change of the kinetic energy. Other
+/// integrators evaluate forces at states that are not recorded. For other integrators, the work is the displacement
+/// between two successive steps times the mean of the forces of these steps; f_in, which is constant between the steps,
+/// is taken from the first step. The remaining change of kinetic energy is assigned to the integrator. A prescribed motion is treated the same way, but the remainder is
+/// the work of the script. If the tool moves by a distance d between two steps, and a contact of stiffness K begins or
+/// ends between them, the trapezoidal rule has an error of up to K d^2 / 8.
 struct EnergyBalance {
   double kinetic = 0.0, stored = 0.0;  ///< current energy of the virtual mass and of the penalty springs
   double input = 0.0, spring = 0.0;    ///< work of f_in and f_spring on the tool
   /// Work of f_render - f_spring: damping, friction and the force limit. With angular damping, part of this work may
   /// come from the tool's rotation, which has no energy balance.
   double damping = 0.0;
-  double rotation = 0.0;  ///< work that the tool's rotation does on the springs, against their torque; the device does
-                          ///< not render this torque
+  /// Work that the tool's rotation does on the springs, against their torque. The device does not render this torque.
+  double rotation = 0.0;
   /// Energy stored in the springs beyond the work done on them by translation and rotation (trapezoidal rule). Contacts
   /// that appear, vanish or change their weight create this energy. It is zero for linear springs in permanent contact.
   double created = 0.0;
@@ -45,9 +46,9 @@ struct EnergyBalance {
   /// step (leapfrog, or a device), it is the sum of two works: the work of f_spring on the tool (`spring`), and the
   /// work of the tool's translation on the springs (trapezoidal rule).
   double integration = 0.0;
-  double script = 0.0;    ///< work of the prescribed motion, or of the handle that moves the tool
-  double residual = 0.0;  ///< change of kinetic energy that no other term explains, if the position is free: rounding
-                          ///< errors
+  double script = 0.0;  ///< work of the prescribed motion, or of the handle that moves the tool
+  /// If the position is free: change of kinetic energy that no other term explains, which consists of rounding errors.
+  double residual = 0.0;
   double hand = 0.0, actuator = 0.0;   ///< works of the hand on the handle and of the actuators on handle or carriage
   std::optional<DeviceEnergy> device;  ///< empty for devices without mechanics
 };
@@ -119,10 +120,11 @@ class EnergyLedger final : public MetricObserver {
 
 /// Reports whether the rendering was passive: extremes of the observed energy E (sim/loop/observed_energy.hpp). After
 /// several trials, reports the trial that created the most energy. If several trials created equal energy, reports the
-/// first of them. Constant memory; about 100 ns a step with a moment and a turning tool, 4 ns without force.
+/// first of them. Constant memory. A step with a moment and a turning tool takes about 100 ns, a step without force 4
+/// ns.
 class PassivityObserver final : public MetricObserver {
  public:
-  /// `dt`: time step [s]; `position_is_free`: the motion is not prescribed. `begin` sets both.
+  /// `dt`: time step [s]; `position_is_free`: true if the position is not prescribed. `begin` sets both.
   explicit PassivityObserver(double dt = 0.0, bool position_is_free = true) : observed_(dt, position_is_free) {}
 
   void begin(const TrialParts& trial) override;

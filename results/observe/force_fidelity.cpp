@@ -29,8 +29,8 @@ std::optional<Vec3> ReferenceForce::tip_at(double t) const noexcept {
 
 namespace {
 
-/// Largest number of kept samples. It limits the correlation to about 1e8 products, so that computing the lag does
-/// not take longer than the run.
+/// Largest number of samples of each force that are kept to compute the lag. It limits the correlation to about 1e8
+/// products, so that computing the lag does not take longer than the run.
 constexpr std::uint64_t kMaxKept = 1u << 17;
 constexpr double kKeptInterval = 5e-4;  ///< approximate shortest time between kept samples [s]
 
@@ -53,16 +53,16 @@ std::optional<double> correlation(std::span<const Vec3> early, std::span<const V
   return both / std::sqrt(early_square * late_square);
 }
 
-/// A maximum of the correlation.
+/// A maximum of the correlation of two signals as a function of the shift between them.
 struct Peak {
-  double shift = 0.0;  ///< shift at the maximum [samples]
-  double value = 0.0;
-  bool inside = false;  ///< true if the maximum is not at an end of the range
+  double shift = 0.0;   ///< shift at the maximum [samples]
+  double value = 0.0;   ///< correlation at the maximum
+  bool inside = false;  ///< true if the maximum is not at an end of the range of shifts
 };
 
-/// Returns the peaks of the correlations at the shifts -m … m whose height is within kSamePeak of the highest peak. Two
-/// maxima count as separate peaks only if the correlation between them falls below the largest correlation minus kDip,
-/// so noise does not split a peak.
+/// Returns the peaks whose height is within kSamePeak of the highest peak. `found`: correlations at the shifts -m, …,
+/// m. Two maxima count as separate peaks only if the correlation between them falls below the largest correlation minus
+/// kDip, so noise does not split a peak.
 std::vector<Peak> largest_peaks(const std::vector<double>& found) {
   constexpr double kDip = 0.1, kSamePeak = 0.01;
   const double threshold = std::ranges::max(found) - kDip;
@@ -107,7 +107,8 @@ std::optional<Lag> lag_between(const std::vector<Vec3>& early, const std::vector
     if (!coefficient) return std::nullopt;
     found.push_back(*coefficient);
   }
-  // Choose the peak nearest to 0 if several peaks are equally high. The distance to the next peak is the period.
+  // If several peaks are equally high, choose the peak nearest to shift 0. The period is the distance from the chosen
+  // peak to the nearest other peak.
   const std::vector<Peak> peaks = largest_peaks(found);
   const Peak* nearest = nullptr;
   for (const Peak& peak : peaks) {
@@ -172,8 +173,9 @@ void ForceFidelityObserver::add_members(nlohmann::ordered_json& section) const {
 }
 
 void ForceFidelityObserver::report(Section& s) const {
-  // A difference between two laws is ranked if it exceeds the sum of their tolerances. Each tolerance is five times the
-  // error of the reference, so a ranked difference is at least ten times this error.
+  // A comparison ranks two laws by a metric only if the difference of their values exceeds the sum of the two
+  // tolerances. Each tolerance is five times the error of the reference force, so laws are ranked only by differences
+  // of at least ten times this error.
   constexpr double kPerTolerance = 5.0;
   const double reference_error = force_ == nullptr ? 0.0 : kPerTolerance * force_->error();
   const auto limited = [reference_error](Metric& metric, double per_newton) -> Metric& {
@@ -214,9 +216,8 @@ void ForceFidelityObserver::report(Section& s) const {
   s.metric(
       "reference_mu", "1",
       "coefficient of dry friction of the reference force: least-squares fit (through 0) of the size of its component "
-      "across n to its component along n (0 where that is negative), with n as in force_error_normal_rms_N; to find "
-      "the coefficient that minimises the rendered "
-      "tangential error, sweep rendering.dry_friction.mu",
+      "across n to its component along n (0 where this component is negative), with n as in force_error_normal_rms_N; "
+      "to find the coefficient that minimises the rendered tangential error, sweep rendering.friction.mu",
       drag_ / loads_);
   limited(s.metric(
               "force_artefact_share", "1",
@@ -232,21 +233,23 @@ void ForceFidelityObserver::report(Section& s) const {
                    per(direction_error_, direction_rows_), Better::less),
           1.0 / kMinForce);
   const bool has_hand = force_ != nullptr && force_->hand();
-  limited(s.metric("displacement_rms_m", "m",
-                   "root mean square of the distance between the tip centre and the tip centre of a rigid tool without "
-                   "friction in the same hand, hand.target + f_m / hand.stiffness_N_per_m; no value if no hand with a "
-                   "target moves the tool",
-                   has_hand ? std::optional(rms(displacement_)) : std::nullopt, Better::less)
-              .varies_smoothly(),
-          has_hand ? 1.0 / force_->hand()->stiffness : 0.0);
+  limited(
+      s.metric(
+           "displacement_rms_m", "m",
+           "root mean square of the distance from the tip centre to the position hand.target + f_m / "
+           "hand.stiffness_N_per_m, where the same hand would hold a rigid tool without friction; no value if no hand "
+           "with a target moves the tool",
+           has_hand ? std::optional(rms(displacement_)) : std::nullopt, Better::less)
+          .varies_smoothly(),
+      has_hand ? 1.0 / force_->hand()->stiffness : 0.0);
   const double interval = dt_ * static_cast<double>(every_);  // time between kept samples
   const auto lag = lag_between(kept_reference_, kept_rendered_, interval, kMaxLag);
   s.metric(
        "force_lag_s", "s",
        "delay of f (fx_N, fy_N, fz_N of trajectory.csv) behind f_m: time shift with the largest correlation (Pearson, "
-       "all components) within +-0.1 s; of "
-       "equally large maxima, as of a periodic force, the shift nearest to 0; resolution: half the spacing of the "
-       "compared samples; no value if the maximum is at an end of the range or if a force is constant",
+       "all components) within +-0.1 s; if several maxima are equally large, as with a periodic force, the shift "
+       "nearest to 0; resolution: half the spacing of the compared samples; no value if the maximum is at an end of "
+       "the range or if a force is constant",
        lag ? std::optional(lag->time) : std::nullopt)
       .within(0.0, 0.5 * interval)
       .has_either_sign();

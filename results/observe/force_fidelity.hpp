@@ -30,14 +30,14 @@ class ReferenceForce {
   };
 
   /// Measured force. Precondition: at least one sample, and times increase.
-  /// `error`: largest error of a sample [N]. `hand`: the spring with which the force is in equilibrium, if there is
-  /// one.
+  /// `error`: largest error of a sample [N]. `hand`: the spring of the hand that is in equilibrium with the force;
+  /// empty without such a spring.
   explicit ReferenceForce(std::vector<Sample> samples, double error = 0.0, std::optional<HandSpring> hand = {})
       : force_(std::move(samples)), error_(error), hand_(std::move(hand)) {}
   explicit ReferenceForce(Ideal ideal) : force_(std::move(ideal)) {}
 
-  /// Returns the force at time t [s], interpolated linearly between samples; nothing before the first sample and
-  /// after the last. Cost: O(log n).
+  /// Returns the force at time t [s]. A force given by samples is interpolated linearly; before the first and after the
+  /// last sample, returns nothing. Cost: O(log n) for n samples.
   std::optional<Vec3> at(double t) const noexcept;
   /// Returns the tip centre [m] of a rigid tool that is in equilibrium under the hand's spring and the reference force
   /// at time t. Empty without a hand spring, or if `at(t)` is empty.
@@ -59,9 +59,10 @@ inline constexpr double kMaxLag = 0.1;
 
 /// Time lag of a signal behind another signal.
 struct Lag {
-  double time = 0.0;             ///< lag [s], > 0 if the signal is late
-  std::optional<double> period;  ///< for periodic signals: distance to the nearest other lag with the same correlation
-                                 ///< [s]; otherwise empty
+  double time = 0.0;  ///< lag [s], > 0 if the signal is late
+  /// Distance from `time` to the nearest other lag with the same correlation [s]; empty if no other lag has the same
+  /// correlation. For a periodic signal, this is the period.
+  std::optional<double> period;
 };
 
 /// Returns the lag of `late` behind `early`: the shift with the largest correlation (Pearson, over all components of
@@ -81,7 +82,7 @@ class ForceFidelityObserver final : public MetricObserver {
   /// step [s]; `steps`: largest number of steps.
   ForceFidelityObserver(const ReferenceForce& reference, double dt, std::uint64_t steps);
 
-  /// Precondition: the trial has a reference.
+  /// Precondition: the trial has a reference force.
   void begin(const TrialParts& trial) override;
   void on_step(const StepRecord& record) noexcept override;
   void report(Section& section) const override;

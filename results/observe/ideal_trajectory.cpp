@@ -28,7 +28,7 @@ const std::array<Turn, kSamples> kTurns = [] {
   return turns;
 }();
 
-/// The side surface of the tool as straight lines, one for each angle about its axis.
+/// The side surface of the tool as straight lines, one for each angle about the tool's axis.
 class Side {
  public:
   Side(const BlockWithHole& block, const Cylinder& tool, const ToolPose& pose)
@@ -81,7 +81,7 @@ class Side {
 /// Returns the maximum of f in [low, high], if f has a single maximum there, by Brent's method (R. P. Brent,
 /// Algorithms for Minimization without Derivatives, 1973, chapter 5). A step goes to the vertex of the parabola
 /// through the three best points so far. If the vertex is not well inside the interval, the step is a golden section.
-/// `best`: start point in the interval; `top`: its value.
+/// `best`: start point in the interval. `top`: f(best).
 template <class Function>
 // NOLINTNEXTLINE(readability-function-cognitive-complexity): follows the published algorithm step by step.
 double maximum_in(const Function& f, double low, double high, double best, double top) {
@@ -131,7 +131,7 @@ double interpenetration(const BlockWithHole& block, const Cylinder& tool, const 
   for (std::size_t i = 0; i < kSamples; ++i) depth[i] = side.deepest(kTurns[i]);
   double largest = std::max(0.0, *std::max_element(depth.begin(), depth.end()));
   // Search near each line that is deeper than its neighbours. Neighbouring lines are at most radius * step apart,
-  // so their depths differ by no more.
+  // so their depths differ by at most this distance.
   const double reach = tool.radius() * kStep;
   for (std::size_t i = 0; i < kSamples; ++i) {
     const double before = depth[(i + kSamples - 1) % kSamples], after = depth[(i + 1) % kSamples];

@@ -67,8 +67,8 @@ class IdealTrajectoryObserver final : public MetricObserver {
   void begin(const TrialParts& trial) override;
   void on_step(const StepRecord& record) noexcept override;
 
-  /// Deviation in the last step; empty if the ideal trajectory does not exist at its tilt, or if the step is not
-  /// compared.
+  /// Deviation in the last step; empty if the ideal trajectory does not exist at the tilt of the tool in this step, or
+  /// if the step is not compared.
   const std::optional<TrajectoryError>& error() const noexcept { return error_; }
   void report(Section& section) const override;
 

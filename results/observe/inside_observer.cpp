@@ -13,43 +13,42 @@ namespace hapbench {
 namespace {
 
 /// kMinStep: smallest distance between two checked positions on the path of the front point (struct Passage), in half
-/// widths of the tool. kDepthWithin: largest relative error allowed for the depth of the tip
-/// centre.
+/// widths of the tool. kDepthWithin: largest allowed relative error of the depth of the tip centre.
 constexpr double kMinStep = 2e-3, kDepthWithin = 0.02;
 /// kMaxBlocks: largest number of blocks into which a run is divided; one pose of each block is kept for the search
 /// after the run. kSettledSamples: number of poses in settled contact that are searched.
 constexpr std::size_t kMaxBlocks = 16384, kSettledSamples = 12;
-/// Largest number of distance evaluations in the search for the deepest step. A distance from a solid in closed form
-/// takes a tenth of the time, so its limit is larger.
+/// Largest number of distance evaluations in the search for the deepest step. kMaxClosedFormEvaluations holds for a
+/// solid whose distance has a closed form, because an evaluation then takes a tenth of the time.
 constexpr std::size_t kMaxEvaluations = 8000, kMaxClosedFormEvaluations = 100000;
-/// The largest bound is the largest upper bound of the depth in a step that has not been searched. If it still exceeds
-/// kUselessBound times the deepest known depth after the largest number of evaluations, the error exceeds the depth
-/// itself. The search then continues, up to kMaxExtendedEvaluations, until the largest bound is at most kUsefulBound
-/// times the deepest known depth.
+/// The largest bound is the largest upper bound of the depth in a step that has not been searched. If the largest bound
+/// still exceeds kUselessBound times the deepest known depth after kMaxEvaluations evaluations, the error exceeds the
+/// depth itself. The search then continues until the largest bound is at most kUsefulBound times the deepest known
+/// depth, or until kMaxExtendedEvaluations evaluations were made.
 constexpr std::size_t kMaxExtendedEvaluations = 32000;
 constexpr double kUselessBound = 2.0, kUsefulBound = 1.1;
-/// kSharedBound: if all tip centres (in half widths) and axes in a range of blocks differ by less than this from the
-/// middle pose of the range, the range gets a fine bound (InsideBound::at), otherwise a coarse bound. A single block
-/// always gets a fine bound. kSamePose: if no point of the tool moves by more than this between the middle pose and any
-/// other pose of a range [half widths], one search is enough for the range.
+/// kSharedBound: if the tip centre [half widths] and the axis of every pose in a range of blocks differ by less than
+/// kSharedBound from the middle pose of the range, the range gets a fine bound (InsideBound::at). Otherwise the range
+/// gets a coarse bound. A single block always gets a fine bound. kSamePose: if no point of the tool moves by more than
+/// kSamePose [half widths] between the middle pose and any other pose of a range, one search is enough for the range.
 constexpr double kSharedBound = 0.1, kSamePose = 0.01;
 
-/// kDeepContact: contact depth [half widths] from which on the tip centre is part of the core. At smaller depths the
-/// tip centre is not part of the core, because the tip centre of a flat tip lies inside the solid even in a shallow
+/// kDeepContact: smallest contact depth at which the tip centre is part of the core [half widths]. At smaller depths
+/// the tip centre is not part of the core, because the tip centre of a flat tip lies inside the solid even in a shallow
 /// contact. kCoreStep: smallest distance between two checked points on the core, and between two checked positions of
 /// the core on its path [half widths].
 constexpr double kDeepContact = 0.9, kCoreStep = 5e-3;
-/// Contact depth from which on the core is checked, relative to the smallest radius of the tool, such as the radius of
-/// a neck. It is a little smaller than kDeepContact, because the deepest point of the core may lie in a gap between the
-/// surface points. These gaps are a few fifths of the smallest radius wide.
+/// Smallest contact depth at which the core is checked, relative to the smallest radius of the tool, such as the radius
+/// of a neck. kCheckDepth is a little smaller than kDeepContact, because the deepest point of the core may lie in a gap
+/// between the surface points. These gaps are a few fifths of the smallest radius wide.
 constexpr double kCheckDepth = 0.8;
 /// The core ends where the axis is closer than this to the body's surface [half widths], as in a bent body.
 constexpr double kThinnest = 0.05;
-constexpr std::size_t kCoreSamples = 256;  ///< number of positions on the axis at which the tool's thickness is
-                                           ///< computed
-constexpr std::size_t kMaxSegments = 8;    ///< maximum number of segments of the core inside the solid at one time
-/// Maximum number of points of the axis whose distances are kept for the next check, and the motion, as a fraction of
-/// the distance, up to which a kept distance is used again.
+/// Number of positions on the axis at which the tool's thickness is computed.
+constexpr std::size_t kCoreSamples = 256;
+constexpr std::size_t kMaxSegments = 8;  ///< maximum number of segments of the core inside the solid at one time
+/// kMaxAxisPoints: maximum number of points of the axis whose distances from the surface are kept for the next check.
+/// kReusedFraction: a kept distance is used again if the point has moved by less than this fraction of the distance.
 constexpr std::size_t kMaxAxisPoints = 256;
 constexpr double kReusedFraction = 0.25;
 constexpr double kMaxSteps = 256.0;  ///< maximum number of checked positions on the path of one time step
@@ -86,9 +85,9 @@ void InsideDepths::report(Section& s, bool has_settled) const {
   s.metric(
        "inside_max_m", "m",
        "largest distance of the tool's deepest point below the environment's surface over all steps (with "
-       "record.inside: over the recorded steps, largest inside_m of trajectory.csv); the true maximum exceeds it by "
-       "at most 2 % of itself and of the "
-       "tool's half width, or by its tolerance if one is given; no value for springs and beyond the border of an open "
+       "record.inside: over the recorded steps, largest inside_m of trajectory.csv); the true maximum exceeds this "
+       "value by at most the metric's tolerance (tolerances of summary.json), without a tolerance by at most 2 % of "
+       "the value and 2 % of the tool's half width; no value for springs, and beyond the boundary edges of an open "
        "surface",
        max, Better::less)
       .within(InsideSearch::kTolerance, max_within);
@@ -103,8 +102,8 @@ void InsideDepths::report(Section& s, bool has_settled) const {
   s.metric(
       "centre_inside_share", "1",
       "fraction of the steps in which the tip centre is below the surface (mean of centre_inside of trajectory.csv "
-      "with record.inside, without empty cells); the tip centre of a flat tip is below it "
-      "whenever the tip is pressed in",
+      "with record.inside, without empty cells); the tip centre of a flat tip is below the surface whenever the tip is "
+      "pressed in",
       per(centre_inside, rows), Better::less);
 }
 
@@ -145,10 +144,10 @@ CorePassage::CorePassage(const ToolShape& tool, std::shared_ptr<const Solid> sol
   last_axis_points_.reserve(kMaxAxisPoints);
 }
 
-/// Returns the signed distance of a point with coordinate s on the axis. A point that has moved by less than a fraction
-/// of its last distance is not evaluated again: it is on the same side, and the last distance minus the motion is a
-/// lower bound of its distance. Otherwise, the sum of the last distance and the motion is an upper bound for the
-/// search. Precondition: s decreases from call to call during a check.
+/// Returns the signed distance of a point with coordinate s on the axis. A point that has moved by less than
+/// kReusedFraction of its last distance is not evaluated again: it is on the same side, and the last distance minus the
+/// motion is a lower bound of its distance. Otherwise, the sum of the last distance and the motion is an upper bound
+/// for the search. Precondition: s decreases from call to call during a check.
 SurfaceDistance CorePassage::distance_at(const Vec3& point, double s) noexcept {
   const std::vector<AxisPoint>& last = last_axis_points_;
   const auto offset = [&](std::size_t i) { return std::abs(last[i].s - s); };
@@ -203,8 +202,8 @@ void CorePassage::check_core(const ToolPose& pose, double deepest_contact, doubl
   }
 }
 
-/// Finds the segments of the core inside the solid. Returns a distance that the core can move without meeting the
-/// surface [m].
+/// Finds the segments of the core inside the solid. Returns a lower bound of the distance that the core can move before
+/// it meets the surface [m].
 // NOLINTNEXTLINE(readability-function-cognitive-complexity): one walk along the axis.
 double CorePassage::find_segments(const Vec3& position, const Vec3& axis, double front) noexcept {
   segments_.clear();

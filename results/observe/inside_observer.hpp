@@ -30,7 +30,8 @@ struct InsideDepths {
   double max_bound() const { return (1.0 + InsideSearch::kTolerance) * max.value_or(0.0); }
   /// Merges the depths of another trial into this object.
   void add(const InsideDepths& trial);
-  /// Reports the metrics. `has_settled`: settled contact was long enough for its metrics.
+  /// Reports the metrics. `has_settled`: true if settled contact was long enough for the metrics of settled contact
+  /// (kMinSettledTime).
   void report(Section& section, bool has_settled) const;
 };
 
@@ -83,8 +84,8 @@ class CorePassage {
 
   CorePassage(const ToolShape& tool, std::shared_ptr<const Solid> solid);
 
-  /// Adds a step. `deepest_contact`: depth of the deepest contact in this step [m]. `moved`: distance that the tip
-  /// centre, or a point near the tip centre, has moved since the previous step [m].
+  /// Adds a step. `deepest_contact`: depth of the deepest contact in this step [m]. `moved`: distance that the front
+  /// point of the core (struct Passage) has moved since the previous step [m].
   void add(const ToolPose& pose, double deepest_contact, double moved, double time) noexcept {
     if (event_) return;
     if (deepest_contact >= check_depth_ || moved > check_displacement_) {
@@ -101,7 +102,7 @@ class CorePassage {
   const std::optional<Event>& event() const noexcept { return event_; }
 
  private:
-  /// A segment of the core that is inside the solid, from `low` to `high` on the axis [m].
+  /// A segment of the core that is inside the solid: the part of the axis from `low` to `high` [m].
   struct Segment {
     double low, high;
     std::optional<Vec3> face_low, face_high;  ///< outward normals at the ends that lie at the surface
@@ -190,8 +191,8 @@ class PoseSamples {
 /// Observes how deep the tool is in the environment in one trial. A step costs about ten nanoseconds: a point cannot
 /// pass the surface before it has moved by its distance from the surface, so few steps need a check. The deepest
 /// point of the tool is searched after the run: in the steps with the deepest contact or tip centre, in the steps
-/// that may be deeper (InsideBound), and in some steps in settled contact. With `every` > 0 it is instead searched in
-/// each `every`-th step. Does not allocate during the run.
+/// that may be deeper (InsideBound), and in some steps in settled contact. With `every` > 0, the deepest point is
+/// instead searched during the run, in each `every`-th step. Does not allocate during the run.
 class InsideObserver final : public Observer {
  public:
   /// `metrics`: if not null, must observe before this observer; it determines which steps are in settled contact.
@@ -209,7 +210,7 @@ class InsideObserver final : public Observer {
   }
   const Passage& passage() const noexcept { return passage_; }
   const CorePassage& core_passage() const noexcept { return core_passage_; }
-  /// Searches the deepest points and returns the depths. Call after the run.
+  /// Searches the deepest points of the tool in the kept poses and returns the depths. Call after the run.
   InsideDepths depths();
 
  private:

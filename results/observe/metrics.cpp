@@ -152,10 +152,11 @@ void MetricsObserver::report(Section& s) const {
       "number of the first step with ||f_spring|| above explicit_friction_limit_N; no value if no step is above it",
       first_beyond_friction_);
   contact_forces_.report(s);
-  s.metric("reduction_changes", "1",
-           "number of steps in contact whose set of points kept by rendering.reduction (index of contacts.csv) differs "
-           "from the set of the previous step, also in contact; no value without rendering.reduction",
-           reduction_ ? std::optional(reduction_->changes()) : std::nullopt, Better::less);
+  s.metric(
+      "reduction_changes", "1",
+      "number of steps whose set of points kept by rendering.reduction (index of contacts.csv) differs from the set of "
+      "the previous step, both steps being in contact; no value without rendering.reduction",
+      reduction_ ? std::optional(reduction_->changes()) : std::nullopt, Better::less);
   s.metric("reduction_force_step_max_N", "N",
            "largest force step ||f_k - f_(k-1)|| over the steps in settled contact at which the set of points kept by "
            "rendering.reduction changes; no value without rendering.reduction",
@@ -191,12 +192,11 @@ void MetricsObserver::report_motion_and_force(Section& s) const {
            "sampling rates of 60 Hz or less",
            vibration_.mean_square(), Better::less)
       .varies_smoothly();
-  s.metric(
-      "depth_max_m", "m",
-      "largest penetration depth of a colliding point (depth_max_m of trajectory.csv), by the depth model; at most "
-      "the tool's half width, even if the "
-      "tool is deeper in the environment (inside_max_m)",
-      depth_max_, Better::less);
+  s.metric("depth_max_m", "m",
+           "largest penetration depth of a colliding point (depth_max_m of trajectory.csv), by the depth model; with "
+           "shortest_distance and surface_normal at most the tool's half width, even if the tool is deeper in the "
+           "environment (inside_max_m)",
+           depth_max_, Better::less);
 }
 
 void MetricsObserver::report_contacts(Section& s) const {

@@ -26,14 +26,14 @@ std::optional<double> explicit_friction_limit(const IntegratorEntry& integrator,
 
 /// Measures force steps caused by the contact reduction: while the tool slides, the set of kept points changes and the
 /// force jumps. Allocates only in the constructor. A step with the same points in the same order as in the previous
-/// step costs about 1 ns for each point. Any other step costs O(n log n) for n points. If the indices of the points are
-/// in ascending order in this step and in the previous step, a step costs only about 2 ns for each point.
+/// step costs about 1 ns for each point. Any other step costs about 2 ns for each point if the indices of the points
+/// are in ascending order in this step and in the previous step, otherwise O(n log n) for n points.
 class ReductionJumps {
  public:
   /// `capacity`: largest number of contacts in a step.
   explicit ReductionJumps(std::size_t capacity);
 
-  /// Begins the next trial, without contact so far.
+  /// Begins the next trial, in which the tool has not been in contact yet. Keeps the counts of earlier trials.
   void begin() noexcept { last_.clear(); }
   /// Adds the next step. `kept`: contacts that the reduction kept. `step_squared`: squared force step [N^2].
   /// `settled`: the step is in settled contact.
@@ -71,8 +71,8 @@ struct TrialContact {
 struct MetricsConfig {
   std::optional<double> friction_limit = {};  ///< explicit_friction_limit [N]; empty: no limit
   SettlingRule settling = {};
-  std::uint64_t steps = 0;  ///< number of counted steps; 0: unknown, so that the vibration of the last quarter is not
-                            ///< measured
+  /// Number of counted steps. 0: unknown; the vibration of the last quarter is then not measured.
+  std::uint64_t steps = 0;
   std::optional<std::size_t> reduction_capacity = {};  ///< largest number of contacts in a step; empty: no reduction
   std::uint64_t stride = 1;  ///< only every `stride`-th step counts; all other steps are ignored
   std::uint64_t first = 0;   ///< first step that counts; < stride
@@ -80,7 +80,7 @@ struct MetricsConfig {
 
 /// Measures the metrics that every run has. Allocates only in the constructor: two bytes for each counted step, and the
 /// memory of ReductionJumps if there is a reduction. About 20 ns a step, 24 ns with a reduction. Several trials are
-/// treated as one long run, with the final position of the last trial.
+/// treated as one long run, which ends at the final position of the last trial.
 class MetricsObserver final : public MetricObserver {
  public:
   /// `dt`: time between counted steps [s], > 0.
@@ -97,7 +97,7 @@ class MetricsObserver final : public MetricObserver {
 
   /// Returns true if the last step was in settled contact.
   bool in_settled_contact() const noexcept { return settled_; }
-  /// Returns true if settled contact was long enough for its metrics.
+  /// Returns true if settled contact was long enough for the metrics of settled contact (kMinSettledTime).
   bool has_settled() const noexcept { return contact_forces_.has_settled(); }
   std::uint64_t rows() const noexcept { return before_.rows + now_.rows; }
   /// Contact statistics of the current trial, since the last `begin`.
@@ -138,9 +138,9 @@ class MetricsObserver final : public MetricObserver {
   std::uint64_t colliding_sum_ = 0, colliding_max_ = 0, rendered_sum_ = 0, rendered_max_ = 0;
   std::optional<double> friction_limit_;  ///< [N]; empty if friction cannot become unstable
   std::uint64_t rows_beyond_friction_ = 0;
-  std::optional<std::uint64_t> first_beyond_friction_;  ///< number, within its trial, of the first step in which
-                                                        ///< |f_spring| exceeds friction_limit_; empty if |f_spring|
-                                                        ///< never exceeds it
+  /// Number of the first step in which |f_spring| exceeds friction_limit_, within the trial of this step; empty if
+  /// |f_spring| never exceeds friction_limit_.
+  std::optional<std::uint64_t> first_beyond_friction_;
   ContactForces contact_forces_;
   std::optional<ReductionJumps> reduction_;  ///< empty without a reduction
 };

@@ -48,12 +48,14 @@ void SixDofMetrics::report(Section& s) const {
            "root mean square of the torque of the 6-DOF device about the force point, which a 3-DOF device does not "
            "render (torque_x_Nm, torque_y_Nm, torque_z_Nm of six_dof.csv)",
            lost_torque_.rms());
-  s.metric("force_error_rms_N", "N",
-           "root mean square of the difference between the force of the law and that of the 6-DOF device, over the "
-           "steps in which both have an equilibrium; no score: no force at all has the error reference_force_rms_N",
-           force_error_.rms());
-  s.metric("force_error_max_N", "N", "largest difference between the force of the law and that of the 6-DOF device",
-           force_error_.max());
+  s.metric(
+      "force_error_rms_N", "N",
+      "root mean square of the difference between the force of the law and the force of the 6-DOF device, over the "
+      "steps in which both have an equilibrium; for comparison: a law that renders no force has the error "
+      "reference_force_rms_N",
+      force_error_.rms());
+  s.metric("force_error_max_N", "N",
+           "largest difference between the force of the law and the force of the 6-DOF device", force_error_.max());
   s.metric("ghost_displacement_rms_m", "m",
            "root mean square of the distance between the handles' force points of the 3-DOF and of the 6-DOF device",
            displacement_.rms());
@@ -64,21 +66,23 @@ void SixDofMetrics::report(Section& s) const {
       "handle_turn_z_rad of six_dof.csv",
       turn_.max());
   s.metric("work_J", "J",
-           "work of the law's force on the handle, by the trapezoidal rule over the steps in equilibrium; for a path "
-           "that ends where it began, the energy that is created in a cycle",
+           "work of the law's force on the handle, by the trapezoidal rule over the steps in equilibrium; for a closed "
+           "path, the energy that is created in one cycle",
            work_.sum)
       .has_either_sign();
-  s.metric("law_unbalanced_steps", "1",
-           "number of steps in which hand and law differ by more than 1e-3 N in every pose that was found: the law has "
-           "no equilibrium nearby",
-           unbalanced_);
+  s.metric(
+      "law_unbalanced_steps", "1",
+      "number of steps without an equilibrium of the law: in every pose that was found, the forces of hand and law "
+      "differ by more than 1e-3 N",
+      unbalanced_);
   s.metric("reference_residual_max_N", "N",
            "largest residual of the conditions of optimality of the 6-DOF device, over the steps with an equilibrium",
            residual_);
   s.metric("reference_jumps", "1", "number of steps in which the tool of the 6-DOF device jumps to another equilibrium",
            jumps_);
   s.metric("reference_unsolved_steps", "1",
-           "number of steps without an equilibrium of the 6-DOF device: no room for the tool, or no convergence",
+           "number of steps without an equilibrium of the 6-DOF device: the tool does not fit, or the search does not "
+           "converge",
            unsolved_);
 }
 

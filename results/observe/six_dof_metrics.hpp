@@ -33,7 +33,7 @@ struct SixDofRow {
   bool jumped = false;                 ///< true if the reference jumped to another equilibrium
 };
 
-/// Metrics of the comparison (section six_dof of the summary).
+/// Metrics of the comparison of a 3-DOF device with a 6-DOF device over a run (section six_dof of summary.json).
 class SixDofMetrics {
  public:
   void add(const SixDofRow& row) noexcept;

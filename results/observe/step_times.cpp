@@ -21,8 +21,8 @@ std::uint64_t percentile(const Times& sorted, std::size_t per_mille) {
   return sorted[std::max<std::size_t>(rank, 1) - 1];
 }
 
-/// Returns the histogram of the times. Bin k counts the times with k binary digits: 0, 1, 2 … 3, 4 … 7 ns and so on, up
-/// to 63 digits.
+/// Returns the histogram of the times. Bin k counts the times with k binary digits: 0 ns (k = 0), 1 ns, 2 to 3 ns, 4 to
+/// 7 ns, and so on up to k = 63.
 std::vector<StepLatency::Bin> histogram(const Times& sorted) {
   std::array<std::uint64_t, std::numeric_limits<std::int64_t>::digits + 1> count = {};
   for (const std::uint64_t time : sorted) ++count[static_cast<std::size_t>(std::bit_width(time))];

@@ -37,11 +37,11 @@ class StepTimes {
   Clock::time_point last_;
 };
 
-/// Samples the time of steps without observers: from after the last observer of one step to before the first observer
-/// of the next. This covers the integrator's part of one step, and hand, contact search, force law and device of the
-/// next step. Attach the sampler twice, before and after all other observers. Samples every step of a short run, and at
-/// most kMaxSamples evenly spread steps of a long run, which is enough for a 99th percentile. A sample takes two clock
-/// readings. Allocates only in the constructor.
+/// Samples the time of a step, excluding its observers: from after the last observer of one step to before the first
+/// observer of the next step. This covers the integrator's part of one step, and hand, contact search, force law and
+/// device of the next step. Attach the sampler twice, before and after all other observers. Samples every step of a
+/// short run, and at most kMaxSamples evenly spread steps of a long run, which is enough for a 99th percentile. A
+/// sample takes two clock readings. Allocates only in the constructor.
 class StepSampler final : public Observer {
  public:
   static constexpr std::uint64_t kMaxSamples = 1 << 13;

@@ -108,14 +108,12 @@ void TargetMetricsObserver::report(Section& s) const {
     const Section at = s.part(std::to_string(position.position));
     report_mean(at.part("success_rate"), position.success_rate, "1",
                 "fraction of the targets at this position that the subject removed before the time limit (removed of "
-                "targets.csv, "
-                "at its place), mean over the subjects",
+                "targets.csv, rows of its place), mean over the subjects",
                 Better::more);
     report_mean(
         at.part("completion_time_s"), position.completion_time, "s",
-        "time until a target at this position was removed, or the time limit if it was not (time_s of targets.csv, at "
-        "its "
-        "place); mean over the subjects",
+        "time until a target at this position was removed, or the time limit if it was not (time_s of targets.csv, "
+        "rows of its place); mean over the subjects",
         Better::less);
     report_mean(
         at.part("model_force_N"), position.model_force, "N",

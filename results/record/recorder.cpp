@@ -65,7 +65,8 @@ constexpr auto kCommonColumns = std::tuple{
         [](const StepRecord& r) -> const Vec3& { return r.hand.input; }),
     filled({{"hx_m", "m", "x of the handle"}, {"hy_m", "m", "y of the handle"}, {"hz_m", "m", "z of the handle"}},
            [](const StepRecord& r) -> const Vec3& { return r.handle.position; }),
-    filled({{"hvx_m_per_s", "m/s", "x of the handle's velocity; on an impedance device without encoder and filter"},
+    filled({{"hvx_m_per_s", "m/s",
+             "x of the handle's true velocity, not the velocity measured by encoder and filter of an impedance device"},
             {"hvy_m_per_s", "m/s", "y of the handle's velocity"},
             {"hvz_m_per_s", "m/s", "z of the handle's velocity"}},
            [](const StepRecord& r) -> const Vec3& { return r.handle.velocity; }),
@@ -103,10 +104,10 @@ constexpr Column kTorqueColumns[] = {
 constexpr Column kInsideColumns[] = {
     {"inside_m", "m",
      "distance of the tool's deepest point below the environment's surface (inside_max_m is its maximum); empty for "
-     "springs and beyond the border of an open surface"},
+     "springs and beyond the boundary edges of an open surface"},
     {"centre_inside", "1",
-     "1 if the tip's centre is below the surface, 0 if it is not; empty for springs and beyond the border of an open "
-     "surface"}};
+     "1 if the tip's centre is below the surface, 0 if it is not; empty for springs and beyond the boundary edges of "
+     "an open surface"}};
 
 constexpr TrajectoryGroup kGroups[] = {
     {&TrajectoryExtras::pose, "pose", "add the tool's orientation to trajectory.csv, as a quaternion qw,qx,qy,qz",
@@ -232,7 +233,8 @@ const ResultTable kEnergyTable = {
       "rotation did on them"},
      {"integration_J", "J", "energy created by the numerical integrator since the first step"},
      {"script_J", "J", "work of the scripted motion since the first step"},
-     {"residual_J", "J", "kinetic energy that the other terms do not explain; rounding errors in a correct balance"},
+     {"residual_J", "J",
+      "kinetic energy that the other terms do not explain; in a correct balance only rounding errors"},
      {"hand_J", "J", "work of the hand on the handle since the first step"},
      {"actuator_J", "J", "work of the device's actuators since the first step"},
      {"device_dissipated_J", "J",
@@ -260,7 +262,7 @@ const ResultTable kForceReferenceTable = {
     "with record.force_reference: the reference force, one line per recorded time step",
     {kStepColumn,
      kTimeColumn,
-     {"mfx_N", "N", "x of the reference force f_m on the tool; empty where none was measured"},
+     {"mfx_N", "N", "x of the reference force f_m on the tool; empty if no force was measured"},
      {"mfy_N", "N", "y of f_m"},
      {"mfz_N", "N", "z of f_m"},
      {"force_error_x_N", "N", "x of the force error f - f_m"},
@@ -300,9 +302,9 @@ const ResultTable kTargetTable = {
      {"removed", "1", "1 if the subject removed the target, 0 if it disappeared at the time limit"},
      {"time_s", "s", "time from the press that activated the task to the end of the target"},
      {"rows_on_target", "1", "number of steps with the tip on the target"},
-     {"model_force_N", "N", "mean ||f|| over the steps with the tip on the target; empty if there are none"},
+     {"model_force_N", "N", "mean ||f|| over the steps with the tip on the target; empty if there are no such steps"},
      {"speed_m_per_s", "m/s",
-      "mean speed of the handle over the steps with the tip on the target; empty if there are none"}}};
+      "mean speed of the handle over the steps with the tip on the target; empty if there are no such steps"}}};
 
 Recorder::Recorder(const TableTarget& target, RowSource source, std::uint64_t every)
     : source_(std::move(source)), writer_(target, source_.columns), every_(every) {

@@ -29,10 +29,10 @@ Outcome outcome_of(Ending ending) noexcept;
 /// Name and description of an outcome.
 struct OutcomeInfo {
   std::string_view name;    ///< name in files, such as "completes"
-  const char* meaning;      ///< one sentence without a full stop
-  bool is_failure = false;  ///< true if the metrics of such a run do not characterise the algorithm
+  const char* meaning;      ///< one or more sentences, without the last full stop
+  bool is_failure = false;  ///< true if the metrics of a run with this outcome do not characterise the algorithm
   /// Condition under which the commands `compare` and `sweep` end a run with this outcome before its last step; null if
-  /// they never end such a run early.
+  /// these commands never end a run with this outcome early.
   const char* ends_early = nullptr;
 };
 

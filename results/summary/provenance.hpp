@@ -5,9 +5,9 @@
 
 namespace hapbench {
 
-/// Identifies the program and the machine that computed a result. Part of summary.json, except for the instruction
-/// set, which affects only times: summary.json is byte-identical for the scalar and the SIMD build of one source
-/// tree, and timing.json contains the instruction set. Unknown fields are "unknown".
+/// Identifies the program and the machine that computed a result. The instruction set (`march`, `widest` and `simd`)
+/// affects only times. Therefore only timing.json contains it, and summary.json is byte-identical for the scalar and
+/// the SIMD build of one source tree. Fields with an unknown value are "unknown".
 struct Provenance {
   std::string version;     ///< version of hapbench
   std::string commit;      ///< commit of the built source tree; ends in "-dirty" if tracked files differ from it

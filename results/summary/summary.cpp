@@ -15,8 +15,8 @@ ordered_json number_or_null(std::optional<double> value) {
 }
 
 double seconds(std::uint64_t nanoseconds) {
-  return static_cast<double>(nanoseconds) / 1e9;  // division returns the double nearest to the exact quotient;
-                                                  // multiplication by 1e-9 does not
+  // Division by 1e9 returns the double nearest to the exact quotient; multiplication by 1e-9 would not.
+  return static_cast<double>(nanoseconds) / 1e9;
 }
 
 ordered_json divergence_json(const RunEnd& result) {

@@ -58,7 +58,7 @@ struct RunTiming {
   double shell = 0.0;                  ///< time to compute or load the environment's point shell [s]
   double loop = 0.0;                   ///< time of the step loop, including observers [s]
   std::optional<StepLatency> latency;  ///< times of single steps, including observers; empty if not measured
-  /// Median and 99th percentile of the time of a step without observers and recorders [s] (StepSampler). Both are
+  /// Median and 99th percentile of the time of a step, excluding observers and recorders [s] (StepSampler). Both are
   /// empty without steps; the 99th percentile is empty for fewer than 100 steps.
   std::optional<double> step_p50 = {}, step_p99 = {};
   std::uint64_t preemptions = 0;  ///< involuntary context switches during the step loop
@@ -91,10 +91,10 @@ struct Result {
   /// The sections of summary.json: passivity, and the sections that the scenario requests. Each section is a JSON
   /// object that has only the members that are not metrics, such as the events of the section energy.
   nlohmann::ordered_json sections;
-  std::uint64_t state_hash = 0;                     ///< MetricsObserver::state_hash
-  nlohmann::ordered_json tool;                      ///< tool_json of a tool that is not a cylinder; null for a cylinder
-  std::vector<Warning> warnings;                    ///< warnings about the scenario's files, followed by warnings about
-                                                    ///< the run
+  std::uint64_t state_hash = 0;  ///< MetricsObserver::state_hash
+  nlohmann::ordered_json tool;   ///< tool_json of a tool that is not a cylinder; null for a cylinder
+  /// Warnings about the scenario's files, followed by warnings about the run.
+  std::vector<Warning> warnings;
   std::optional<std::vector<Diagnosed>> diagnosis;  ///< empty if the diagnosis was not requested
   RunWork work;
   std::vector<TargetRow> targets;  ///< targets of all subjects and trials of a tracking hand

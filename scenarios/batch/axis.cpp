@@ -36,8 +36,9 @@ std::string range_forms(bool sampled) {
   return fmt::format("a:b:n, or a:b:n:log for equal ratios, with an integer n of 2 ... {} values", kMaxRuns);
 }
 
-/// Throws InputError about the part of a range that gives the number of values or the scale. Suggests the range that
-/// was probably meant if these parts hold a number and "log", such as "5log" or "log:5".
+/// Throws InputError about the parts of a range after "a:b", which give the number of values and the scale. If these
+/// parts hold a number and "log" in another form, such as "5log" or "log:5", suggests the range that was probably
+/// meant.
 [[noreturn]] void refuse_range(const Words& parts, const std::string& problem, bool sampled) {
   std::string count;
   for (std::size_t i = 2; i < parts.size(); ++i) count += parts[i];

@@ -17,9 +17,9 @@ void append_new(std::vector<std::string>& texts, const std::vector<std::string>&
     if (std::find(texts.begin(), texts.end(), text) == texts.end()) texts.push_back(text);
 }
 
-/// Throws InputError if two axes have the same path, or if the path of one axis lies within the path of another axis,
-/// so that one axis would override the other. An axis within another axis is allowed if the outer axis comes first and
-/// all values of the outer axis are objects.
+/// Throws InputError if two axes have the same path, or if the field of one axis is part of the field of another axis,
+/// such as "device.type" and "device", so that one axis would override the other. An axis within another axis is
+/// allowed if the outer axis comes first and all values of the outer axis are objects.
 static void check_paths(const std::vector<Axis>& axes) {
   const auto is_object = [](const std::string& value) { return value.starts_with("{"); };
   for (auto outer = axes.begin(); outer != axes.end(); ++outer) {

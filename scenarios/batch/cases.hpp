@@ -61,8 +61,8 @@ class Cases {
  private:
   void sort_runs();
   LoadedScenario load_case(std::size_t i) const;
-  /// Returns `error` with a new location for each fault in a field of an axis: the line of case i in the file of
-  /// --points.
+  /// Returns a copy of `error` in which each fault in a field of an axis is located at the line of case i in the file
+  /// of --points.
   InputError with_line_of_point(const InputError& error, std::size_t i) const;
   std::string value(std::size_t i, std::size_t axis) const {
     return sampling_ ? axes_[axis].value_at(unit_[axis][i]) : axes_[axis].value(value_index(i, axis));

@@ -31,8 +31,11 @@ std::size_t shards_in(const fs::path& folder) {
     if (std::sscanf(entry.path().filename().c_str(), "sweep.%zu_of_%zu.csv", &index, &of) != 2) continue;
     if (entry.path().filename() != table_name(Shard{index, of}) || of > kMaxRuns) continue;
     if (count != 0 && of != count) {
-      fail_in_file(entry.path(),
-                   fmt::format("is one of {} shards, another one of {}; allowed: shards of one division", of, count));
+      fail_in_file(
+          entry.path(),
+          fmt::format(
+              "belongs to a sweep of {} shards, another file to a sweep of {} shards; allowed: shards of one sweep", of,
+              count));
     }
     count = of;
   }

@@ -5,7 +5,7 @@
 /// Compares numbers that have errors.
 namespace hapbench {
 
-/// Relative difference below which two numbers count as equal. It is the resolution of a table of ratios with
+/// Relative difference below which two numbers count as equal. It is the resolution of ratios that a table shows with
 /// three digits, and far above the rounding errors by which mathematically equivalent algorithms differ.
 inline constexpr double kRankResolution = 1e-3;
 

@@ -23,20 +23,22 @@ inline constexpr std::string_view kSharesReference = "proxy";
 struct RankingEntry {
   std::string scenario, algorithm, metric;
   std::uint64_t seeds = 1, failed = 0;
-  std::string outcome;              ///< how its runs ended: "completes" if all outcomes are equal, otherwise the
-                                    ///< outcomes with counts, such as "completes 3; diverges 2"
+  /// How the runs ended: the common outcome, such as "completes", if all outcomes are equal; otherwise the outcomes
+  /// with counts, such as "completes 3; diverges 2".
+  std::string outcome;
   std::optional<double> mean = {};  ///< mean of the metric; empty if all runs failed or no run has the metric
   /// Sample standard deviation of the metric over the seeds; empty for a single seed, or if the seed does not affect
   /// the run.
   std::optional<double> spread = {};
-  /// Error of the mean: mean of the errors of the runs' numbers; empty if no error is known.
+  /// Error of the mean: mean, over the runs, of the error of the metric; empty if no error is known.
   std::optional<double> tolerance = {};
   bool has_known_error = true;  ///< false if Ranking::estimated_error has no value for one of the runs
   /// 1 + the number of better algorithms. Algorithms without failures come first, in the order of their means
   /// (is_less()). Algorithms without failures and without a mean come after them: for example, a tool that is thrown
   /// out at once has no settled force. Algorithms with failures follow, in the order of their number of failed seeds.
   /// Empty if no algorithm has the metric, if neither smaller nor larger values are better, if only a bound of the mean
-  /// is known (is_only_bounded()) or its error is unknown, or if all algorithms would have the same rank.
+  /// is known (is_only_bounded()) or its error is unknown, or if all algorithms would have the same rank. Also empty if
+  /// the reference force of the metric comes from the same constraints (Ranking::shares_reference()).
   std::optional<std::uint64_t> rank = {};
   std::uint64_t common_seeds = 1;
   Better better = Better::less;
@@ -47,8 +49,9 @@ struct RankingEntry {
 /// Result of one algorithm over all scenarios and metrics.
 struct LawRankingEntry {
   std::string algorithm;
-  std::optional<double> mean_rank;  ///< mean of its ranks, including ranks for failures; empty if it has no rank
-  std::vector<std::string> fails;   ///< scenarios in which it failed for at least one seed
+  /// Mean of the algorithm's ranks, including ranks for failures; empty if the algorithm has no rank.
+  std::optional<double> mean_rank;
+  std::vector<std::string> fails;  ///< scenarios in which the algorithm failed for at least one seed
 };
 
 /// Returns the estimated error of a metric of a run, by the index of the run; an empty value if it is unknown.
@@ -111,7 +114,8 @@ bool have_reference(std::span<const Result> runs);
 /// Ranks the algorithms of a finished comparison by `metrics`, which are names of summary.json. Without metrics, uses
 /// kFidelityMetrics if every run has a reference force, else kDefaultMetrics. A run has failed if its outcome is a
 /// failure, or is not among the outcomes that its scenario expects. A tool that a script leads through the surface is
-/// an exception: its run has not failed. With `estimated_error`, the ranks also respect these errors.
+/// an exception: its run has not failed. One mean is better than another only if they differ by more than the sum of
+/// their errors (is_less()). The errors are `estimated_error`; if it is empty, the tolerances of the metrics.
 Ranking rank_comparison(const Comparison& comparison, std::span<const Result> reports,
                         const std::vector<std::string>& metrics, const EstimatedError& estimated_error = {});
 

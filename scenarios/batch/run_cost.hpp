@@ -33,9 +33,9 @@ inline constexpr unsigned kTimingRepetitions = 5;
 /// Measures the cost of `count` scenarios, one run at a time. `scene` returns scenario i.
 ///
 /// Every round measures each scenario once, so that a slow change of the processor's speed affects all scenarios alike.
-/// A measurement repeats a short run until about 20 ms have been measured, but at most 1000 times. Each scenario keeps
-/// its simulation until the end; scenarios with equal environments share a point shell. `jobs` only supplies label and
-/// listener of the progress bar. Throws InputError and Stopped.
+/// A measurement repeats a short run until about 20 ms have been measured, but at most 1000 times. The simulations of
+/// all scenarios stay in memory until the end; scenarios with equal environments share a point shell. `jobs` only
+/// supplies label and listener of the progress bar. Throws InputError and Stopped.
 std::vector<RunCost> measure_cost(std::size_t count, const std::function<CheckedScenario(std::size_t)>& scene,
                                   const JobOptions& jobs, unsigned repetitions = kTimingRepetitions);
 

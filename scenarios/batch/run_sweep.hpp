@@ -31,11 +31,11 @@ struct SweepReport {
   std::string problem;                ///< message of this exception
 };
 
-/// Runs the cases of a plan, or of its shard, and writes the table and the JSON file next to it. The files
-/// depend neither on the number of jobs nor on interruptions. Runs with the same environment share its point
-/// shell. A sweep that is killed loses only unfinished runs; after SIGINT and SIGTERM, started runs are
-/// finished. Throws InputError if it would continue the table of another sweep or overwrite finished rows of
-/// this sweep. Throws IoError and Stopped.
+/// Runs the cases of a plan, or only the cases of SweepOptions::shard, and writes the table and the JSON file next to
+/// it. The files depend neither on the number of jobs nor on interruptions. Runs with the same environment share its
+/// point shell. A sweep that is killed loses only unfinished runs; after SIGINT and SIGTERM, started runs are finished.
+/// Throws InputError if it would continue the table of another sweep or overwrite finished rows of this sweep. Throws
+/// IoError and Stopped.
 SweepReport run_sweep(const SweepPlan& plan, const SweepOptions& options);
 
 }  // namespace hapbench

@@ -58,8 +58,8 @@ namespace {
 /// Splits the lines of a file of --points into cells. Skips blank lines and comments.
 class PointLines {
  public:
-  /// Reads the header. It is the first line that is not a comment, or, if this line has values instead of paths, the
-  /// last comment with paths above it.
+  /// Reads the header, which gives the paths of the fields. If the first line that is not a comment has paths, this
+  /// line is the header. If it has values instead, the header is the last comment with paths above it.
   PointLines(std::string_view text, const std::filesystem::path& file) : lines_(text), file_(file) {
     std::string_view comment;
     std::size_t comment_line = 0;

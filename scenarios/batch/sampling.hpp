@@ -20,7 +20,7 @@ inline constexpr std::string_view kRandomPoints = "random";  ///< independent, u
 /// Name for points that are read from a file (--points).
 inline constexpr std::string_view kPointsOfFile = "points";
 
-/// A sample of the unit cube. Equal samples have bit-identical points on every machine.
+/// A sample of the unit cube. Samples with equal members have bit-identical points on every machine.
 struct Sampling {
   std::string_view method = kLatinHypercube;      ///< kLatinHypercube, kRandomPoints or kPointsOfFile
   std::size_t count = 1;                          ///< number of points

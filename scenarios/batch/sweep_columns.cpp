@@ -45,10 +45,10 @@ std::string finished_row(const SweepPlan& plan, std::size_t run, const Result& s
   const MetricList& metrics = summary.metrics;
   for (const Metric& metric : metrics) {
     if (std::ranges::find(plan.metrics, metric.name) != plan.metrics.end()) continue;
-    throw InputError(
-        fmt::format("has the metric {}, for which no run that was checked before the first one has a column; allowed: "
-                    "sweeps whose first runs record what the others record",
-                    metric.name));
+    throw InputError(fmt::format(
+        "has the metric {}, which none of the first runs of the sweep records, so that the table has no column for it; "
+        "allowed: sweeps whose first runs record all metrics of the other runs",
+        metric.name));
   }
   for (const std::string& name : plan.metrics) cells.push_back(cell_text(value_of(metrics, name)));
   for (const std::string& name : plan.bounded) {

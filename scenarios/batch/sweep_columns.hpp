@@ -11,14 +11,14 @@
 /// Columns of sweep.csv: their names and the cells of a row. A new column needs one line in each function.
 namespace hapbench {
 
-/// Prefix of the heading of a metric's tolerance, as in summary.json.
+/// Beginning of the heading of a tolerance column; the name of the metric follows. The same as in summary.json.
 inline constexpr std::string_view kToleranceOf = "tolerances.";
 
 /// Heading and meaning of the column of RunEnd::ended_at.
 inline constexpr std::string_view kEndedAt = "ended_at_s";
 inline constexpr const char* kEndedAtMeaning =
-    "time at which the run failed for good and ended; its metrics are then empty (hapbench describe \"early end\"); "
-    "empty for all other runs";
+    "time at which the run failed and ended early; its metrics are then empty (hapbench describe \"early end\"); empty "
+    "for all other runs";
 
 /// Returns the names of the columns: index, varied fields, outcome, expected, steps, ended_at_s, metrics, tolerances,
 /// state_hash.

@@ -28,8 +28,9 @@ namespace {
 struct CheckedRun {
   std::vector<std::string> warnings;
   MetricList metrics;
-  std::string files;  ///< text that identifies the named files: the folder of the scenario, and the JSON objects that
-                      ///< name files
+  /// Text that identifies the files that the scenario names: the folder of the scenario, and the JSON objects that name
+  /// files.
+  std::string files;
   AlgorithmOrigin origin;
 };
 
@@ -55,9 +56,9 @@ void add_names(Names& names, const MetricList& metrics) {
   for (const Metric& metric : metrics) names.insert(metric.name);
 }
 
-/// Reads the files that the scenarios of `runs` name, and returns their hashes. Adds their warnings to the
-/// plan. If a scenario replays a recorded motion, adds the metrics of such a run to `metrics`; they depend on whether
-/// the recording has a force.
+/// Reads the files that the scenarios of `runs` name, and returns the hashes of the files. Adds the warnings about
+/// scenarios and files to the plan. If a scenario replays a recorded motion, adds the names of the metrics of its run to
+/// `metrics`; these metrics depend on whether the recording has a force.
 Json check_files(SweepPlan& plan, const std::vector<std::size_t>& runs, Names& metrics) {
   Json hashes = Json::array();
   for (const std::size_t run : runs) {
@@ -75,8 +76,8 @@ Json check_files(SweepPlan& plan, const std::vector<std::size_t>& runs, Names& m
   return hashes;
 }
 
-/// Returns the values of an axis for SweepPlan::content. For a long range or a sampled range, returns only both ends
-/// and the scale. For values from a file, returns only the path.
+/// Returns the values of an axis for SweepPlan::content. For a long range or a sampled range, returns only both ends,
+/// the scale, and for a long range the number of values. For values from a file, returns only the path.
 Json axis_content(const Axis& axis, bool from_file) {
   constexpr std::size_t kMaxListed = 10'000;
   Json content = {{"path", axis.path}};

@@ -43,10 +43,10 @@ struct SweepTable {
   std::filesystem::path file;
   Json about;  ///< content of sweep.json
   std::vector<std::string> columns;
-  std::vector<SweepRow> rows;  ///< rows that satisfy the conditions of read_sweep(); empty if there are more than
-                               ///< kMaxRows
-  SweepCounts counts;          ///< counts of all rows
-  SweepCounts kept;            ///< counts of the rows that satisfy the conditions
+  /// Rows that satisfy the conditions of read_sweep(); empty if more than kMaxRows rows satisfy the conditions.
+  std::vector<SweepRow> rows;
+  SweepCounts counts;  ///< counts of all rows
+  SweepCounts kept;    ///< counts of the rows that satisfy the conditions
 
   /// Returns the index of a column; the number of columns if it does not exist.
   std::size_t column_index(std::string_view column) const {

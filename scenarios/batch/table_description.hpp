@@ -6,7 +6,7 @@
 
 #include "scenarios/input/json_file.hpp"
 
-/// The JSON file next to a table, which describes the sweep. Tables of the same sweep have the same "definition" in it.
+/// The JSON file next to a table, which describes the sweep. The files of the same sweep have the same "definition".
 namespace hapbench {
 
 /// Returns the path of the JSON file next to a table, such as sweep.json for sweep.csv.

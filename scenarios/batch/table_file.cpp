@@ -39,10 +39,12 @@ TableFile::TableFile(TableTitle title, const Keep& keep)
     resume(keep);
   } else if (rows > 0) {
     const bool is_same = has_same_definition();
-    fail_in_file(part_,
-                 fmt::format("holds {} finished runs of {} sweep, which was interrupted; allowed: {}another "
-                             "--out, or to begin anew without this file",
-                             rows, is_same ? "this" : "another", is_same ? "--resume to go on from there, " : ""));
+    fail_in_file(
+        part_,
+        fmt::format(
+            "holds {} finished runs of {} sweep, which was interrupted; allowed: {}another --out, or to start again "
+            "after removing this file",
+            rows, is_same ? "this" : "another", is_same ? "--resume to continue, " : ""));
   }
   // Start a new .part file, or append to it.
   const bool is_new = !keep || !fs::exists(part_, error) || fs::file_size(part_, error) == 0;
@@ -72,10 +74,11 @@ void TableFile::resume(const Keep& keep) {
   const bool is_part = fs::exists(part_, error);
   if (!is_part && !fs::exists(title_.file, error)) return;
   if (!has_same_definition()) {
-    fail_in_file(is_part ? part_ : title_.file,
-                 fmt::format("is not the table of this sweep; --resume needs the same scenario, --set, --vary, "
-                             "--shard, named files, plugins and program; allowed: another --out, or {}",
-                             is_part ? "to begin anew without this file" : "no --resume, which replaces this file"));
+    fail_in_file(
+        is_part ? part_ : title_.file,
+        fmt::format("is not the table of this sweep; --resume needs the same scenario, --set, --vary, "
+                    "--shard, named files, plugins and program; allowed: another --out, or {}",
+                    is_part ? "to start again after removing this file" : "no --resume, which replaces this file"));
   }
   if (!is_part) {
     write_file_atomically(about_part_, json_text(title_.about));

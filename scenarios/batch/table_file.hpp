@@ -42,7 +42,7 @@ class TableFile {
   /// Throws IoError.
   explicit TableFile(TableTitle title, const Keep& keep = {});
 
-  /// Returns the number of rows of an unfinished table.
+  /// Returns the number of rows in FILE.part, the unfinished table of `file`; 0 if FILE.part does not exist.
   static std::size_t rows_in_progress(const std::filesystem::path& file);
 
   /// For each case: true if it has a row.

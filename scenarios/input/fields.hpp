@@ -18,10 +18,11 @@
 
 /// The format of scenario files. It is described once in code, so that program, files, schema and documentation
 /// cannot disagree. Each struct T has a function `describe(Fields&, T&)` that lists its fields with meaning, unit
-/// and range. Visitors, which derive from Fields, call these functions:
-///   - read_value (a reader) reads a value from JSON,
-///   - json_of (a writer) writes a value as JSON and lists the files that it names,
-///   - guide_to builds the JSON Schema and the documentation.
+/// and range. A visitor is an object of a class that derives from Fields and is passed to `describe`. Three functions
+/// use visitors:
+///   - read_value() uses a reader, which reads a value from JSON,
+///   - json_of() uses a writer, which writes a value as JSON and lists the files that the value names,
+///   - guide_to() uses a visitor that builds the JSON Schema and the documentation.
 namespace hapbench {
 
 /// Type of a parameter that is itself a function. The callee may only call it, and must not store it.
@@ -192,7 +193,8 @@ class Fields {
       std::visit([&](auto& held) { each(f, held); }, i == value.index() ? value : example);
     });
   }
-  /// A variant for which a function `describe(Fields&, T&)` is visible for each alternative T that has members.
+  /// A variant whose alternatives are described by functions `describe(Fields&, T&)`. An alternative T without members
+  /// needs no such function.
   template <class... Ts>
   void variant(std::variant<Ts...>& value, const char* what, const TypeName (&types)[sizeof...(Ts)],
                Untyped untyped = Untyped::refused) {

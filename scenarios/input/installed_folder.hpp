@@ -5,7 +5,7 @@
 
 namespace hapbench {
 
-/// Returns a folder of files that come with hapbench. Searches share/hapbench/NAME in this order and returns the
+/// Returns a folder of files that come with hapbench. Searches for share/hapbench/NAME in this order and returns the
 /// first existing folder:
 ///   1. in each folder above the shared object that contains this library (libhapbench.so or a Python module);
 ///   2. in the parent of the running program's folder (an installed hapbench, or its build tree);

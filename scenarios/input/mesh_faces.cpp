@@ -14,7 +14,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// A warning reports polygons whose unevenness is above this value. Unevenness: largest distance of a corner from the
-/// plane, divided by the diameter of the polygon.
+/// plane of the polygon, divided by the diameter of the polygon.
 constexpr double kReportedUnevenness = 0.05;
 
 /// Throws InputError that names the file and, if lines are known, the line of an entry.
@@ -30,7 +30,8 @@ std::string place_of_face(const MeshFaces& faces, std::size_t f) {
                                      : fmt::format("{} {}", faces.face_name, f);
 }
 
-/// Counts the polygons with a property that a warning reports. Keeps the first polygon and the largest value.
+/// Counts the polygons with a property that a warning reports. Keeps the number of the first polygon, and the largest
+/// value of the property, such as the largest unevenness.
 struct Reported {
   std::size_t count = 0, first = 0;
   double largest = 0.0;
@@ -72,7 +73,8 @@ class RepeatedPolygons {
     hashes_ = std::move(repeated);
   }
 
-  /// Appends the triangles of an earlier copy of polygon `f`, and returns true if there is one.
+  /// If an earlier polygon has the same corners as polygon `f`, appends the triangles of the earlier polygon, wound as
+  /// polygon `f`, and returns true.
   bool append_copy(std::size_t f, std::vector<TriangleCorners>& triangles) {
     if (hashes_.empty()) return false;
     const std::uint64_t hash = hash_of(f);
@@ -172,11 +174,11 @@ std::vector<TriangleCorners> triangles_of(MeshFaces& faces, const fs::path& file
   if (uneven.count > 0) {
     faces.warnings.push_back(fmt::format(
         "polygons that are not planar: {}, the first {}; the largest is off its plane by {:.2g} % of its diameter; "
-        "their triangles are one of several choices",
+        "other divisions into triangles are possible",
         uneven.count, place_of_face(faces, uneven.first), 100.0 * uneven.largest));
   }
   if (repeated.count > 0) {
-    faces.warnings.push_back(fmt::format("polygons with repeated corners, which were left out: {}, the first {}",
+    faces.warnings.push_back(fmt::format("polygons whose repeated corners were left out: {}, the first {}",
                                          repeated.count, place_of_face(faces, repeated.first)));
   }
   return triangles;

@@ -52,8 +52,8 @@ CheckedMesh connect(const TriangleSoup& soup, const fs::path& file) {
   }
 }
 
-/// Maximum number of faces after refinement. A closed triangle mesh has about half as many vertices as faces, so
-/// that this bounds the number of points.
+/// Maximum number of faces after refinement. It limits the number of points to about kMaxSurfacePoints, because a
+/// closed triangle mesh has about half as many vertices as faces.
 constexpr double kMaxFaces = 2.0 * kMaxSurfacePoints;
 
 /// Throws InputError for an open mesh whose file ends within the line of the last face, if this face has fewer corners
@@ -156,16 +156,16 @@ void warn_of_specks(const MeshFindings& found, const Warn& warn) {
 template <class Warn>
 void warn_of_copies(const MeshFindings& found, const Warn& warn) {
   if (found.is_double_sided) {
-    warn(fmt::format("{}: each triangle is listed with both windings, and the first of them was kept{}: {}",
+    warn(fmt::format("{}: each triangle is listed with both windings, and only the first copy was kept{}: {} triangles",
                      found.open_edges.empty() ? "every face is double" : "a double-sided sheet",
                      found.open_edges.empty() ? "" : ", so that one side remains (flip_normals selects the other side)",
                      found.opposite_triangles));
   } else if (found.opposite_triangles > 0) {
-    warn(fmt::format("faces left out, which repeat an earlier face with opposite winding: {}",
+    warn(fmt::format("faces left out because they repeat an earlier face with opposite winding: {}",
                      found.opposite_triangles));
   }
   if (found.repeated_triangles > 0)
-    warn(fmt::format("faces left out, which repeat an earlier face: {}", found.repeated_triangles));
+    warn(fmt::format("faces left out because they repeat an earlier face: {}", found.repeated_triangles));
 }
 
 /// Warns about closed components that enclose no volume. Their two sides have no triangle in common, because the file
@@ -222,7 +222,7 @@ std::vector<std::string> MeshFile::warnings(const fs::path& file) const {
     const Vec3 a = 1e3 * box.min, b = 1e3 * box.max;
     warn(fmt::format(
         "the mesh is open: {} boundary edges, within x {:.3g} ... {:.3g}, y {:.3g} ... {:.3g}, z {:.3g} ... {:.3g} mm; "
-        "beyond them there is nothing to touch",
+        "the surface ends there",
         found.open_edges.size(), a.x(), b.x(), a.y(), b.y(), a.z(), b.z()));
   }
   // Warn about edges with more than two faces.
@@ -234,9 +234,9 @@ std::vector<std::string> MeshFile::warnings(const fs::path& file) const {
   }
   // Warn about repaired faces.
   for (const auto& [count, text] :
-       {std::pair{found.degenerate_triangles, "faces left out, two of their corners being the same"},
-        {found.flipped_triangles, "faces turned, which were wound against their neighbours"},
-        {found.inverted_parts, "closed parts turned, which were inside out"}})
+       {std::pair{found.degenerate_triangles, "faces left out because two of their corners are equal"},
+        {found.flipped_triangles, "faces reversed because they were wound against most faces of their component"},
+        {found.inverted_parts, "closed components reversed because their normals pointed to the wrong side"}})
     if (count > 0) warn(fmt::format("{}: {}", text, count));
   warn_of_flat_components(found, warn);
   warn_of_specks(found, warn);

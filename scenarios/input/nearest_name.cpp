@@ -19,9 +19,9 @@ namespace {
 /// into `b`. An edit replaces, removes or inserts a letter, or swaps two adjacent letters. Appending the whole part of
 /// `b` after an underscore also counts as one edit.
 std::size_t edit_distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1), before(row),
-      row_before_previous(row);  // rows of the distance matrix; row[j]: distance from the first i letters of `a` to
-                                 // the first j letters of `b`
+  // Rows of the distance matrix. Entry j of row i is the distance from the first i letters of `a` to the first j
+  // letters of `b`.
+  std::vector<std::size_t> row(b.size() + 1), before(row), row_before_previous(row);
   std::iota(row.begin(), row.end(), std::size_t{0});
   for (std::size_t i = 1; i <= a.size(); ++i) {
     row_before_previous.swap(before);

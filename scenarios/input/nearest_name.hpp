@@ -17,13 +17,13 @@ std::string nearest_name(std::string_view given, std::span<const std::string> va
 /// `; version 0.4.0 renamed it to "x"`. If no name is near enough, returns an empty text.
 std::string nearest_name_hint(std::string_view given, std::span<const std::string> valid);
 
-/// Throws an InputError about `option` if its value `name` is not one of the valid names. `shown_by` is passed to
-/// quoted_list.
+/// Throws an InputError about `option` if its value `name` is not one of the valid names. `shown_by`: command that
+/// shows all valid names; see quoted_list().
 void require_valid_option(const std::string& option, const std::string& name, std::span<const std::string> valid,
                           std::string_view shown_by = {});
 
 /// Throws an InputError if `name` is not one of the valid names. `got` is the beginning of the message, before
-/// the name. `shown_by` is passed to quoted_list.
+/// the name. `shown_by`: command that shows all valid names; see quoted_list().
 void require_valid_name(std::string_view got, const std::string& name, std::span<const std::string> valid,
                         std::string_view shown_by = {});
 

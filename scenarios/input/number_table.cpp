@@ -252,9 +252,9 @@ std::size_t NumberTable::line_of(std::size_t row) const {
 
 namespace {
 
-/// The columns of a file that are read into a table.
+/// Says which columns of a file are copied into a NumberTable. `chosen` has the meaning of NumberTable::chosen.
 struct TakenColumns {
-  std::vector<std::size_t> cells;  ///< for each column of the table: its index in the file
+  std::vector<std::size_t> cells;  ///< for each column of the table: index of the same column in the file
   std::vector<std::optional<std::size_t>> chosen;
 };
 
@@ -288,13 +288,13 @@ std::vector<std::string_view> missing_names(const std::vector<std::string_view>&
   return missing;
 }
 
-/// Returns the index of the alternative whose columns the file has. If the file has no complete alternative, returns
-/// empty and appends the missing names to `missing`; appends nothing if the quantity is optional and the file has none
-/// of its columns. Throws InputError if the file has the columns of two alternatives.
+/// Returns the index of the alternative whose columns the file has. If the file has all columns of no alternative,
+/// returns nullopt and appends the names of the missing columns to `missing`. If the quantity is optional and the file
+/// has none of its columns, appends no name. Throws InputError if the file has all columns of two alternatives.
 std::optional<std::size_t> chosen_alternative(const TableQuantity& quantity, const CsvReader& csv,
                                               const std::filesystem::path& file, std::vector<std::string>& missing) {
   std::optional<std::size_t> chosen;
-  std::vector<std::string> absent;  // names that each incomplete alternative lacks
+  std::vector<std::string> absent;  // for each incomplete alternative: the names of its missing columns
   bool has_some = false;
   for (std::size_t i = 0; i < quantity.alternatives.size(); ++i) {
     const auto& alternative = quantity.alternatives[i];
@@ -330,7 +330,7 @@ std::optional<std::string> unused_columns(const CsvReader& csv, const TakenColum
                      fmt::join(names, ", "), count == 1 ? "is" : "are");
 }
 
-/// Finds the columns of the quantities in the header. Throws InputError if a column is missing.
+/// Searches the header of the file for the columns of each quantity. Throws InputError if a required column is missing.
 TakenColumns take_columns(const CsvReader& csv, const std::filesystem::path& file,
                           std::span<const TableQuantity> quantities) {
   const Words& columns = csv.columns();
@@ -373,7 +373,8 @@ std::string cell_problem(const CsvReader& csv, std::size_t cell) {
                      quoted_token(text), cause);
 }
 
-/// Converts a cell that std::from_chars does not accept: a number with a leading '+', or with a decimal comma.
+/// Converts a cell that std::from_chars does not accept: a number with a leading '+' or with a decimal comma. Returns
+/// nullopt for any other cell. With `decimal_comma`, the number must have a decimal comma.
 std::optional<double> unusual_number(std::string_view cell, bool decimal_comma) {
   if (cell.starts_with('+') && !cell.starts_with("+-")) cell.remove_prefix(1);
   if (!decimal_comma) return finite_number(cell);

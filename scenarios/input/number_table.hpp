@@ -144,7 +144,7 @@ struct NumberTable {
 };
 
 /// Parses the contents of a file of numbers. Finds columns by their names. Ignores other columns, and reports them in
-/// the notes. Numbers may have a decimal comma if another character separates the cells; a note reports it.
+/// the notes. Numbers may have a decimal comma if another character separates the cells; a note then reports the comma.
 /// Throws InputError with file and line if a column is missing or named twice, if a row has the wrong number of
 /// cells, if a cell is not a finite number, or if there are more than `max_rows` rows.
 NumberTable parse_number_table(std::string_view text, const std::filesystem::path& file,

@@ -12,8 +12,8 @@ namespace hapbench {
 /// bytes only once, but a command may need them several times: to check, to run and to hash. Thread-safe.
 class PipeContents {
  public:
-  /// Returns the stored contents of a pipe, if the pipe has not been written to since it was read. Returns nothing for
-  /// every other file.
+  /// Returns the stored contents of a pipe. Returns nullopt if the pipe has been written to since its contents were
+  /// stored, if no contents are stored, or if the file is not a pipe.
   std::optional<std::string> find(const std::filesystem::path& file) const;
   /// Stores the contents if the file is a pipe. Called after the file was read to its end.
   void keep(const std::filesystem::path& file, const std::string& contents);

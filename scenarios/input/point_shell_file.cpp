@@ -43,7 +43,8 @@ ReadPoints parse_csv_points(std::string_view text, const fs::path& file, std::ve
   return {std::move(points), [table = std::move(table)](std::size_t i) { return table.line_of(i); }};
 }
 
-/// Checks the points and normalises their normals. Throws InputError that names the file and the point.
+/// Checks the points and normalises their normals. If a point is invalid, throws InputError that names the file and the
+/// point.
 void check_and_normalise(ReadPoints& read, const fs::path& file) {
   std::vector<SurfacePoint>& points = read.points;
   if (points.empty()) fail_in_file(file, "has no points; allowed: at least one");

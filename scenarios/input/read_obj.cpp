@@ -42,8 +42,8 @@ class IgnoredStatements {
                                      quoted_token(keyword), lines.count, lines.first));
     }
   }
-  /// Throws InputError at the first unknown statement; does nothing if all statements are known. Called for a file
-  /// without faces, which may have another format.
+  /// Throws InputError at the first unknown statement; does nothing if all statements are known. Called if the file has
+  /// no faces, because such a file may have another format than OBJ.
   void refuse_first_unknown(const fs::path& file) const {
     const auto* first = static_cast<const std::pair<const std::string_view, Lines>*>(nullptr);
     for (const auto& kind : kinds_)

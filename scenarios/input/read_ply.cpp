@@ -49,8 +49,8 @@ const PlyType* ply_type(std::string_view name) {
   return found == std::end(kPlyTypes) ? nullptr : found;
 }
 
-/// Names of the vertex properties that are read. The role of a property is a number: the index in this list for these
-/// properties, kCorners or kIgnored for other properties.
+/// Names of the vertex properties that are read. Each property has a role, which is a number. The role of a property in
+/// this list is its index in the list. The role of every other property is kCorners or kIgnored.
 constexpr std::array<std::string_view, 6> kVertexProperties = {"x", "y", "z", "nx", "ny", "nz"};
 constexpr std::size_t kCorners = 6;  ///< role of a list with the vertex indices of a face
 constexpr std::size_t kIgnored = 7;  ///< role of every other property
@@ -59,9 +59,9 @@ using Values = std::array<double, kVertexProperties.size()>;
 
 /// A property of an element: a number or a list of numbers.
 struct Property {
-  const PlyType* count;  ///< type of a list's length; null for a scalar
-  const PlyType* type;   ///< type of the number or of the list's entries
-  std::size_t role = kIgnored;
+  const PlyType* count;         ///< type of a list's length; null for a scalar
+  const PlyType* type;          ///< type of the number or of the list's entries
+  std::size_t role = kIgnored;  ///< index in kVertexProperties, kCorners or kIgnored
 };
 
 /// An element of the header, such as "vertex" or "face": a table with `entries` entries.
@@ -213,8 +213,8 @@ class PlyValues {
     word_ = 0;
     if (is_text_ && !text_.next()) fail_cut_short();
   }
-  /// Ends the current entry. If its line has more values than the header declares, counts it for warn_of_rest(). Call
-  /// end() after all declared values of the entry were read.
+  /// Ends the current entry. If the line of the entry has more values than the header declares, counts this line for
+  /// warn_of_rest(). Call end() after all declared values of the entry were read.
   void end() {
     if (!is_text_ || word_ >= text_.words().size()) return;
     if (long_entries_++ == 0) first_long_line_ = text_.line();

@@ -18,7 +18,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Sizes in a binary file [bytes]: the name, the name with the number of triangles, and one triangle.
+// Sizes in a binary file [bytes]. kName: the name. kHeader: the name and the number of triangles. kTriangle: one
+// triangle.
 constexpr std::size_t kName = 80, kHeader = 84, kTriangle = 50;
 
 /// Keywords of an STL file in text form.

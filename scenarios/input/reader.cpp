@@ -18,7 +18,8 @@ namespace {
 /// name. Otherwise returns an empty text.
 std::string text_of_file_hint(const Json& given) {
   if (!given.is_string() || !given.get_ref<const std::string&>().ends_with(".json")) return "";
-  return fmt::format("; on a command line \"$(cat {})\" is what is in the file", given.get_ref<const std::string&>());
+  return fmt::format("; on a command line \"$(cat {})\" is the content of the file",
+                     given.get_ref<const std::string&>());
 }
 
 /// Visitor that reads a JSON value into the C++ object that a Fields::Body describes. Implements read_value.
@@ -166,7 +167,8 @@ class Reader final : public Fields {
   void read_number(std::size_t i, double& value, NumberRange range) const {
     read_value(json_[i], element(at_, i), [&](Fields& f) { f.number(value, range); });
   }
-  /// Calls `read` and stores an InputError that it throws. throw_errors throws the stored errors later.
+  /// Calls `read`. If `read` throws an InputError, stores the error for throw_errors(). Once kMaxFaults errors are
+  /// stored, calls throw_errors().
   void collect(FunctionRef<> read) {
     try {
       read();

@@ -41,7 +41,7 @@ std::string read_text_file(const std::filesystem::path& file, std::uintmax_t lar
   if (std::filesystem::is_directory(file, error)) throw InputError("is a directory, not a file");
   std::ifstream stream(file, std::ios::binary);
   if (!stream) throw InputError(fmt::format("cannot be read: {}", std::strerror(errno)));
-  // Read in chunks and check the limit after each, because the size of a pipe or device is not known in advance.
+  // Read in chunks and check the size after each chunk, because the size of a pipe or device is not known in advance.
   std::string text;
   std::vector<char> chunk(1 << 16);
   while (stream.read(chunk.data(), static_cast<std::streamsize>(chunk.size())) || stream.gcount() > 0) {

@@ -79,9 +79,9 @@ std::vector<std::string> names_of(const Table& table, Name name) {
 
 /// Returns the lines of a text one by one. The text must outlive the reader.
 ///
-/// Skips a byte order mark (UTF-8) at the start of the text. A line ends with LF, CRLF or CR, so that line numbers are
-/// the numbers of an editor. If the first line ends with CR alone, CR is the line end of the file. An LF after a CR
-/// then belongs to the next line, because it may be the first byte of binary data after a header.
+/// Skips a byte order mark (UTF-8) at the start of the text. A line ends with LF, CRLF or CR, so that the reader counts
+/// lines as an editor does. If the first line ends with CR alone, every CR ends a line. An LF after a CR then belongs
+/// to the next line, because it may be the first byte of binary data after a header.
 class LineReader {
  public:
   explicit LineReader(std::string_view text);

@@ -13,8 +13,8 @@ namespace hapbench {
 /// the kind of content.
 using OnFile = std::function<void(const std::string& pointer, const std::string& path, const FileContent& content)>;
 
-/// Returns the JSON of the value that `value` describes. If `file` is given, calls it for each file that the
-/// value names, in the order of the fields. Throws std::logic_error if an enumerator has no name or a variant has
+/// Returns the JSON of the value that `value` describes. If the callback `file` is given, calls it for each file that
+/// the value names, in the order of the fields. Throws std::logic_error if an enumerator has no name or a variant has
 /// no value.
 Json json_of(Fields::Body value, const OnFile& file = nullptr);
 

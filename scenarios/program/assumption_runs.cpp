@@ -30,10 +30,10 @@ struct MovedClaim {
 
 Columns<MovedClaim> moved_columns() {
   Columns<MovedClaim> columns;
-  columns.add({{"claim", "", "id of a claim, which describe explains", &MovedClaim::id, only_printed()}});
+  columns.add({{"claim", "", "id of a claim; \"hapbench describe ID\" explains it", &MovedClaim::id, only_printed()}});
   columns.add({{"verdict", "", "verdict under the assumption set", &MovedClaim::verdict, only_printed()}});
-  columns.add(
-      {{"number", "", "the number that decides, under the assumption set", &MovedClaim::number, only_printed()}});
+  columns.add({{"number", "", "measured number that decides the verdict, under the assumption set", &MovedClaim::number,
+                only_printed()}});
   columns.add({{"moved from", "", "the recorded verdict and number, if the verdict differs from the recorded verdict",
                 [](const MovedClaim& c) {
                   return c.moved() ? fmt::format("{}: {}", c.recorded, c.recorded_number) : std::string("-");
@@ -49,9 +49,10 @@ struct DecidedClaim {
 
 Columns<DecidedClaim> decided_columns() {
   Columns<DecidedClaim> columns;
-  columns.add({{"claim", "", "id of a claim, which describe explains", &DecidedClaim::id, only_printed()}});
+  columns.add(
+      {{"claim", "", "id of a claim; \"hapbench describe ID\" explains it", &DecidedClaim::id, only_printed()}});
   columns.add({{"verdict", "", "verdict under the recorded assumptions", &DecidedClaim::verdict, only_printed()}});
-  columns.add({{"robustness", "", "the assumptions of which another plausible value changes the verdict",
+  columns.add({{"robustness", "", "assumptions for which another plausible value changes the verdict",
                 &DecidedClaim::robustness, only_printed()}});
   return columns;
 }
@@ -97,7 +98,7 @@ std::string set_text(std::size_t number, const CalibratedSet& calibrated, const 
   if (claims.empty()) return text + "no claim depends on these assumptions\n";
   text += "\n" + moved_columns().text(claims, layout);
   const auto moved = std::ranges::count_if(claims, &MovedClaim::moved);
-  return text + fmt::format("\n{} of {} verdicts moved\n", moved, claims.size());
+  return text + fmt::format("\n{} of {} verdicts differ from the recorded verdicts\n", moved, claims.size());
 }
 
 }  // namespace

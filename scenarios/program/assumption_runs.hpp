@@ -20,15 +20,15 @@ void report_assumption_sets(const std::vector<Claim>& claims, const std::filesys
                             const std::filesystem::path& scratch, const CommonOptions& options, Report& report,
                             ProgramContext& context);
 
-/// Judges each claim of `claims` with one assumption at a time at another plausible value (sensitivity.hpp). Adds the
-/// verdicts to the record in a file after each case, so that a repeated command continues an interrupted command.
-/// Reports the robustness of each verdict. Removes entries from the record whose claim is not in `all`, the list of all
-/// claims.
+/// Judges each claim of `claims` with one assumption at a time at another plausible value. Each such value of an
+/// assumption is a case (sensitivity.hpp). After each case, writes its verdicts into the sensitivity record `file`, so
+/// that a repeated command continues an interrupted command. Reports the robustness of each verdict. Removes the
+/// entries of claims that are not in `all`, the list of all claims, from the record.
 void record_sensitivity(const std::vector<Claim>& claims, const std::vector<Claim>& all,
                         const std::filesystem::path& file, const std::filesystem::path& scratch,
                         const CommonOptions& options, Report& report, ProgramContext& context);
 
-/// Returns the tables that these functions print, for `describe`.
+/// Returns the tables that report_assumption_sets() and record_sensitivity() print, for `describe`.
 std::vector<DescribedTable> assumption_tables();
 
 }  // namespace hapbench

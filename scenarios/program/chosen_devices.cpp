@@ -14,8 +14,8 @@
 namespace hapbench {
 namespace {
 
-constexpr const char *kPresets = "impedance", *kFile = ".json";  ///< kPresets: text that selects all presets;
-                                                                 ///< kFile: ending of a device file's name
+/// kPresets: text that selects all presets. kFile: ending of a device file's name.
+constexpr const char *kPresets = "impedance", *kFile = ".json";
 
 /// Returns true if the text is the path of a device file: it ends with ".json", contains "/", or is a pipe.
 bool is_file(const std::string& name) {
@@ -50,17 +50,18 @@ std::vector<ComparedDevice> chosen_devices(const std::vector<std::string>& given
   for (const std::string& name : given) {
     const std::vector<ComparedDevice> found = devices_named(name);
     if (found.empty())
-      fail_in_option("--device", fmt::format("got \"{}\"; allowed: a preset with [soft] or [stiff] behind it", name));
+      fail_in_option("--device", fmt::format("got \"{}\"; allowed: a preset, followed by [soft] or [stiff]", name));
     chosen.insert(chosen.end(), found.begin(), found.end());
   }
   // Reject a second device with the same name.
   std::set<std::string> names;
   for (const ComparedDevice& device : chosen) {
     if (names.insert(device.name).second) continue;
-    fail_in_option("--device",
-                   fmt::format("got a second device named \"{}\"; allowed: each name once, and a file is named by what "
-                               "stands before .json",
-                               device.name));
+    fail_in_option(
+        "--device",
+        fmt::format(
+            "got a second device named \"{}\"; allowed: each name once; the name of a file is its name without .json",
+            device.name));
   }
   return chosen;
 }

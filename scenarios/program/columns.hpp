@@ -27,7 +27,9 @@ struct Shown {
   bool wide = false;         ///< true if the column is printed only with --wide
   std::string heading = {};  ///< heading of the printed column, at most two lines; empty: the name of the column
   int digits = 4;            ///< significant digits of a number without a tolerance
-  bool varied = false;       ///< true: values of a varied field, printed with digits that distinguish the rows
+  /// True for the column of a varied field, that is, of a field to which the command gives several values. Its numbers
+  /// are printed with enough digits to distinguish the rows.
+  bool varied = false;
 };
 inline const Shown kOnlyJson = {.csv = false}, kOnlyCsv = {.json = false};
 /// Returns `where`, changed so that the column is also printed, under `heading` and with `digits` significant digits.
@@ -39,7 +41,7 @@ Shown only_printed(bool wide = false);
 /// Returns `where` if `has_it` is true. Otherwise returns the outputs of a column that appears nowhere.
 Shown when(bool has_it, Shown where = {});
 
-/// Returns `where` for values of a varied field (Shown::varied).
+/// Returns `where`, changed so that the column is that of a varied field (Shown::varied).
 Shown varied(Shown where);
 
 /// Returns the value of a varied field as a cell: a number if the text is a finite number, otherwise the text.
@@ -62,6 +64,7 @@ struct DescribedTable {
   std::string file = {}, holds = {};
   std::vector<Entry> columns = {};           ///< columns of the CSV file
   std::vector<Table::Column> headings = {};  ///< columns of the printed table
+  std::vector<Entry> json_only = {};         ///< members of a row in the JSON that are no columns of the CSV file
 };
 /// The columns of a table with rows of type `Row`: fixed columns, and columns that depend on the command's
 /// options.
@@ -90,7 +93,7 @@ class Columns {
   Columns(std::initializer_list<Entry> entries = {}) : entries_(entries) {}
   void add(const Columns& more) { entries_.insert(entries_.end(), more.entries_.begin(), more.entries_.end()); }
 
-  /// Writes the columns whose member `csv` is true to a CSV file, and adds the file to `files`.
+  /// Writes the columns with Shown::csv to a CSV file, and adds the file to `files`.
   void write(const std::filesystem::path& file, std::span<const Row> rows, FileSet& files) const {
     std::string header;
     for (const Entry& entry : entries_)
@@ -106,7 +109,7 @@ class Columns {
     csv.finish(&files);
   }
 
-  /// Returns a row as a JSON object, with a member for each column whose member `json` is true.
+  /// Returns a row as a JSON object, with a member for each column with Shown::json.
   Json json(const Row& row) const {
     Json object = Json::object();
     for (const Entry& entry : entries_)
@@ -156,11 +159,16 @@ class Columns {
     return headings;
   }
 
-  /// Returns the table as `describe` explains it, with all columns of the CSV file and all printed columns.
+  /// Returns the table as `describe` explains it, with all columns of the CSV file, all printed columns and all further
+  /// members of the JSON.
   DescribedTable described(std::string file = {}, std::string holds = {}) const {
     DescribedTable table{std::move(file), std::move(holds), {}, headings()};
-    for (const Entry& entry : entries_)
-      if (entry.shown.csv) table.columns.push_back(entry);
+    for (const Entry& entry : entries_) {
+      if (entry.shown.csv)
+        table.columns.push_back(entry);
+      else if (entry.shown.json)
+        table.json_only.push_back(entry);
+    }
     return table;
   }
 

@@ -18,9 +18,9 @@ namespace hapbench {
 /// Rules for the values of an option or argument. The type of the bound variable sets the type of the value.
 struct ValueRules {
   bool required = false;
-  bool several = false;          ///< true if the option may be given several times, each time with one value
-  bool comma_separated = false;  ///< true if the value is a list separated by commas; spaces around its entries are
-                                 ///< removed
+  bool several = false;  ///< true if the option may be given several times, each time with one value
+  /// True if the value is a list separated by commas. Spaces around the entries of the list are removed.
+  bool comma_separated = false;
   std::optional<std::pair<std::int64_t, std::int64_t>> range = {};  ///< smallest and largest allowed number
   std::vector<std::string> one_of = {};                             ///< allowed values; empty: every value
 };
@@ -35,8 +35,8 @@ class Command {
 
   explicit Command(CLI::App* app) : app_(app) {}
 
-  /// Adds an option if the name begins with "--", otherwise a positional argument. A space and the placeholder
-  /// of its value in the help may follow the name, as in "--out <dir>" or "scenarios <scenario>...".
+  /// Adds an option if the name begins with "--", otherwise a positional argument. `name` may end with a space and the
+  /// placeholder that the help shows for the value, as in "--out <dir>" or "scenarios <scenario>...".
   void add(const std::string& name, Variable variable, const std::string& help, const ValueRules& rules = {});
   void flag(const std::string& name, bool& value, const std::string& help);
   /// Makes parsing fail if `option` is given without `other`. An option can require one other option at most.

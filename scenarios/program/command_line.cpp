@@ -37,7 +37,7 @@ int status_with_faults(int status, ProgramContext& context) {
   const ModuleFaults faults = take_module_faults();
   if (faults.count == 0) return status;
   std::fflush(stdout);
-  print_error(context, fmt::format("a law or source of contacts from outside failed {}; its runs count as diverged: {}",
+  print_error(context, fmt::format("a law or contact source of a module failed {}; its runs count as diverged: {}",
                                    faults.count == 1 ? "once" : fmt::format("{} times", faults.count), faults.first));
   return status == kSuccess ? kUnexpectedOutcome : status;
 }

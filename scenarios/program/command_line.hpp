@@ -53,8 +53,8 @@ class CommandLine {
               const std::string& when_stopped);
   void add_module_option(CLI::App& app);
   /// Returns the indices of the positional arguments in `arguments`, whose first element is the name of a command.
-  /// Positional arguments are neither options nor values of options. An argument that follows an unknown option may be
-  /// its value and is left out. If the first element is not the name of a command, returns no indices.
+  /// Positional arguments are neither options nor values of options. Omits an argument that follows an unknown option,
+  /// because it may be the value of this option. If the first element is not the name of a command, returns no indices.
   std::vector<std::size_t> argument_indices(const ProgramArguments& arguments) const;
   int parse_and_run(ProgramArguments arguments);
 

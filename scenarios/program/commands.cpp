@@ -28,7 +28,7 @@ constexpr CommandGuide kCommands[] = {
      "validate mine.json\n"
      "validate mine.json --set environment.spacing_m=1e-4\n"
      "validate drag_molar --points shell.csv",
-     "scenarios/README.md, section \"Write a scenario\""},
+     "scenarios/INPUT_FILES.md"},
     {"run", "run", "run scenarios and diagnose the results", add_run,
      "run drag_molar\n"
      "run drag_molar --set rendering.algorithm=proxy --out results/proxy\n"
@@ -45,7 +45,7 @@ constexpr CommandGuide kCommands[] = {
      "sweep tap_wall --vary rendering.algorithm=all --vary seed=1,2,3\n"
      "sweep results/out/sweep_tap_wall --where 'inside_max_m<3e-4'",
      "scenarios/batch/README.md, section \"Sweeps\""},
-    {"decide", "limit", "find how far a field may go before runs are unstable", add_limit,
+    {"decide", "limit", "find the largest value of a field at which runs are stable", add_limit,
      "limit tap_wall --device all\n"
      "limit mine.json --algorithms mean,shaped_stiffness\n"
      "limit tap_wall --vary time.step_s --between 1e-4:1e-2",
@@ -60,7 +60,7 @@ constexpr CommandGuide kCommands[] = {
      "converge mine.json --levels 5 --metric inside_max_m\n"
      "converge drag_molar --vary environment.spacing_m\n"
      "converge drag_molar --over integrator.type=all --to 1e-6",
-     "scenarios/README.md, section \"How accurate a number is\""},
+     "scenarios/ACCURACY.md"},
     {"decide", "stress", "test every force law on degenerate contacts", add_stress,
      "stress\n"
      "stress --count 1000\n"

@@ -119,14 +119,17 @@ Columns<LevelRow> level_columns(const ConvergeStudy& study) {
       {study.metric, metric_unit(study.metric), "", result, only_printed()},
       {"observed_order", "1",
        "observed order p = ln((f_1 - f_2) / (f_2 - f_3)) / ln r of this level (f_3) and the two coarser levels, with "
-       "the refinement ratio r; empty without these",
+       "the refinement ratio r; empty for the two coarsest levels, and if the two differences have opposite signs or "
+       "one of them is only rounding",
        &Row::order},
       {"order", "1", "observed_order", order, only_printed()},
       {"error_estimate", "unit of the metric",
-       "estimated error of this level's result: with an order 1.25 |f - f*| (f* is the extrapolated value), else the "
-       "larger of the range of the last three levels and the largest difference from a finer level; for an extreme or "
-       "a metric that depends on contact events the larger of both, plus the difference of the two finest levels "
-       "without an order, plus the spread over the choice of the counted steps",
+       "estimated error of this level's result f. With an order: 1.25 |f - f*| (f* is the extrapolated value). Without "
+       "an order: the larger of the range of the last three levels and the largest difference from a finer level. For "
+       "an extreme or a metric that depends on contact events, the sampling spread is added (how much the result "
+       "depends on the choice of the evaluated steps). For such a metric, the error with an order is at least the "
+       "range of the last three levels, and without an order the difference of the two finest levels is also added "
+       "(divided by r - 1 if the ratio r of the levels is smaller than 2)",
        &Row::error},
       {"error %", "1", "of converge: error_estimate divided by the result of the finest level", percent,
        only_printed()},
@@ -149,10 +152,9 @@ Columns<ConvergeStudy> order_columns() {
       {"metric", "", "name of the metric", &Row::metric},
       {"field", "", "path of the refined field", &Row::field},
       {"formal_order", "1",
-       "formal order, expected from theory: order of the integrator for time.step_s (1 with a device, which holds the "
-       "force between samples; 2 for leapfrog without damping, whose amplitudes are of order 2 and whose positions at "
-       "a "
-       "fixed time are of order 1), 2 for other fields",
+       "formal order, expected from theory. For time.step_s with a device: 1, because the device holds the force "
+       "between samples. For time.step_s without a device: order of the integrator (for leapfrog without damping 2, "
+       "the order of amplitudes; positions at a fixed time have order 1). For other fields: 2",
        &Row::formal_order},
       {"observed_order", "1",
        "observed order of the three finest levels; empty if no order is credible (column reason)", &Row::order,
@@ -161,22 +163,25 @@ Columns<ConvergeStudy> order_columns() {
        &Row::order, kOnlyJson},
       {"reason", "", "reason why no order is stated; empty if there is an order", &Row::reason},
       {"extrapolated", "unit of the metric",
-       "extrapolated value (Richardson) f* = f_3 + (f_3 - f_2) / (r^p - 1), f_3 the finest level; empty without an "
-       "order",
+       "extrapolated value (Richardson) f* = f_3 + (f_3 - f_2) / (r^p - 1), with the results f_3 of the finest and f_2 "
+       "of the second finest level; empty without an order",
        &Row::extrapolated},
       {"gci", "1",
        "grid convergence index of the finest level, 1.25 |f_3 - f_2| / (|f_3| (r^p - 1)): relative error with a "
        "factor of safety; empty without an order",
        &Row::gci},
       {"asymptotic", "",
-       "true if the order is asymptotic: GCI_21 / (r^p GCI_32) is within 0.1 of 1 for the last three levels (level 3 "
-       "is the finest) and for the three before",
+       "true if the order is asymptotic: GCI_21 / (r^p GCI_32) is within 0.1 of 1 for the three finest levels (level 3 "
+       "is the finest) and, with four levels or more, also for the three levels that end at the second finest",
        &Row::asymptotic},
       {"low", "unit of the metric",
        "smallest result of the band (the last three levels that have the outcome of the finest level), for an extreme "
-       "or a metric that depends on contact events minus its spread over the choice of the counted steps",
+       "or a metric that depends on contact events minus the sampling spread (column error_estimate)",
        low, kOnlyCsv},
-      {"high", "unit of the metric", "largest result of the band, as column low, plus the spread", high, kOnlyCsv}};
+      {"high", "unit of the metric",
+       "largest result of the band (column low), for an extreme or a metric that depends on contact events plus the "
+       "sampling spread",
+       high, kOnlyCsv}};
 }
 
 Json study_json(const ConvergeStudy& study) {
@@ -202,13 +207,13 @@ std::string verdict_text(const ConvergeStudy& study) {
   if (!study.band) return fmt::format("no order: {}", study.reason);
   const auto [low, high] = *study.band;
   if (low == high) return fmt::format("no order: {}; the last levels give {}", study.reason, significant(low, 6));
-  // The band of an extreme value is wider than the range of the levels' results, because the extreme lies between two
-  // time steps.
+  // If the metric is an extreme value, its band (Convergence::band) is wider than the range of the levels' results,
+  // because the extreme lies between two time steps.
   const bool has_spread = std::ranges::none_of(
       study.levels, [low = low](const LevelRow& level) { return level.result && *level.result <= low; });
   return fmt::format("no order: {}; the last levels{} give {} ... {}", study.reason,
-                     has_spread ? ", widened by the error of counting only the times of the coarsest level," : "",
-                     number_text(low, high - low), number_text(high, high - low));
+                     has_spread ? " and their sampling spread" : "", number_text(low, high - low),
+                     number_text(high, high - low));
 }
 
 /// Returns a sentence that names the coarsest level from which on all levels have relative errors below `max_error`,
@@ -289,7 +294,7 @@ int study_settings(const ConvergeOptions& options, ProgramContext& context) {
   if (options.field != kStepPath)
     fail_in_option("--vary", fmt::format("got {}; allowed with --over: {}", options.field, kStepPath));
   if (!options.metrics.empty())
-    fail_in_option("--metric", "cannot be combined with --over, whose error is that of the tip's position");
+    fail_in_option("--metric", "cannot be combined with --over, which states the error of the tip's position");
   const double max_error = parse_position_error(options.to);
   const std::filesystem::path file = find_scenario(options.scenario);
   WorkPrecisionQuestion question{read_scenario_text(file), options.overrides};
@@ -387,9 +392,11 @@ void add_converge(CommandLine& line) {
               {.required = true});
   command.add("--metric <name,...>", options.metrics,
               fmt::format("metrics of summary.json (default: {})", kDefaultMetrics[0]), {.comma_separated = true});
-  command.add("--vary <field>", options.field,
-              "field to refine (default: time.step_s), such as environment.spacing_m (distance of surface points), "
-              "environment.grid_m or tool.grid_m; any real number above 0 whose decrease reduces the error");
+  command.add(
+      "--vary <field>", options.field,
+      "field to refine (default: time.step_s), such as environment.spacing_m (distance of surface points), "
+      "environment.grid_m or tool.grid_m; or any other field with a real number above 0, if a smaller value reduces "
+      "the error");
   command.add("--over <field=values>", options.over,
               "print run time and error for each value of these fields, such as integrator.type=all or "
               "rendering.algorithm=mean,proxy, at each level of the time step; repeatable",
@@ -409,19 +416,18 @@ void add_converge(CommandLine& line) {
       "Result: one row per level with its error; the first row is your scenario's own setting. Below: the observed "
       "order, the extrapolated value and the relative error of the finest level (the grid convergence index of "
       "Roache).\n\n"
-      "No order: if the contacts differ between levels or the differences do not shrink regularly, the text names "
-      "the reason. Take the range of the finest levels as the answer, printed as \"the last levels ... give A ... "
-      "B\".\n\n"
+      "No order: if the contacts differ between levels or the differences do not shrink regularly, the text names the "
+      "reason. Take the range of the finest levels as the answer, printed as \"the last levels ... give A ... B\".\n\n"
       "Files: converge.csv (one row per metric: order, extrapolated value, range), converge_levels.csv (one row per "
       "metric and level: value, error_estimate), converge_levels_timing.csv (run times). They replace earlier "
       "files.\n\n"
-      "Run time against error: --over compares each setting with a converged solution, computed by an integrator "
-      "other than the setting's with a step at least 16 times smaller. Errors are rms differences of the tip's "
-      "position and of the force over the run. Each law has its own converged solution. Files: convergence.csv "
-      "(errors) and convergence_timing.csv.\n\n"
-      "Reference force: in a scene with a reference_force (hapbench new fidelity), --over compares the laws with "
-      "this force instead: direction and size of the error, and median and 99.9th percentile of the time of a step. "
-      "Files: convergence_model.csv and convergence_model_timing.csv.\n\n"
+      "Run time against error: --over compares each setting with a converged solution, computed by another integrator "
+      "with a time step at least 16 times smaller. Errors are rms differences of the tip's position and of the force "
+      "over the run. Each law has its own converged solution. Files: convergence.csv (errors) and "
+      "convergence_timing.csv.\n\n"
+      "Reference force: in a scene with a reference_force (hapbench new fidelity), --over compares the laws with this "
+      "force instead: direction and size of the error, and median and 99.9th percentile of the time of a step. Files: "
+      "convergence_model.csv and convergence_model_timing.csv.\n\n"
       "Time: all default levels of the time step together take about 31 times as long as one run.");
 }
 

@@ -15,8 +15,8 @@ inline constexpr int kAllDigits = 17;
 /// kAllDigits the text reads back as the same double.
 std::string rounded_text(double value, int digits);
 /// Returns the number of significant digits of `value` from its leading digit down to the decimal place of the
-/// tolerance's leading digit, from 1 to `max_digits`. Returns `max_digits` without a tolerance above 0, and for a value
-/// that is 0 or not finite.
+/// tolerance's leading digit, from 1 to `max_digits`. If the tolerance is unknown or not above 0, or if `value` is 0 or
+/// not finite, returns `max_digits`.
 int deserved_digits(double value, const std::optional<double>& tolerance, int max_digits);
 /// Returns the bound of a number whose error is not smaller than the number (is_only_bounded()): the sum of magnitude
 /// and tolerance, rounded up to one significant digit. The text is "<= 0.4", or "0 +- 0.4" for a negative number. The

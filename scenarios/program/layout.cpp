@@ -16,7 +16,7 @@ namespace {
 constexpr std::size_t kMinWidth = 40;
 
 /// Returns the environment variable COLUMNS. If it is not set, returns the width of the terminal, or npos if standard
-/// output is not a terminal.
+/// output is not a terminal. Returns kMinWidth instead of a smaller width.
 std::size_t output_width() {
   const char* columns = std::getenv("COLUMNS");
   if (const long given = columns == nullptr ? 0 : std::atol(columns); given > 0)

@@ -29,7 +29,7 @@ Json finite_or_null(double number) {
 }
 
 /// Returns the loop of the device, without a hand, in a scene in which the handle always touches the virtual wall.
-/// Throws InputError.
+/// Throws InputError for an invalid number and for a device that the linear theory does not cover.
 SampledLoop loop_at_wall(const ComparedDevice& device, double period, double stiffness, double damping, double delay) {
   const ScenarioText scene = read_scenario_text(installed_folder("scenarios/library/limits") / "wall_on_handle.json");
   LoadedScenario loaded = load_scenario(scene, overrides_on(device, scene,

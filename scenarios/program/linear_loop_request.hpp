@@ -14,8 +14,8 @@ inline constexpr const char* kLinearLoop = "--linear-loop";
 /// frequency and growth of the slowest-decaying oscillation, at the given K and at the linear limit. An infinite limit
 /// is null.
 /// `given`: kLinearLoop, the device (a preset or FILE.json), the sampling period [s], K [N/m], the damping B of the
-/// wall [N s/m], and a delay [s] that is added to the delay of the device. Returns the exit status. Throws InputError,
-/// also for a device that the linear theory does not cover.
+/// wall [N s/m], and a delay [s] that is added to the delay of the device. Returns the exit status. Throws InputError
+/// for an invalid argument and for a device that the linear theory does not cover.
 int print_linear_loop(const ProgramArguments& given, ProgramContext& context);
 
 }  // namespace hapbench

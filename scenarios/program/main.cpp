@@ -25,7 +25,7 @@ namespace {
 [[noreturn]] void report_uncaught_exception() {
   static std::atomic_flag is_reporting;
   while (is_reporting.test_and_set()) ::pause();  // only the first thread reports; it ends the process
-  std::string what = "an exception of no known type";
+  std::string what = "an exception of unknown type";
   try {
     if (const auto uncaught = std::current_exception()) std::rethrow_exception(uncaught);
   } catch (const std::exception& error) {

@@ -7,8 +7,8 @@
 
 namespace hapbench {
 
-/// Throws InputError, with the option's name, unless every name is valid and given once. `shown_by` is the
-/// command that lists the valid names; quoted_list() uses it.
+/// Throws InputError with the option's name if a name is not valid or is given twice. `shown_by`: command that shows
+/// all valid names; see quoted_list().
 void require_names(const std::string& option, const std::vector<std::string>& names,
                    const std::vector<std::string>& valid, std::string_view shown_by = {});
 /// Returns the names that an option selects, where "all" alone stands for all names. Throws InputError like
@@ -16,7 +16,7 @@ void require_names(const std::string& option, const std::vector<std::string>& na
 std::vector<std::string> chosen_names(const std::string& option, const std::vector<std::string>& given,
                                       const std::vector<std::string>& all, std::string_view shown_by = {});
 
-/// Returns the algorithms that --algorithms selects. Throws InputError.
+/// Returns the algorithms that --algorithms selects. Throws InputError like require_names().
 std::vector<std::string> chosen_algorithms(const std::vector<std::string>& given);
 
 /// Returns the requested metric. Without a request, returns the first of kDefaultMetrics that `metrics` has, or the

@@ -54,9 +54,9 @@ void add_out(Command& command, std::string& out, const std::string& name);
 void add_algorithms(Command& command, std::vector<std::string>& algorithms, const std::string& otherwise);
 void add_common(Command& command, CommonOptions& options, const std::string& name);
 
-/// Returns the number of threads that --jobs sets, or the number of available threads without it.
+/// Returns the number of threads that --jobs sets. Without --jobs, returns the number of available threads.
 unsigned threads_of(const CommonOptions& options);
-/// Returns job options with the threads of --jobs and, unless quiet, a progress bar after `label`.
+/// Returns job options with the threads of --jobs. Without --quiet, they have a progress bar after `label`.
 JobOptions job_options(const CommonOptions& options, const std::string& label, const ProgramContext& context);
 
 }  // namespace hapbench

@@ -11,13 +11,13 @@ namespace hapbench {
 
 namespace {
 
-/// Replaces the file in a location by the override that gave its field. `pointer` is the JSON pointer of the
-/// override's field.
+/// Replaces the file in the location of a fault by the override that set the faulty field. `pointer`: JSON pointer of
+/// the field that the override sets.
 void name_override(ErrorLocation& location, const std::string& override, const std::string& pointer) {
   constexpr std::size_t kMaxTypedLength = 60;
   const bool is_long = override.size() > kMaxTypedLength;
-  const bool has_option = !location.option.empty();  // true if the location already has an option that the user
-                                                     // typed, such as --device
+  // True if the location already has an option that the user typed, such as --device.
+  const bool has_option = !location.option.empty();
   location.option +=
       fmt::format("{}--set {}{}", has_option ? ": " : "", override.substr(0, kMaxTypedLength), is_long ? "…" : "");
   location.about_options.emplace_back("--set");

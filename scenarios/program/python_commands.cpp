@@ -129,7 +129,8 @@ constexpr const char* kRunsWhere = "--runs-where";
 constexpr const char* kKnee = "--knee";
 
 /// Prints the index of the point that is the knee of the Pareto front of the given points (pareto_front.hpp); an empty
-/// line if the front has no knee. Used for a picture. `given`: the option, then a text COST:ERROR for each point.
+/// line if the front has no knee. The Python package of the figures marks this point in a picture. `given`: kKnee, then
+/// a text COST:ERROR for each point.
 int print_knee(const ProgramArguments& given, ProgramContext& context) {
   std::vector<CostAndError> points;
   for (std::size_t i = 1; i < given.size(); ++i) {
@@ -163,7 +164,8 @@ void leave_ctrl_c_to_python() {
   throw_if_stopped();
 }
 
-/// Runs a package. Unless a host captures the output, this process becomes the launcher.
+/// Runs a package. If a host captures the output, the package runs in a child process. Otherwise this process becomes
+/// the launcher.
 int run(const ProgramArguments& package, const ProgramArguments& given, ProgramContext& context) {
   const std::string line = launch_line(package, given, context);
   if (context.captured != nullptr) return run_captured(*context.captured, line);
@@ -190,14 +192,14 @@ int run_import(const ProgramArguments& given, ProgramContext& context) {
         layout.wrapped(
             "Both write into the current folder, and read any column names with --columns and any units with --scale, "
             "whose factors are SI units per unit of the file (position=1e-3 for mm). A file with invalid rows is "
-            "refused, and nothing is written; --skip-bad-rows leaves such rows out. A stroke is also refused for jumps "
+            "rejected, and nothing is written; --skip-bad-rows skips these rows. A stroke is also rejected for jumps "
             "or gaps: see its help.",
             0) +
         "\nExamples:\n"
         "  hapbench import stroke log.txt --preset hapi\n"
         "  hapbench import stroke rec.csv --columns time=1,position=2 --scale time=1e-6\n"
         "  hapbench import device log.csv\n\n" +
-        layout.wrapped("Manual: scenarios/README.md, section \"Strokes\"", 0);
+        layout.wrapped("Manual: scenarios/INPUT_FILES.md, section \"Recordings\"", 0);
     print(context, {}, text, {});
     return kSuccess;
   }

@@ -9,7 +9,7 @@
 namespace hapbench {
 
 /// Runs a command of a Python package and returns its exit status. The package receives all arguments after the
-/// command's name, including --help. Unless a host captures the output, this process becomes the Python process
+/// command's name, including --help. If no host captures the output, this process becomes the Python process
 /// and the call does not return.
 int run_python_command(const ProgramArguments& arguments, ProgramContext& context);
 /// Draws the path of the tool of the run in `folder` into the SVG picture `file`. Throws IoError if the drawing

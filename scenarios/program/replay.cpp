@@ -68,7 +68,8 @@ Columns<ReplayRow> replay_columns() {
           {"clamped_calls", "1", "calls with the status CLAMPED", &ReplayRow::clamped, under("CLAMPED")}};
 }
 
-/// Renders the calls of `log` with a checked scenario. Returns the new outputs, and the header for a log of them.
+/// Renders the calls of `log` with a checked scenario. Returns the new outputs, and the header of a log with these
+/// outputs.
 std::pair<std::vector<HapbenchOutput>, std::string> rendered(const CheckedScenario& scenario, const LoopLog& log) {
   const std::unique_ptr<HapbenchRenderer> renderer(
       with_file(scenario.loaded(), [&] { return new_renderer(scenario, log.setup); }));
@@ -88,7 +89,8 @@ std::string other_scenario_note(const CheckedScenario& scenario, const LoopLog& 
   return text;
 }
 
-/// `period`: time step of the scenario that renders the log [s].
+/// Returns sentences on the calls of the log and on the comparison of the outputs. `period`: time step of the scenario
+/// that renders the log [s].
 std::string summary_text(const ReplayRow& row, const LoopLog& log, const std::string& file, double period) {
   const double seconds = 1e-9 * static_cast<double>(log.inputs.back().time_ns - log.inputs.front().time_ns);
   std::string text = fmt::format(

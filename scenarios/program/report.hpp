@@ -52,13 +52,14 @@ class Report {
   }
   FileSet& files() { return files_; }
   Json& json() { return json_; }
-  /// Records a failure. finish() prints the text as an error and returns `status`; the status of the last
-  /// failure counts.
+  /// Records a failure. finish() prints the text of each failure as an error, and returns the `status` of the last
+  /// failure.
   void fault(const std::string& text, int status) {
     faults_.push_back(text);
     status_ = status;
   }
-  /// Commits the files, prints errors and results, and returns the exit status. Throws IoError.
+  /// Commits the files, prints errors and results, and returns the exit status. Throws IoError if a file cannot be
+  /// written.
   int finish() {
     files_.commit();
     for (const std::string& fault : faults_) print_error(context_, fault);

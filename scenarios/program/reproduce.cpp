@@ -105,8 +105,8 @@ void provide(ThesisRun& run, const fs::path& directory, bool rerun) {
   });
 }
 
-/// Judges the claims by the results of the thesis's scenarios. Runs a scenario without current results when a claim
-/// needs it.
+/// Judges the claims by the results of the thesis's scenarios. If a claim needs a scenario that has no current results
+/// (is_current()), runs this scenario first.
 std::vector<JudgedClaim> judge(const std::vector<Claim>& claims, const PublishedNumbers& published,
                                const Assumptions& assumptions, std::vector<ThesisRun>& runs,
                                const ReproduceOptions& options, const ProgramContext& context) {
@@ -155,10 +155,10 @@ Columns<Json> claim_columns() {
     const auto value = [key](const Json& claim) { return claim.at(key).get<std::string>(); };
     columns.add({{key, "", meaning, value, only_printed()}});
   };
-  add("id", "id of a claim, which describe explains");
-  add("verdict", "on the claim");
-  add("robustness", "which assumption changes the verdict");
-  add("number", "the measured number that decides");
+  add("id", "id of a claim; \"hapbench describe ID\" explains it");
+  add("verdict", "verdict on the claim");
+  add("robustness", "assumptions for which another plausible value changes the verdict");
+  add("number", "measured number that decides the verdict");
   return columns;
 }
 
@@ -258,14 +258,15 @@ void add_reproduce(CommandLine& line) {
       "Files: the ledger as claims.md (to read first: claim, published and measured value, verdict), claim_pages.md (a "
       "section for each claim) and claims.json (for programs); the runs in OUT/thesis.\n\n"
       "Figures: the script scripts/reproduce runs this command and also draws the figures of the thesis.\n\n"
-      "Assumptions: the thesis leaves them open; \"hapbench describe assumptions\" lists them. --assumptions "
-      "prints, for each set, the verdicts and numbers of the claims that the set can change, and the recorded "
-      "verdicts that differ. --sensitivity with an existing file continues its record. The ledger always "
-      "takes robustness from results/reference/sensitivity.json.\n\n"
-      "Earlier results: runs in OUT/thesis of the same scenario by the same build are used again, unless the build "
-      "has uncommitted changes; a ledger is replaced.\n\n"
+      "Assumptions: the thesis leaves them open; \"hapbench describe assumptions\" lists them. --assumptions prints, "
+      "for each set, the verdicts and numbers of the claims that the set can change, and the recorded verdicts that "
+      "differ. --sensitivity with an existing file continues its record. The ledger always takes robustness from "
+      "results/reference/sensitivity.json.\n\n"
+      "Earlier results: runs in OUT/thesis of the same scenario by the same build are used again, unless the build has "
+      "uncommitted changes; a ledger is replaced.\n\n"
       "Time: about 5 minutes on two processors; a single claim takes seconds to a minute. An assumption set that "
-      "changes all claims also takes about 5 minutes; a whole record takes about an hour of one processor.\n\n"
+      "changes all claims also takes about 5 minutes; a whole record of --sensitivity takes about an hour of one "
+      "processor.\n\n"
       "Exit status: 0 whatever the verdicts are; 3 if a run did not end as its scenario expects; 130 stopped by "
       "Ctrl-C.");
 }

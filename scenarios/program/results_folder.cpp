@@ -33,8 +33,8 @@ FolderLock locked_results(ProgramContext& context, const std::filesystem::path& 
   return lock;
 }
 
-/// Throws IoError if `directory` is thesis/SCENARIO in a folder to which `reproduce` writes. Other folders beside
-/// thesis, such as the folders of studies, are allowed.
+/// Throws IoError if `directory` is thesis/SCENARIO in a folder that a running `reproduce` has locked. Other folders
+/// beside thesis, such as the folders of studies, are allowed.
 static void require_not_of_reproduce(const std::filesystem::path& directory) {
   std::error_code ignored;
   const std::filesystem::path parent = std::filesystem::weakly_canonical(directory, ignored).parent_path();

@@ -18,8 +18,8 @@ void require_writable_directory(ProgramContext& context, const std::filesystem::
                                 const std::string& option = "--out");
 
 /// Creates the directory like require_writable_directory() and locks a set of its files (folder_lock.hpp). `writer`:
-/// the command that writes the set. Prints a note if the file system has no locks. Throws InputError, and IoError if
-/// another command has locked the set.
+/// the command that writes the set. Prints a note if the file system has no locks. Throws InputError like
+/// require_writable_directory(), and IoError if another command has locked the set.
 FolderLock locked_results(ProgramContext& context, const std::filesystem::path& directory, const std::string& set,
                           const std::string& writer, const std::string& option = "--out");
 

@@ -33,8 +33,8 @@ struct RunOptions : CommonOptions {
 };
 
 /// Returns a directory for each scenario. A single scenario writes to the folder of --out, several scenarios to
-/// subdirectories of it that are named after their files. Without --out, each scenario has a folder in
-/// results/out. Throws InputError if two files have the same name.
+/// subdirectories of it that are named after their files. Without --out, each scenario writes to a subdirectory of
+/// results/out that is named after its file. Throws InputError if two files have the same name.
 std::vector<fs::path> output_directories(const std::string& out, const std::vector<fs::path>& files) {
   std::vector<fs::path> directories;
   for (const std::string& name : names_of_scenarios(files)) {
@@ -61,7 +61,7 @@ Columns<PositionMetrics> target_columns() {
           {"speed [mm/s]", "1", "targets.0.speed_m_per_s.mean", mean(&PositionMetrics::speed, 1e3), only_printed()}};
 }
 
-/// Returns the columns of the step times of --latency.
+/// Returns the columns of the table of step times, which --latency prints.
 Columns<Result> latency_columns() {
   const auto time = [](std::uint64_t StepLatency::*of) {
     return [of](const Result& r) {
@@ -91,20 +91,20 @@ Columns<Result> latency_columns() {
   return columns;
 }
 
-/// Returns the diagnosis of runs. For a single run it includes advice. For several runs it has one line for each run,
-/// with the names of the rules. Empty if no rule applies.
+/// Returns the diagnosis of runs as text; empty if no run exceeds the threshold of a rule. For a single run, the text
+/// explains each rule whose threshold is exceeded, and adds advice. For several runs, the text has one line for each
+/// run that exceeds a threshold, with the names, values and thresholds of the rules.
 std::string diagnosis_text(std::span<const Result> reports, const Layout& layout) {
   std::string text;
   const bool several = reports.size() > 1;
   for (const Result& report : reports) {
     std::vector<std::string> rules;
-    // Explain each rule for a single run; only name the rules for several runs.
+    // Explain each rule for a single run. For several runs, only print the rule with its value and threshold.
     for (const Diagnosed& found : *report.diagnosis) {
-      rules.push_back(finding_text(found));
+      const std::string numbers = value_and_threshold_text(found);
+      rules.push_back(fmt::format("{} ({})", found.rule, numbers));
       if (several) continue;
-      const std::string unit = found.unit == "1" ? "" : " " + found.unit;
-      text += layout.wrapped(
-          fmt::format("{} (rule {}: {:.3g} > {:g}{})", found.says, found.rule, found.value, found.threshold, unit), 0);
+      text += layout.wrapped(fmt::format("{} (rule {}: {})", found.says, found.rule, numbers), 0);
       text += layout.wrapped("try: " + found.attempt, 2);
     }
     if (several && !rules.empty())
@@ -115,7 +115,8 @@ std::string diagnosis_text(std::span<const Result> reports, const Layout& layout
   return "\n" + text;
 }
 
-/// Returns where an expectation comes from: the scenario's field or its default.
+/// Returns a text that says where the scenario's expectations come from: from the field `expect`, or from the default
+/// of this field.
 const char* expectation_source(const Scenario& scenario) {
   const bool is_default = scenario.expect.outcomes == ExpectFields{}.outcomes && scenario.expect.metrics.empty();
   return is_default ? "by default, without the field expect" : "field expect";
@@ -228,17 +229,17 @@ void add_run(CommandLine& line) {
       "diagnosis), scenario.effective.json (all fields; repeats the run), columns.json (units and meanings). "
       "\"hapbench plot FOLDER\" draws them. With --set record.contacts=true also contacts.csv (depth and force of "
       "every contact point).\n\n"
-      "Diagnosis: each rule that applies is printed with its value and what to try, and is also in summary.json. "
-      "For several scenarios, only the names of the rules are printed.\n\n"
-      "Expectations: without the field expect, the outcomes completes, leaves_hole and tool_horizontal are "
-      "expected. If a --set changes the run, these three outcomes are accepted too, and the bounds on metrics in "
-      "expect are not checked.\n\n"
+      "Diagnosis: each rule that applies is printed with its value, its threshold and what to try, and is also in "
+      "summary.json. For several scenarios, only the rules with their values and thresholds are printed.\n\n"
+      "Expectations: without the field expect, the outcomes completes, leaves_hole and tool_horizontal are expected. "
+      "If a --set changes the run, these three outcomes are accepted too, and the bounds on metrics in expect are not "
+      "checked.\n\n"
       "Earlier results: all files of an earlier run in the same folder are replaced; other files stay. To keep both "
       "runs, give the new run another --out.\n\n"
-      "Replay: give the scenario with which the log was recorded. With another scenario the forces may differ, "
-      "which a note says. The new outputs are in results/out/NAME_replay/replay.csv, a log like the recorded one.\n\n"
-      "Exit status: 3 if a run does not end as its scenario expects, or if a replay with the scenario of the "
-      "recording gives other outputs; the results are written all the same.");
+      "Replay: give the scenario with which the log was recorded. With another scenario the forces may differ; a note "
+      "then reports this. The new outputs are in results/out/NAME_replay/replay.csv, a log like the recorded one.\n\n"
+      "Exit status: 3 if a run does not end as its scenario expects, or if a replay with the scenario of the recording "
+      "gives other outputs; the results are written in any case.");
 }
 
 }  // namespace hapbench

@@ -22,14 +22,15 @@ std::string cell(std::optional<double> value, int digits = 3) {
   return value ? significant(*value + 0.0, digits) : "-";
 }
 
-/// Returns the member that distinguishes the runs: the algorithm if all runs are of one scenario, else the
-/// scenario.
+/// Returns the member of Result that distinguishes the runs: the name of the algorithm if all runs are of one scenario,
+/// else the name of the scenario.
 std::string Result::*distinct_name(std::span<const Result> reports) {
   return reports.front().name == reports.back().name ? &Result::algorithm : &Result::name;
 }
 
 /// Returns the outcome of a run. Adds the time at which the run ended, if it ended early, or the time of the last
-/// contact, if the tool lost contact or went through the surface.
+/// contact, if the tool lost contact. Adds no time of the last contact if the tool went through the surface, because
+/// points inside the tool count as contact also behind the surface.
 std::string ending_text(const Result& report) {
   const std::string name(outcome_name(report.end.outcome));
   const auto last = number_of(report.metrics, "last_contact_s");
@@ -38,12 +39,11 @@ std::string ending_text(const Result& report) {
   switch (report.end.outcome) {
     case Outcome::leaves_hole:
     case Outcome::tool_horizontal:
-      // With several trials there is no common end time.
+      // A run with the section "targets" has several trials, which end at different times.
       return !report.sections.contains("targets") ? fmt::format("{} at {:.3g} s", name, report.duration) : name;
     case Outcome::diverges:
       return fmt::format("{} at {:.3g} s", name, report.end.divergence.time);
     case Outcome::lost_contact:
-    case Outcome::went_through:
       return last ? fmt::format("{}, last contact at {:.3g} s", name, *last) : name;
     default:
       return name;
@@ -67,10 +67,13 @@ Columns<Result> run_columns(bool of_scenes) {
     return smallest && largest ? fmt::format("{}..{}", cell(smallest, 2), cell(largest, 2)) : "-";
   };
   const auto step_time = [](const Result& r) { return short_text(r.timing.step_p50, std::nullopt, 1e6); };
-  Columns<Result> columns = {{of_scenes ? "scenario" : "", "", "", &Result::name, only_printed()},
-                             {"algorithm", "", "", &Result::algorithm, only_printed()},
-                             {"outcome", "", "outcome of the run, and its time if it ended before the last step",
-                              ending_text, only_printed()}};
+  Columns<Result> columns = {
+      {of_scenes ? "scenario" : "", "", "", &Result::name, only_printed()},
+      {"algorithm", "", "", &Result::algorithm, only_printed()},
+      {"outcome", "",
+       "outcome of the run, with its time if the run ended before the last step; for lost_contact otherwise the time "
+       "of the last contact",
+       ending_text, only_printed()}};
   add_metrics(columns, kRunHeadings);
   columns.add(
       {{"tool vibration\n[mm/s rms]", "1",
@@ -81,8 +84,8 @@ Columns<Result> run_columns(bool of_scenes) {
   return columns;
 }
 
-/// Columns of runs with a reference force, which is either measured with the stroke or the force of an ideal
-/// rendering.
+/// Columns that compare the rendered force with the reference force. The reference force is the field reference_force
+/// of the scenario, or the force that was measured while the stroke was recorded.
 constexpr RunHeading kFidelityHeadings[] = {
     {"force\nerror [%]", "fidelity.force_error_relative", 100.0, false},
     {"normal\n[N rms]", "fidelity.force_error_normal_rms_N", 1.0, false},
@@ -155,7 +158,7 @@ std::vector<std::string> run_warnings(std::span<const Result> reports) {
   for (const Merged& warning : all) {
     std::string text = reports.front().name + ": " + warning.text;
     const std::string others =
-        warning.others > 0 ? fmt::format("; {} more of its runs with other numbers", warning.others) : "";
+        warning.others > 0 ? fmt::format("; further runs with other numbers: {}", warning.others) : "";
     if (reports.size() > 1) text += fmt::format(" ({}{})", fmt::join(warning.algorithms, ", "), others);
     texts.push_back(std::move(text));
   }
@@ -180,14 +183,14 @@ std::string step_time_text(std::span<const Result> reports, const Layout& layout
   if (p99(slowest) > step)
     text += fmt::format(
         "{} longer than the time step of {} us; try fewer points, rendering.reduction or a faster algorithm",
-        has_table ? "" : ",", cell(1e6 * step, 2));
+        has_table ? "" : ", which is", cell(1e6 * step, 2));
   else if (has_table)
     return "";
   return "\n" + layout.wrapped(text, 0);
 }
 
-std::string finding_text(const Diagnosed& found) {
-  return fmt::format("{} ({:.3g} > {:g}{})", found.rule, found.value, found.threshold,
+std::string value_and_threshold_text(const Diagnosed& found) {
+  return fmt::format("{:.3g}, threshold {:g}{}", found.value, found.threshold,
                      found.unit == "1" ? "" : " " + found.unit);
 }
 

@@ -30,8 +30,9 @@ inline constexpr RunHeading kRunHeadings[] = {
 /// Returns the unit of a metric; "1" for an unknown metric.
 std::string metric_unit(const std::string& metric);
 
-/// Returns `factor` times the value, with the digits that are significant at its tolerance, at most three. Returns a
-/// bound if the value is not larger than its tolerance, and "-" without a value. `tolerance` is in the unit of `value`.
+/// Returns `factor` times the value as text. `tolerance` is the error of the value, in the unit of `value`. The text
+/// has at most three digits, and only digits that the tolerance leaves certain. If the value is not larger than its
+/// tolerance, returns bound_text(), such as "<= 0.4". If there is no value, returns "-".
 std::string short_text(std::optional<double> value, const std::optional<double>& tolerance, double factor);
 
 /// Adds a column for each heading. figure_of(row, metric name) returns the row's value of the metric as
@@ -49,17 +50,18 @@ void add_metrics(Columns<Row>& columns, std::span<const RunHeading> headings, Fi
 
 /// Returns the printed table of runs: names, outcome with its time, and the columns of kRunHeadings whose member `wide`
 /// is false. With --wide, the table also has the other columns of kRunHeadings, the vibration of the tool, the range of
-/// stiffness ratios, and the median time of a step. `of_scenes`: true if the first column has the scenario. If false,
-/// all runs belong to one scenario, and the vibration of the tool is printed without --wide too. This vibration is
-/// defined also for runs without settled contact.
+/// stiffness ratios, and the median time of a step. If `of_scenes` is true, the first column has the names of the
+/// scenarios. If `of_scenes` is false, all runs belong to one scenario, and the table has the vibration of the tool
+/// even without --wide. This vibration is defined also for runs without settled contact.
 Table run_table(std::span<const Result> reports, bool of_scenes, const Layout& layout);
 
 /// Metric whose square root is the vibration of the tool.
 inline constexpr const char* kToolVibrationPower = "vibration_power_above_30Hz_m2_per_s2";
 
-/// Returns a sentence with the 99th percentile of the time of a step in the slowest run. Returns an empty text if all
-/// runs are too short for this percentile. After --latency, whose table has the percentiles, returns the sentence only
-/// if this percentile is longer than the time step. Precondition: there is at least one run.
+/// Returns a sentence with the 99th percentile of the computing time of a step, in the run with the largest such
+/// percentile. Returns an empty text if all runs are too short for a 99th percentile. With --latency, a separate table
+/// has the percentiles, and the sentence is returned only if this percentile is longer than the scenario's time step.
+/// Precondition: there is at least one run.
 std::string step_time_text(std::span<const Result> reports, const Layout& layout);
 
 /// Reports a table that compares the rendered force with the reference force, for the runs with a reference force.
@@ -71,12 +73,12 @@ void report_fidelity(std::span<const Result> reports, const Layout& layout, Repo
 /// runs of one algorithm differ only in their numbers, one line quotes the first warning and counts the others.
 std::vector<std::string> run_warnings(std::span<const Result> reports);
 
-/// Returns a text with the name of a diagnosis rule whose threshold is exceeded, its value, its threshold and their
-/// unit, such as "buzz (0.289 > 0.1)".
-std::string finding_text(const Diagnosed& found);
+/// Returns a text with the value of a diagnosis rule, its threshold and their unit, such as "0.289, threshold 0.1".
+std::string value_and_threshold_text(const Diagnosed& found);
 
-/// Returns a number for a text that also states its error. The digits are significant at the error: one digit if the
-/// error is not smaller than the number, six digits if the error is 0, four if the error is unknown.
+/// Returns a number for a text that also states the number's error. The text has only the digits that the error leaves
+/// certain, and one digit if the error is not smaller than the number. It has six digits if the error is 0, and four
+/// digits if the error is unknown.
 std::string number_text(double value, const std::optional<double>& error);
 /// Returns number_text() followed by the error: "1.234 +- 0.005".
 std::string with_error_text(double value, const std::optional<double>& error);

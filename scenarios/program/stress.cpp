@@ -14,20 +14,20 @@ struct StressOptions : CommonOptions {
 
 Columns<StressCounts> stress_columns() {
   using Row = StressCounts;
-  return {
-      {"algorithm", "", "force algorithm", &Row::algorithm, under("algorithm")},
-      {"sets", "1", "random contact sets drawn", &Row::sets, under("sets")},
-      {"in_contact", "1", "sets whose tool touches a point", &Row::in_contact, under("in contact")},
-      {"non_finite", "1", "answers that are not finite", &Row::non_finite, under("non-finite")},
-      {"out_of_bound", "1", "finite answers beyond what the law allows", &Row::out_of_bound, under("out of bound")},
-      {"points_dropped", "1", "contacts that a full reduction refused", &Row::points_dropped, under("points dropped")},
-      {"largest_force_per_K_d", "1", "largest ||f_spring|| in units of K times the set's deepest penetration",
-       &Row::largest_force, under("largest |f|/(K d)")},
-      {"largest_share_of_bound", "1",
-       "largest ||f_spring|| divided by the bound that the algorithm guarantees; empty if it guarantees none",
-       &Row::largest_share, under("fraction of bound", 3)},
-      {"first_bad_set", "1", "index of the first contact set with a force that is not finite or above the bound",
-       &Row::first_bad, kOnlyJson}};
+  return {{"algorithm", "", "force algorithm", &Row::algorithm, under("algorithm")},
+          {"sets", "1", "random contact sets drawn", &Row::sets, under("sets")},
+          {"in_contact", "1", "sets whose tool touches a point", &Row::in_contact, under("in contact")},
+          {"non_finite", "1", "answers that are not finite", &Row::non_finite, under("non-finite")},
+          {"out_of_bound", "1", "finite answers beyond what the law allows", &Row::out_of_bound, under("out of bound")},
+          {"points_dropped", "1", "contacts left out because the reduction already had its largest number of points",
+           &Row::points_dropped, under("points dropped")},
+          {"largest_force_per_K_d", "1", "largest ||f_spring|| in units of K times the set's deepest penetration",
+           &Row::largest_force, under("largest |f|/(K d)")},
+          {"largest_share_of_bound", "1",
+           "largest ||f_spring|| divided by the bound that the algorithm guarantees; empty if it guarantees none",
+           &Row::largest_share, under("fraction of bound", 3)},
+          {"first_bad_set", "1", "index of the first contact set with a force that is not finite or above the bound",
+           &Row::first_bad, kOnlyJson}};
 }
 
 int stress(const StressOptions& options, ProgramContext& context) {
@@ -40,8 +40,8 @@ int stress(const StressOptions& options, ProgramContext& context) {
   report.show(columns.table(all, "forces in degenerate contact sets", layout.in_full()));
   report.add_text("\n");
   report.add_text(layout.wrapped(
-      "every force must be finite and within the bound that its algorithm guarantees: non-finite and out of bound "
-      "must be 0. points dropped: contacts beyond the largest number of points of the reduction",
+      "every force must be finite and within the bound that its algorithm guarantees: the columns \"non-finite\" and "
+      "\"out of bound\" must be 0. \"points dropped\": contacts left out because the reduction keeps at most n_ext points",
       0));
   report.json() = columns.json_list(all);
   // Report each law with an invalid force as a failure.
@@ -63,7 +63,9 @@ std::vector<DescribedTable> stress_tables() {
 
 void add_stress(CommandLine& line) {
   auto [command, options] = line.command(
-      "stress", "Pass random degenerate contact sets to every force law, also loaded ones, and count invalid forces.",
+      "stress",
+      "Pass random degenerate contact sets to every force law, including the laws of --module, and count invalid "
+      "forces.",
       stress);
   command.add("--count <n>", options.count, "number of contact sets (default: 100000)",
               {.range = {{1, 1'000'000'000}}});
@@ -73,10 +75,10 @@ void add_stress(CommandLine& line) {
   add_out(command, options.out, "stress");
   add_table(command, options.output);
   command.footer(
-      "Invalid: a force that is infinite or not a number, or a force larger than the proven bound of the law, if it "
-      "has one. Contact sets include zero normals, coincident points and opposite gradients.\n\n"
-      "Result: a law passes if its columns \"non-finite\" and \"out of bound\" (stress.csv: non_finite, "
-      "out_of_bound) are 0.\n\n"
+      "Invalid: a force that is infinite or not a number, or, for a law with a proven bound, larger than this bound. "
+      "Contact sets include zero normals, coincident points and opposite gradients.\n\n"
+      "Result: a law passes if its columns \"non-finite\" and \"out of bound\" (stress.csv: non_finite, out_of_bound) "
+      "are 0.\n\n"
       "Files: stress.csv has one row per law; it replaces an earlier one.\n\n"
       "Time: about 5 s on two processors for the default number of sets.\n\n"
       "Exit status: 0 if all laws pass, 3 if a law returns an invalid force.");

@@ -62,8 +62,8 @@ std::string values_text(const Json& values) {
   return values.is_array() ? fmt::format("{}", fmt::join(names_of(values, text_of), ",")) : text_of(values);
 }
 
-/// Returns the command-line arguments that set `option` to this value. An object repeats the option, once for each
-/// member.
+/// Returns the command-line arguments that set `option` to `value`. If `value` is an object, the arguments have the
+/// option once for each member of the object.
 ProgramArguments option_arguments(const std::string& option, const Json& value) {
   if (value.is_boolean()) return ProgramArguments(value.get<bool>() ? 1 : 0, option);
   ProgramArguments arguments;
@@ -81,15 +81,15 @@ ProgramArguments option_arguments(const std::string& option, const Json& value) 
   return arguments;
 }
 
-/// Returns a scenario file next to the study if it exists. Otherwise returns the name, which the command
-/// resolves like every scenario name.
+/// If the folder of the study has a scenario file with this name, returns the path of the file. Otherwise returns the
+/// name, which the command resolves like every scenario name.
 std::string scenario_beside(const fs::path& study, const std::string& name) {
   const fs::path file = study.parent_path() / name;
   std::error_code error;
   return name.ends_with(".json") && fs::exists(file, error) ? file.lexically_normal().string() : name;
 }
 
-/// Returns the line of a key in the text of a study, from 1.
+/// Returns the number of the line of a key in the text of a study. The first line has the number 1.
 std::size_t line_of(const std::string& text, const std::string& key) {
   const std::size_t at = text.find("\"" + key + "\"");
   return 1 + static_cast<std::size_t>(std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n'));

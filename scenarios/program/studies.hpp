@@ -40,7 +40,7 @@ struct StudyArguments {
   /// precedence over the same option of the study. If the study's value is an object, the options of the study and of
   /// the command line are both used.
   /// `arguments`: the command line without the program's name. `positions`: indices of the positional arguments, which
-  /// may name a study. Returns empty without a study. Throws InputError for a study of another command.
+  /// may name a study. Returns empty if no argument names a study. Throws InputError for a study of another command.
   static std::optional<StudyArguments> in(const ProgramArguments& arguments, std::span<const std::size_t> positions);
 
   /// Returns the error with the study's file and line in front. The line is the line of the first option in

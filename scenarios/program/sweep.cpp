@@ -46,8 +46,8 @@ namespace fs = std::filesystem;
 constexpr const char* kTimesFile = "sweep_timing.csv";
 
 /// Returns the printed columns of a run: the varied fields, the outcome and the columns that the command `run` prints.
-/// Adds a column for the metric if no other column has the metric, and the time of a step if `costs` has the cost of
-/// each run.
+/// Adds a column for `metric` if no other column has this metric. If `costs` is not empty, it has the cost of each run,
+/// and a column with the time of a step is added.
 Columns<SweepRow> run_columns(const SweepTable& table, const std::string& metric, const std::vector<RunCost>& costs) {
   Columns<SweepRow> columns;
   // Begin with the varied fields. If several fields vary, add the index of the run.
@@ -60,7 +60,7 @@ Columns<SweepRow> run_columns(const SweepTable& table, const std::string& metric
   }
   const auto outcome = [&table](const SweepRow& row) { return table.outcome(row); };
   columns.add({{"outcome", "", "outcome", outcome, only_printed()}});
-  // Add the columns of `run` that the sweep has, and the metric.
+  // Add the columns that the command `run` prints, if the sweep has their metrics, and a column for `metric`.
   std::vector<RunHeading> headings;
   for (RunHeading heading : kRunHeadings) {
     heading.wide = heading.wide && heading.metric != metric;
@@ -92,8 +92,8 @@ Columns<OutcomeCount> count_columns() {
 /// Largest numbers of printed runs: kMaxShown for a sweep of one field, kMaxListed for a sweep of several fields.
 constexpr std::size_t kMaxShown = 100, kMaxListed = 20;
 
-/// Returns the table of the runs, followed by the counts of outcomes. With several fields, the runs are in
-/// ascending order of the metric, failures last.
+/// Returns the table of the runs, followed by the number of runs with each outcome. If several fields vary, the runs
+/// are in ascending order of `metric`, and runs that failed come last.
 std::string summary_text(const SweepTable& table, const std::string& metric, const std::vector<RunCost>& costs,
                          const Layout& layout) {
   std::vector<SweepRow> rows = table.rows;
@@ -167,7 +167,8 @@ constexpr const char* kNoScene =
                   shell_word(scenario)));
 }
 
-/// Returns the scenes that an axis names, or the scene of the command line. Throws InputError.
+/// If an axis of --vary lists scenarios (kSceneAxis), returns these scenarios. Otherwise returns the scenario that the
+/// command line names. Throws InputError if both or none are given.
 std::vector<ScenarioText> scenes_of(const SweepCommand& command, const std::vector<Axis>& axes) {
   const auto axis = std::ranges::find(axes, kSceneAxis, &Axis::path);
   if (axis == axes.end()) {
@@ -175,8 +176,9 @@ std::vector<ScenarioText> scenes_of(const SweepCommand& command, const std::vect
     return {read_scenario_text(find_scenario(command.scenario))};
   }
   if (!command.scenario.empty() || axis->range)
-    fail_in_option("--vary", fmt::format("got \"{}\" as a {}; allowed: a list of scenarios, and none before it",
-                                         kSceneAxis, axis->range ? "range" : "field together with a scenario"));
+    fail_in_option("--vary",
+                   fmt::format("got \"{}\" as a {}; allowed: a list of scenarios, without the argument <scenario>",
+                               kSceneAxis, axis->range ? "range" : "field together with a scenario"));
   std::vector<ScenarioText> scenes;
   for (const std::string& name : axis->values) scenes.push_back(read_scenario_text(find_scenario(name)));
   return scenes;
@@ -207,7 +209,8 @@ int verdict(const Cases& cases, const SweepReport& report, const SweepCounts& co
                                      run_text(*report.failed), one_line(report.problem)));
     return kInternalFault;
   }
-  // Runs that fail by their physics are results. Only an unmet "expect" of the user is an error.
+  // A simulated failure, such as a tool that goes through the surface, is a result and no error of the command. It is
+  // an error only if the scenario states expectations (field expect) that the run does not meet.
   std::vector<std::size_t> unmet, failures;
   std::vector<std::string> failures_by_outcome;  // "went_through 12"
   for (const auto& [outcome, runs] : counts.unexpected) {
@@ -289,7 +292,8 @@ Columns<TimedRun> timing_columns(const std::vector<std::string>& fields) {
         [](const TimedRun& r) { return r.cost.per_simulated_second(); }},
        {"deadline_share", "1", "processor time of a step divided by 0.5 ms",
         [](const TimedRun& r) { return r.cost.deadline_share(); }},
-       {"steps", "1", "steps of the measured run; fewer than the scenario's if it diverges or its task ends",
+       {"steps", "1",
+        "steps of the measured run; fewer than the steps of the scenario if the run diverges or its task ends",
         [](const TimedRun& r) { return r.cost.steps; }}});
   return columns;
 }
@@ -339,15 +343,16 @@ int sweep(const SweepCommand& command, ProgramContext& context) {
       return reprint(command, context);
   if (command.vary.empty() && command.points.empty()) fail_without_axes(command.scenario);
   if (!command.where.empty() && !command.shard.empty())
-    fail_in_option("--where",
-                   "got it for a shard; allowed: for a whole sweep, or \"hapbench sweep FOLDER\" of the joined one");
+    fail_in_option(
+        "--where",
+        "got it for a shard; allowed: for a whole sweep, or in \"hapbench sweep FOLDER\", which joins the shards");
   if (command.time && !command.shard.empty())
     fail_in_option("--time", "got it for a shard; allowed: for a whole sweep");
   // Check all input before anything runs or is written.
   Cases cases = cases_of(command);
   if (command.time && cases.size() > kMaxTimed)
     fail_in_option("--time",
-                   fmt::format("got {} runs; allowed: at most {}, each of which is repeated for 0.1 s or more",
+                   fmt::format("got {} runs; allowed: at most {}, because each run is repeated for 0.1 s or more",
                                cases.size(), kMaxTimed));
   if (command.print) return print_row(command, cases, context);
   SweepOptions options{
@@ -451,15 +456,15 @@ void add_sweep(CommandLine& line) {
       "Printed: with one varied field, at most {} runs in the order of its values; with several fields or a sample, "
       "the {} runs with the smallest --metric, failed runs last. sweep.csv has all runs.\n\n"
       "Fields: rendering.algorithm=all tries every law; scenario=v,w,... varies the scenario, without <scenario>.\n\n"
-      "Earlier results: a finished sweep in the folder is replaced. If the folder has finished rows of an "
-      "interrupted sweep, a command without --resume is refused with exit status 2, and the rows stay: use --resume "
-      "or another --out.\n\n"
-      "Failed runs: a run that goes through the surface, diverges or leaves it for good ends at this moment "
-      "(hapbench describe \"early end\"). Its row has the outcome, such as went_through, the time ended_at_s and "
-      "empty metrics. Failed runs alone do not change the exit status.\n\n"
-      "Exit status: 0 success, 1 a run could not be computed, 2 bad input, 3 a run does not meet the field expect, "
-      "130 stopped by Ctrl-C, after the current runs are finished. If --set or --vary changes the "
-      "run, the field expect is ignored, unless one of them sets expect.",
+      "Earlier results: a finished sweep in the folder is replaced. If the folder has finished rows of an interrupted "
+      "sweep, a command without --resume is rejected with exit status 2, and the rows stay: use --resume or another "
+      "--out.\n\n"
+      "Failed runs: a run that diverges, passes through the surface or leaves it permanently ends at this moment "
+      "(hapbench describe \"early end\"). Its row has the outcome, such as went_through, the time ended_at_s and empty "
+      "metrics. Failed runs alone do not change the exit status.\n\n"
+      "Exit status: 0 success, 1 a run could not be computed, 2 bad input, 3 a run does not meet the field expect, 130 "
+      "stopped by Ctrl-C, after the current runs are finished. If --set or --vary changes the run, the field expect is "
+      "ignored, unless one of them sets expect.",
       kMaxShown, kMaxListed));
 }
 

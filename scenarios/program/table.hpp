@@ -12,9 +12,12 @@ namespace hapbench {
 struct Table {
   struct Column {
     std::string title;
-    bool number = true;        ///< true: aligned right; false: text, aligned left
-    std::string meaning = {};  ///< for `describe`: a name that it explains, or a sentence; empty: the title
-    std::string unit = {};     ///< unit of numbers; empty or "1": none, or it is part of the title
+    bool number = true;  ///< true: aligned right; false: text, aligned left
+    /// Meaning of the column for `describe`: a sentence, or a name that `describe` explains, such as the name of a
+    /// metric. If empty, the title is the meaning.
+    std::string meaning = {};
+    /// Unit of the numbers. Empty or "1" if the numbers have no unit, or if the title contains the unit.
+    std::string unit = {};
 
     /// Returns the upper and the lower line of the title. A title of one line is the lower line.
     std::array<std::string, 2> lines() const;
@@ -28,8 +31,9 @@ struct Table {
   std::vector<std::vector<std::string>> rows = {};  ///< each row has a cell for each column
   std::string caption = {};                         ///< what the table shows; not part of text()
 
-  /// Returns the table with lines of at most `max_width` characters. A last column of text is wrapped. Other
-  /// columns that do not fit follow in blocks below, which each begin with the first column.
+  /// Returns the table with lines of at most `max_width` characters. If the last column has text, its cells are
+  /// wrapped. Other columns that do not fit are printed in further blocks below. Each block begins with the first
+  /// column.
   std::string text(std::size_t max_width) const;
 };
 

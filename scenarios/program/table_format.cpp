@@ -262,7 +262,8 @@ std::string latex(const Table& table, bool /*captioned*/) {
     std::vector<std::string> cells;
     for (std::size_t c = 0; c < row.size(); ++c) {
       const auto quantity = of_numbers[c] ? quantity_of(row[c]) : std::nullopt;
-      // Braces keep siunitx from reading a text, and LaTeX from reading "[" or "*" as an argument of "\\".
+      // Put texts in braces. Otherwise siunitx reads a text as a number, and LaTeX reads "[" or "*" at the start of a
+      // row as an argument of the "\\" before it.
       cells.push_back(quantity             ? latex_number(*quantity)
                       : row[c] == kMissing ? "{--}"
                                            : fmt::format("{{{}}}", latex_text(row[c])));

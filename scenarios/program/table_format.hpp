@@ -13,8 +13,8 @@ namespace hapbench {
 /// Returns the names of the formats: markdown, latex and csv.
 std::vector<std::string> table_format_names();
 
-/// Returns the tables in a format, one after the other with an empty line between them. Each head is in one line and
-/// ends with the unit. The cells have the digits of the terminal.
+/// Returns the tables in a format, one after the other with an empty line between them. The head of each column is in
+/// one line and ends with the column's unit. The numbers have the same digits as in the tables on the terminal.
 ///
 /// - markdown: a table of GitHub's dialect, below its caption if there are several tables. Escapes characters that have
 ///   a meaning in Markdown.

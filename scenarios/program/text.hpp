@@ -19,8 +19,9 @@ std::string bold(std::FILE* stream, std::string_view text);
 /// of the text.
 std::string wrapped(std::string_view text, std::size_t indent, std::size_t width);
 
-/// Returns a name, indented by `indent` spaces, with its meaning beside it from `column` on. If the name is too
-/// long, the meaning begins on the next line.
+/// Returns a name, indented by `indent` spaces, and its meaning. All lines of the meaning begin at the character
+/// position `column`. If the name is too long, the meaning begins on the line below the name. Lines have at most
+/// `width` characters.
 std::string entry(std::string_view name, std::string_view meaning, std::size_t indent, std::size_t column,
                   std::size_t width);
 

@@ -58,9 +58,9 @@ std::string closedness_text(const MeshComponent& component, const MeshFindings& 
     return found.open_edges.empty() ? "cut along edges with more than two faces, normals by the winding of the file"
                                     : "open, normals by the winding of the file";
   }
-  const std::string turned = component.is_reversed ? " (turned: it was inside out)" : "";
+  const std::string reversed = component.is_reversed ? " (reversed: they pointed to the wrong side)" : "";
   if (component.is_flat) return "closed, without volume (a double-sided sheet)";
-  return (component.is_cavity ? "closed, a cavity, normals inwards" : "closed, normals outwards") + turned;
+  return (component.is_cavity ? "closed, a cavity, normals inwards" : "closed, normals outwards") + reversed;
 }
 
 /// Returns a line for each component of a mesh.

@@ -29,9 +29,11 @@ std::optional<double> position_error(const Setting& s) {
 std::optional<double> force_error(const Setting& s) {
   return s.error ? std::optional(s.error->force) : std::nullopt;
 }
-/// Returns the larger of two errors as text, in multiples of `unit`: the error of the setting and the error of the
-/// reference solution. "<" marks an error of the setting that the reference solution does not resolve. Returns "-" for
-/// a setting without an error.
+
+/// Returns the larger of two errors as text, in multiples of `unit`: `error` of the setting, and `of_reference`, the
+/// error of the reference solution. The text begins with "<" if `error` is less than kResolvedError times
+/// `of_reference`, because the reference solution is then too inexact to determine it. Returns "-" for a setting
+/// without an error.
 std::string error_text(const Setting& s, double error, double of_reference, double unit) {
   if (!s.error) return "-";
   const double shown = std::max(error, of_reference) / unit;
@@ -74,8 +76,7 @@ Columns<Setting> error_columns(double max_error) {
       {"reference_force_error_N", "N", "error of the reference solution's forces", reference_force},
       {"resolved", "", "true if position_error_m is at least ten times reference_position_error_m",
        &Setting::is_resolved},
-      {"asked_error_m", "m", "position error that is asked for (--to)",
-       [max_error](const Setting&) { return max_error; }},
+      {"asked_error_m", "m", "requested position error (--to)", [max_error](const Setting&) { return max_error; }},
       {"ms/s", "1", "processor time per simulated second [ms]", cost, only_printed()},
       {"% of\nstep", "1", "processor time of a step as a percentage of the time step, its deadline in real time", share,
        only_printed()},
@@ -111,7 +112,7 @@ Columns<Setting> timing_columns() {
 std::string answer_text(const WorkPrecisionProblem& problem, double max_error) {
   if (!problem.is_predictable) {
     return fmt::format(
-        "no error is stated: an initial shift of 1 nm grows to {} m, which is more than the error asked for ({:g} m; "
+        "no error is stated: an initial shift of 1 nm grows to {} m, which is more than the requested error ({:g} m; "
         "--to changes it); compare metrics over seeds instead: hapbench compare --seeds 5 --jitter 1e-9",
         significant(problem.grown_shift, 2), max_error);
   }
@@ -119,13 +120,15 @@ std::string answer_text(const WorkPrecisionProblem& problem, double max_error) {
   const auto failed = std::ranges::find(problem.settings, false, &Setting::is_expected);
   if (best == nullptr && failed != problem.settings.end())
     return fmt::format(
-        "no setting is recommended: with {} at {} s the run ends as {}, which the scene does not expect; an error says "
-        "nothing about a scene that fails, such as one in which the tool does not move",
+        "no setting is recommended: with {} at {} s the run ends as {}, which the scene does not expect; the error of "
+        "a failed run is not meaningful, for example if the tool does not move",
         failed->integrator, significant(failed->step_s, 6), outcome_name(failed->outcome));
   if (best == nullptr)
-    return fmt::format("no setting has an error below {:g} m; smaller time steps: more --levels", max_error);
+    return fmt::format("no setting has an error below {:g} m; --levels with a larger number adds smaller time steps",
+                       max_error);
   return fmt::format(
-      "the cheapest setting below {:g} m is {} at {} s: {} ms per simulated second, {} % of the deadline, one step",
+      "the cheapest setting below {:g} m is {} at {} s: {} ms per simulated second, {} % of the time step, which is "
+      "the deadline",
       max_error, best->integrator, significant(best->step_s, 6),
       significant(1e3 * best->cost.per_simulated_second(), 2),
       significant(100.0 * best->cost.per_simulated_second(), 2));
@@ -163,15 +166,18 @@ namespace {
 
 constexpr const char *kModelErrors = "convergence_model.csv", *kModelTimes = "convergence_model_timing.csv";
 
-/// Errors and step times of one case, such as a law, in a scene with a reference force.
+/// Errors and step times of one case (a law, and the values of the other varied fields) in a scene with a reference
+/// force.
 struct ModelError {
   std::string problem;  ///< values of the fields of --over
   std::string outcome;
-  bool is_expected = true;  ///< true if the scenario expects the outcome; the errors of other runs are empty
+  bool is_expected = true;  ///< true if the scenario expects the outcome; if false, the optional errors below are empty
   std::optional<double> direction = {}, force = {}, relative = {}, displacement = {};  ///< [rad], [N], [1], [m]
-  double reference_error = 0.0;   ///< error of the reference force [N]
-  bool shares_reference = false;  ///< true if the law and the reference force have the same constraints
-  StepLatency steps = {};         ///< times of the steps in the fastest repetition
+  double reference_error = 0.0;  ///< error of the reference force [N]
+  /// True if the law uses the same constraints as the computed reference force. The errors of such a law have no
+  /// meaning.
+  bool shares_reference = false;
+  StepLatency steps = {};  ///< times of the steps in the fastest repetition
 };
 
 double seconds(std::uint64_t nanoseconds) {
@@ -204,7 +210,7 @@ Columns<ModelError> model_columns() {
       {"displacement\nmm rms", "1", "displacement_rms_m in millimetres", millimetres, only_printed()},
       {"reference_error_N", "N", "error of the reference force; 0 if it is given or measured", &Row::reference_error},
       {"shares_reference", "",
-       "true if the law renders by the constraints of the reference force, so that its error says nothing",
+       "true if the law renders by the constraints of the reference force, so that its error is not meaningful",
        &Row::shares_reference},
       {"median us", "1", "median time of a step in microseconds",
        [microseconds](const Row& r) { return microseconds(r.steps.p50); }, only_printed()},
@@ -225,7 +231,7 @@ Columns<ModelError> model_timing_columns() {
            [](const Row& r) { return seconds(r.steps.p99_9) / kStepDeadlines[0]; }}};
 }
 
-/// Runs a case and returns its errors, without times.
+/// Runs a case and returns its errors. Does not set the times of the steps.
 ModelError model_error(const CheckedScenario& scene, std::string problem) {
   const Result run = run_scenario(scene, std::nullopt, false);
   const bool is_expected = outcome_is_expected(scene.scenario().expect, run.end.outcome);
@@ -277,9 +283,10 @@ void report_model_errors(const Cases& cases, const JobOptions& jobs, const Layou
   report.add_text("force compared with the reference force, and the time of a step\n\n" +
                   model_columns().text(all, layout));
   if (std::ranges::count(all, true, &ModelError::shares_reference) > 0)
-    report.add_text(layout.wrapped(
-        fmt::format("{}: renders by the constraints of the reference force; its error says nothing", kSharesReference),
-        0));
+    report.add_text(
+        layout.wrapped(fmt::format("{}: renders by the constraints of the reference force; its error is not meaningful",
+                                   kSharesReference),
+                       0));
   for (const ModelError& row : all)
     if (!row.is_expected)
       report.add_text(

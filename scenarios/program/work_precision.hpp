@@ -20,7 +20,7 @@ void report_work_precision(const std::vector<WorkPrecisionProblem>& problems, do
 /// other fields. Runs one case after the other, because times are measured. Throws InputError and Stopped.
 void report_model_errors(const Cases& cases, const JobOptions& jobs, const Layout& layout, Report& report);
 
-/// Returns the tables that these functions write and print, for `describe`.
+/// Returns the tables of report_work_precision() and report_model_errors(), for `describe`.
 std::vector<DescribedTable> work_precision_tables();
 
 }  // namespace hapbench

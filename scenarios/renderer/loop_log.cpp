@@ -24,7 +24,8 @@ namespace fs = std::filesystem;
 constexpr std::string_view kMark = "# hapbench loop log: ";
 constexpr int kLogVersion = 1;
 
-/// Calls `visit` for each field of a log's row, with the names of its columns, separated by commas, and with the field.
+/// Calls visit(names, value) for each input and each output in a row of a log. `names`: names of the columns of this
+/// value, separated by commas. `value`: the member of `in` or `out`.
 template <class Visit>
 void visit_row(HapbenchInput& in, HapbenchOutput& out, const Visit& visit) {
   visit("call", out.call);
@@ -96,7 +97,8 @@ HapbenchPose3 pose_of(const Json& json) {
   return pose;
 }
 
-/// Reads the comment with the setup. Throws InputError.
+/// Reads the setup and the scenario of a log into `log`. `text`: JSON from the comment in the first line of the log.
+/// Throws InputError.
 void read_setup(std::string_view text, LoopLog& log) {
   const Json json = parse_json(std::string(text));
   try {

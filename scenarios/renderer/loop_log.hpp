@@ -26,11 +26,12 @@ struct LoopLog {
 
 /// Returns the first lines of a log: the setup as JSON in a comment, and the names of the columns.
 std::string log_header(const RendererSetup& setup, const LoggedScenario& scenario);
-/// Returns the line of a call. Numbers have 17 digits, so that they read back as the same doubles.
+/// Returns the line of a log for one call of hapbench_renderer_step. Numbers have 17 digits, so that read_loop_log()
+/// returns the same doubles.
 std::string log_row(const HapbenchInput& input, const HapbenchOutput& output);
 
-/// Reads a log. Throws InputError with file and line if it is not a log of this version, or if a call is missing:
-/// forces depend on every earlier call.
+/// Reads a log. Throws InputError with file and line if the file is not a log of this version, or if a call is missing.
+/// A log with a missing call cannot be replayed, because forces depend on every earlier call.
 LoopLog read_loop_log(const std::filesystem::path& file);
 
 /// Calls hapbench_renderer_step for every input of the log, in order, and returns the outputs.

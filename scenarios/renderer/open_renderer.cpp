@@ -17,7 +17,8 @@ namespace {
 
 constexpr double kMaxRamp = 60.0;  ///< largest ramp_s that a mount may have [s]
 
-/// A field of a device that models software of a real system, and the mode in which the renderer uses this field.
+/// A field of a scenario's device that the renderer uses, and the mode in which the renderer uses it. These fields
+/// describe filters and limits that run as software in a real system.
 struct UsedField {
   const char* name;
   std::uint32_t mode;
@@ -86,8 +87,8 @@ LiveRendererConfig live_config(const Scenario& scenario, const RendererSetup& se
   return config;
 }
 
-/// Returns the fields of the scenario's device that the renderer uses if `used` is true, otherwise the fields that it
-/// ignores.
+/// If `used` is true, returns the fields of the scenario's device that the renderer uses. Otherwise returns the fields
+/// of the device that the renderer ignores.
 std::string device_fields(const Json& device, std::uint32_t mode, bool used) {
   std::string text;
   for (const auto& [name, value] : device.items()) {
@@ -125,7 +126,7 @@ std::string inspection(const CheckedScenario& checked, const RendererSetup& setu
     text += "ignored in admittance mode: mount.max_force, mount.max_force_rate\n";
   }
   if (has_multi_rate_contacts(scenario))
-    text += "used: rendering.contacts, so contacts are late or lost as in the simulation\n";
+    text += "used: rendering.contacts, so contacts are delayed or lost as in the simulation\n";
   if (std::holds_alternative<Hole2d>(scenario.environment))
     text += "note: the scene is planar; it has contacts near z = 0 only\n";
   return text;

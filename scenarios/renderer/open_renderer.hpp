@@ -7,7 +7,8 @@
 #include "device_model/live/live_renderer.hpp"
 #include "scenarios/run/checked_scenario.hpp"
 
-/// The renderer and its texts behind the C interface, in which this type is opaque.
+/// Definition of the type that is opaque in the C interface (hapbench_renderer.h): the renderer and the texts that the
+/// C functions return.
 struct HapbenchRenderer {
   hapbench::LiveRenderer live;
   std::string inspection;  ///< text of hapbench_renderer_inspect

@@ -16,7 +16,8 @@ Approach::Approach(std::shared_ptr<const PointShell> shell, std::uint64_t steps)
 void Approach::add(const StepRecord& record, bool before_contact) noexcept {
   const Vec3& position = record.tool.pose.position;
   const double step_length = (position - position_).norm();
-  // A step may have reached the surface if it is at least as long as the distance from the bounding box at its start.
+  // If the step is at least as long as the distance from the bounding box at the start of the step (distance_), the tip
+  // may have reached the surface in this step.
   if (distance_ <= step_length && std::isfinite(step_length)) longest_step_ = std::max(longest_step_, step_length);
   position_ = position;
   time_ = record.time;

@@ -36,15 +36,15 @@ class Approach {
     /// distance: distance of the tool from the nearest surface point [m]. time: time of the step with this distance
     /// [s].
     double distance, time;
-    /// Time to reach the surface at the speed of the last steps [s]. Empty if the tool was closest before the last
-    /// step, or if it did not approach the surface in the last steps.
+    /// Time that the tool still needed to reach the surface at the speed of its last steps [s]. Empty if the tool was
+    /// closest to the surface before the last step, or if it did not approach the surface in the last steps.
     std::optional<double> time_to_contact = {};
   };
   /// Returns the smallest distance of the tool from the surface points before the first contact, within 1 %.
-  /// Compares up to 256 steps: the run is divided into at most 256 intervals, and from each interval the step
-  /// closest to the environment's bounding box is a candidate. Each search over all points also gives a lower
-  /// bound for the other candidates, because no point of the tool approaches the surface by more than it moves.
-  /// A straight approach needs two searches.
+  /// The run is divided into at most 256 intervals, and the step closest to the environment's bounding box in each
+  /// interval is a candidate. The search for the surface point nearest to the tool in one candidate also gives lower
+  /// bounds for the distances in the other candidates, because no point of the tool approaches the surface by more than
+  /// it moves. For a tool that approaches the surface on a straight line, two searches are sufficient.
   Closest closest_to_surface(const ToolShape& tool) const;
 
  private:

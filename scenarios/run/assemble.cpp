@@ -19,8 +19,8 @@
 namespace hapbench {
 namespace {
 
-/// Capacity for the contacts of a module in one step. A module may compute its contacts without triangles, so
-/// that the size of the mesh gives no bound.
+/// Largest number of contacts that a module may return in one step. The size of the mesh gives no such bound, because a
+/// module may compute its contacts without triangles.
 constexpr std::size_t kMaxModuleContacts = 10'000;
 
 /// Returns the coordinates or indices of all elements as one contiguous array; null if there are no elements.

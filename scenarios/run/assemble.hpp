@@ -19,7 +19,8 @@ SimulationConfig simulation_config(const Scenario& scenario);
 /// be used. With Skips::off (RenderingConfig), every step compares every point with the tool.
 SimulationParts assemble(const Scenario& scenario, const NamedFiles& files, std::shared_ptr<const PointShell> shell,
                          Trial trial);
-/// Like assemble(), but without hand, motion and device, which stay null: the parts that compute a force from a pose.
+/// Builds only the parts that compute a force from a pose: tool, contact source and force law. Hand, motion and device
+/// stay null. Otherwise like assemble().
 SimulationParts assemble_rendering(const Scenario& scenario, const NamedFiles& files,
                                    std::shared_ptr<const PointShell> shell, Trial trial = {});
 /// Builds the parts of the first trial and its point shell. For scenarios that are built in code: this overload
@@ -28,7 +29,7 @@ SimulationParts assemble(const Scenario& scenario);
 
 /// Returns the surface of the environment. For a mesh, returns the triangles of the mesh file. For a block, returns the
 /// triangles whose vertices are the points of the point shell. For every other environment, returns only the points of
-/// the point shell, as vertices. Throws InputError if the file cannot be used.
+/// the point shell, as vertices. Throws InputError if the environment has a file that cannot be used.
 TriangleSoup environment_surface(const Scenario& scenario, const NamedFiles& files);
 
 }  // namespace hapbench

@@ -24,8 +24,8 @@ class BareRun {
   /// Runs the simulation `times` times from t = 0, and returns the mean processor time of a run [s]. Throws Stopped
   /// after a signal.
   double seconds(std::uint64_t times);
-  /// Runs the simulation once from t = 0, and returns the distribution of the wall times of the steps. The time of a
-  /// clock reading is subtracted from each step.
+  /// Runs the simulation once from t = 0, and returns the distribution of the wall times of the steps. The duration of
+  /// a clock reading is subtracted from the time of each step.
   StepLatency latency();
   /// Returns the number of steps of the last run. The number is smaller than TimeFields::steps if the run diverged or
   /// its task ended.

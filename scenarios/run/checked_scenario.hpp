@@ -39,8 +39,8 @@ class CheckedScenario {
 
 /// Reads and parses the files that the scenario names, and loads its library of contacts, so that errors are
 /// found before any result is written. Cost: reading the files; a few microseconds for each file that this
-/// process has already read and that has not changed since. Throws InputError, also for a library without permission
-/// (load_module.hpp).
+/// process has already read and that has not changed since. Throws InputError if a file cannot be used, or if the user
+/// has not permitted the library (load_module.hpp).
 CheckedScenario checked(LoadedScenario loaded, Libraries libraries = Libraries::loaded);
 
 }  // namespace hapbench

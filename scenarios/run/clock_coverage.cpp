@@ -83,8 +83,8 @@ const ClockUnit* unit_of_stroke(Samples samples, const RunTimes& run) {
   return nullptr;
 }
 
-/// Returns true if so few samples of the stroke lie within the run that the clock of the stroke probably has another
-/// unit.
+/// Returns true if so few samples of the stroke lie within the run that the clock of the stroke probably does not count
+/// in seconds.
 bool sees_few_samples(Samples samples, const RunTimes& run) {
   constexpr std::ptrdiff_t kFew = 3;
   constexpr std::size_t kMinSamples = 10;
@@ -97,12 +97,12 @@ bool sees_few_samples(Samples samples, const RunTimes& run) {
 /// Counts that show how many contact queries of a run a trace covers.
 struct TraceCoverage {
   std::uint64_t queries = 0;  ///< number of steps in which the run searches contacts
-  std::uint64_t covered = 0;  ///< number of these steps with a time of the trace within half a step
-  std::uint64_t times = 0;    ///< number of times of the trace within the run
+  std::uint64_t covered = 0;  ///< number of these steps for which the trace has a time within half a time step
+  std::uint64_t times = 0;    ///< number of times in the trace that lie within the run
 };
 
-/// Counts the contact queries of the run that have a time of the trace within half a time step. Divides the times of
-/// the trace by `per_second` first.
+/// Returns the TraceCoverage of a trace whose clock counts `per_second` units in a second: divides the times of the
+/// trace by `per_second` first. The run searches contacts in the steps 0, every, 2 every, …
 TraceCoverage coverage_of(const ContactTrace& trace, const RunTimes& run, std::int64_t every, double per_second) {
   TraceCoverage coverage;
   coverage.queries = static_cast<std::uint64_t>((run.steps - 1.0) / static_cast<double>(every)) + 1;
@@ -142,10 +142,11 @@ const ClockUnit* unit_of_trace(const ContactTrace& trace, const RunTimes& run, s
   return nullptr;
 }
 
-/// Returns the unit of time in which the interval of the trace fits the interval of the contact queries, `query` [s].
-/// Returns null if the interval in seconds fits, or if no unit fits. Used for a clock that does not begin at 0.
+/// Returns the unit of time in which `interval`, the interval between the times of the trace, agrees with `query`, the
+/// interval between the contact queries [s], within the factor kFactor. Returns null if they agree with a trace in
+/// seconds, or if they agree in no unit. Used for a clock that does not begin at 0.
 const ClockUnit* unit_of_interval(double interval, double query) {
-  constexpr double kFactor = 10.0;  // a trace may be slower or faster than the run
+  constexpr double kFactor = 10.0;  // largest ratio of the two intervals that counts as agreement
   const auto fits = [&](double per_second) {
     const double ratio = interval / per_second / query;
     return ratio > 1.0 / kFactor && ratio < kFactor;
@@ -177,8 +178,9 @@ std::string trace_problem(const ContactTrace& trace, const RunTimes& run, std::i
                          std::floor(last / run.step + 0.5) + 1.0);
   }
   if (interval > 0.0 && interval < 0.75 * run.step)
-    return fmt::format("the trace is faster than the run, which skips its other times: time.step_s={:.4g} plays all",
-                       interval);
+    return fmt::format(
+        "the trace is faster than the run, which skips the times between its steps: time.step_s={:.4g} plays all times",
+        interval);
   return "";
 }
 
@@ -205,7 +207,7 @@ std::optional<Warning> stroke_clock_warning(const Stroke& stroke, const TimeFiel
   const std::string both =
       facts(fmt::format("stroke has {} samples", samples.size()), start, stop, samples.size(), run);
   // Warn if another unit of time fits better, or if the sample interval is unlikely.
-  constexpr double kMissing = 0.05;  // if a larger fraction of the run has no samples, a warning is returned
+  constexpr double kMissing = 0.05;  // fraction of the run that may lie before the first or after the last sample
   const double interval = interval_of(samples);
   const bool is_unlikely = is_unlikely_interval(interval, run);
   const bool is_short = stop + 2.0 * interval < (1.0 - kMissing) * run.end;

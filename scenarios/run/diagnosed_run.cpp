@@ -49,12 +49,13 @@ Number surface_limit(const DiagnosedRun& run) {
 }
 
 /// Returns K divided by the largest stable K of the linear loop in contact. Empty without contact or without a loop.
-/// Rounded to six digits, so that the result does not depend on how a build rounds.
+/// Rounded to six digits, so that builds with different rounding errors give the same result.
 Number ratio_to_stability_limit(const DiagnosedRun& run) {
   const double K = run.scenario().rendering.stiffness;
   if (!(K > 0.0) || !run.is_free()) return std::nullopt;
-  // Without a hand, a tool has no equilibrium on a surface. The derivative of the force at another pose contains the
-  // change of the normal, which pushes the tool sideways at any K.
+  // Without a hand, a tool has no equilibrium on a surface. The derivative of the force at a pose that is no
+  // equilibrium contains the change of the normal, which pushes the tool sideways at any K. Without an equilibrium,
+  // therefore use the limit of a tool on permanent springs.
   const bool has_equilibrium = !run.has_springs() && run.has_hand();
   const Number limit = has_equilibrium ? surface_limit(run) : springs_limit(run);
   if (!limit) return std::nullopt;
@@ -162,11 +163,12 @@ Number unstable_loop(const DiagnosedRun& run) {
 }
 
 Number coarseness(const DiagnosedRun& run) {
-  // kSufficientContacts: contacts in a step. kMinSpacings: path length in contact, in units of the point spacing.
+  // kSufficientContacts: number of contacts in a step that gives a smooth force. kMinSpacings: shortest path in contact
+  // for which coarseness() has a value, in units of the point spacing.
   constexpr double kSufficientContacts = 4.0, kMinSpacings = 10.0;
   const auto distance = point_distance(run.loaded);
   const Number contacts = quotient(run.metric("colliding_mean"), run.metric("contact_share"));
-  // The contacts of a module or a recording do not depend on the spacing of our points.
+  // Contacts from a module or a recording do not depend on the spacing of the point shell.
   if (!distance || !contacts || has_external_contacts(run.scenario()) ||
       run.observations.path_in_contact < kMinSpacings * distance->metres)
     return std::nullopt;

@@ -50,8 +50,8 @@ struct DiagnosedRun {
   /// Returns true if the tool vibrates in the last quarter of the run.
   bool vibrates() const;
   /// Returns `number` if it is meaningful for this run, else an empty value. A number is not meaningful in a run that
-  /// diverged, went through the surface or never touched it. It is also not meaningful in an environment of springs in
-  /// which the tool comes to rest, where the mean force is no reference for force steps.
+  /// diverged, went through the surface or never touched the surface. A number is also not meaningful for a tool on
+  /// springs that does not vibrate, because the mean force is then no reference for force steps.
   Number if_completed(const Number& number) const;
 };
 
@@ -86,13 +86,13 @@ bool step_exceeds_half_width(const DiagnosedRun& run);
 Number buzz(const DiagnosedRun& run);
 Number pop(const DiagnosedRun& run);
 /// Returns the rms of the tool's velocity above 30 Hz over all steps [m/s]. This number replaces buzz() for a tool that
-/// moves freely and has no settled contact or no pressing hand. Empty if there is a mean force in settled contact to
-/// which buzz() can refer, if a script moves the tool, and for springs.
+/// moves freely and has no settled contact or no pressing hand. Empty in three cases: there is a mean force in settled
+/// contact to which buzz() can refer, a script moves the tool, or the environment consists of springs.
 Number shake(const DiagnosedRun& run);
 Number chatter(const DiagnosedRun& run);
-/// Returns K divided by the largest stable K of the linear loop in contact, rounded to six digits. Empty unless the run
-/// diverged, lost contact or vibrates. Also empty without a linear loop, and if the loop is unstable at any K
-/// (unstable_loop()).
+/// Returns K divided by the largest stable K of the linear loop in contact, rounded to six digits. Has a value only if
+/// the run diverged, lost contact or vibrates, the run has a linear loop, and this loop is stable at some K
+/// (unstable_loop() is empty).
 Number stability_limit_ratio(const DiagnosedRun& run);
 /// Returns 1 if the run diverged, lost contact or vibrates, the tool moves freely, and the loop of hand and device is
 /// unstable even without contact, by its eigenvalues; otherwise an empty value.
@@ -101,11 +101,12 @@ Number unstable_alone(const DiagnosedRun& run);
 /// stiffness of almost zero, and unstable_alone() is empty; otherwise an empty value.
 Number unstable_loop(const DiagnosedRun& run);
 /// Returns the point spacing divided by the spacing at which four points would be in contact. The number of contacts is
-/// proportional to 1 / spacing^2. Empty if the path of the tip in contact is shorter than ten spacings, and for
-/// contacts of a recording or a module.
+/// proportional to 1 / spacing^2. Empty if the path of the tip in contact is shorter than ten spacings, or if the
+/// contacts come from a recording or a module.
 Number coarseness(const DiagnosedRun& run);
-/// Returns the largest damping force that one encoder increment causes, divided by the mean force. Empty without an
-/// impedance device, with Hunt-Crossley damping, and if neither the force nor the tool vibrates, jumps or reverses.
+/// Returns the largest damping force that one encoder increment causes, divided by the mean force in contact. Empty in
+/// three cases: the device is no impedance device, the damping is Hunt-Crossley damping, or no vibration, force step or
+/// force reversal exceeds its threshold.
 Number encoder_force(const DiagnosedRun& run);
 /// Returns B dt / m divided by the largest value of B dt / m at which a step is stable. B is the damping along the
 /// stiffest contact, dt the time step, and m the mass of the handle of an impedance device or otherwise of the tool.
@@ -118,12 +119,13 @@ Number drift(const DiagnosedRun& run);
 Number depth_in_half_widths(const DiagnosedRun& run);
 Number softness(const DiagnosedRun& run);
 Number saturation(const DiagnosedRun& run);
-/// Returns the number of landings per second [1/s]. Does not count the first landing, nor the landings that the hand's
-/// script may have caused: one landing for each time at which the script may have lifted the tool.
+/// Returns the number of landings per second [1/s]. Does not count the first landing, nor one landing for each time at
+/// which the hand's script may have lifted the tool (scripted_lifts()).
 Number bounces(const DiagnosedRun& run);
 
 /// Returns the frequency of the vibration as text: half the number of sign changes of the strongest component of the
-/// force above 30 Hz in the last quarter, divided by the duration of this quarter. Empty if there is no vibration.
+/// force above 30 Hz in the last quarter, divided by the duration of the steps in this quarter. Empty if this quarter
+/// has fewer than 10 steps, or if there is no force above 30 Hz.
 std::string buzz_frequency(const DiagnosedRun& run);
 
 }  // namespace hapbench

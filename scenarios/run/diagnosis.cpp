@@ -20,7 +20,7 @@ Number share(std::uint64_t rows, std::uint64_t of) {
   return quotient(static_cast<double>(rows), static_cast<double>(of));
 }
 
-/// Returns an empty text, for rules without further facts.
+/// Rule::more of rules that append nothing to their text.
 std::string no_more(const DiagnosedRun&) {
   return "";
 }
@@ -99,14 +99,15 @@ constexpr Rule kRules[] = {
      against_sums},
     {"damping",
      "B dt / m of the moving mass along the stiffest contact, divided by the stability limit of one integration step",
-     "1", kMaxDampingShare, "the damping is {} times the largest damping at which one time step is stable",
+     "1", kMaxDampingShare,
+     "the damping is {} times the largest damping for which the integrator is stable with this time step",
      damping_share, against_damping},
     {"friction",
      "number of steps with a force above explicit_friction_limit_N, beyond which explicit integration of friction is "
      "unstable",
      "1", 0.0,
-     "explicit integration of friction is unstable (number of such steps: {}): the motion after them is a numerical "
-     "artefact",
+     "explicit integration of friction is unstable (number of unstable steps: {}): the motion after these steps is a "
+     "numerical artefact",
      [](const DiagnosedRun& r) { return r.metric("explicit_friction_rows_beyond"); }, against_friction, no_more, false,
      true},
     {"encoder",
@@ -124,8 +125,8 @@ constexpr Rule kRules[] = {
        return std::string("a smaller hand force, or a larger device.force_limit_N (f_th in section 2.7 of the thesis)");
      }},
     {"bounces",
-     "number of landings per second, without the first and without one for each period or waypoint of the hand's "
-     "script",
+     "number of landings per second; the first landing, and one landing for each period or waypoint of the hand's "
+     "script, are not counted",
      "1/s", 8.0, "the tool bounces: {} landings per second", bounces, against_bounces, no_more, true},
     {"chatter",
      "number of force reversals (by more than 90 degrees from one step to the next) per second in settled contact of a "
@@ -136,8 +137,8 @@ constexpr Rule kRules[] = {
      [](const DiagnosedRun& r) { return r.if_completed(r.metric("passivity.net_created_J")); }, against_energy, no_more,
      true},
     {"force_sign", "mean angle between the rendered force and the force measured with the stroke", "rad", 2.6,
-     "the measured force points against the rendered force (mean angle {} rad), as a force of the tool on the surface "
-     "does",
+     "the measured force is opposite to the rendered force (mean angle {} rad), like a force of the tool on the "
+     "surface",
      measured_force_angle, against_reversed_force, no_more, false, true},
     {"drift",
      "displacement across the force in the last quarter of the run, of a tool under a constant hand force, divided by "

@@ -27,7 +27,8 @@ std::vector<Diagnosed> low_vibration_numbers(const LoadedScenario& loaded, const
 std::vector<Diagnosed> diagnosis_findings(const LoadedScenario& loaded, const Result& result,
                                           const RunObservations& observations, const ToolShape& tool);
 
-/// Returns warnings for a run without a diagnosis, such as a run of a sweep. They report effects of the simulation that
+/// Returns warnings for a run without a diagnosis, such as a run of a sweep. The warnings report simulation effects
+/// that
 /// can be mistaken for effects of the force law, such as unstable explicit friction.
 std::vector<Warning> rule_warnings(const LoadedScenario& loaded, const Result& result);
 

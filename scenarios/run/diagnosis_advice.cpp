@@ -47,7 +47,7 @@ bool is_beyond(const Number& number, double threshold) {
   return number.value_or(0.0) > threshold;
 }
 
-/// Returns true if K is a measured cause: it is near or beyond the stability limit.
+/// Returns true if K is near or beyond the stability limit of the linear loop.
 bool is_too_stiff(const DiagnosedRun& run) {
   return is_beyond(stability_limit_ratio(run), kMaxLimitRatio);
 }
@@ -72,10 +72,11 @@ std::vector<std::string> against_measured_causes(const DiagnosedRun& run) {
 
 /// Returns the advice against a rough force: remedies for the measured causes or, if no cause was measured, a smaller K
 /// for a tool that is free to move. `laws`: the words after "… shows which algorithm has" in the last sentence.
-std::string against_roughness(const DiagnosedRun& run, const char* laws) {
+/// `metric`: metric by which the algorithms are compared.
+std::string against_roughness(const DiagnosedRun& run, const char* laws, const char* metric) {
   std::vector<std::string> remedies = against_measured_causes(run);
   const std::string comparison =
-      fmt::format("\"hapbench compare --algorithms all\" shows which algorithm has {}", laws);
+      fmt::format("\"hapbench compare SCENARIO --algorithms all --by {}\" shows which algorithm has {}", metric, laws);
   if (!remedies.empty()) return either(remedies) + "; " + comparison;
   // If a script moves the tool, the contacts do not depend on K, and a smaller K scales all forces by the same factor.
   if (!run.is_free()) return "another algorithm or a smoother motion; " + comparison;
@@ -91,13 +92,14 @@ std::string against_fault(const DiagnosedRun& run) {
     return fmt::format("correct the {} that reports: {}; neither the time step nor K is the cause", what,
                        divergence.fault);
   return fmt::format(
-      "other code of this {}, such as a test for a division by 0: neither the time step nor K is the cause", what);
+      "correct the code of this {}, for example by a test for a division by 0; neither the time step nor K is the "
+      "cause",
+      what);
 }
 
 std::string against_divergence(const DiagnosedRun& run) {
   if (run.observations.in_contact == 0)
-    return "check the hand, the device (servo gains, delay) and time.step_s: the tool diverged without contact, so "
-           "that K "
+    return "check the hand, the device (servo gains, delay) and time.step_s: the run diverged without contact, so K "
            "has no effect";
   std::vector<std::string> remedies;
   if (is_beyond(unstable_loop(run), 0.5)) remedies.push_back(against_unstable_loop(run));
@@ -141,7 +143,8 @@ std::string against_standstill(const DiagnosedRun& run) {
   if (run.scenario().rendering.has_friction()) remedies.emplace_back("a smaller rendering.friction");
   if (const auto* device = run.impedance(); device != nullptr && device->coulomb > 0.0)
     remedies.emplace_back("a device with a smaller device.coulomb_N");
-  return either(remedies) + "; \"hapbench compare --algorithms all\" shows with which algorithms the tool moves on";
+  return either(remedies) +
+         "; \"hapbench compare SCENARIO --algorithms all\" shows with which algorithms the tool moves on";
 }
 
 std::string against_long_steps(const DiagnosedRun& run) {
@@ -171,15 +174,15 @@ std::string against_unstable_loop(const DiagnosedRun& run) {
 }
 
 std::string against_buzz(const DiagnosedRun& run) {
-  return against_roughness(run, "the smallest vibration");
+  return against_roughness(run, "the smallest vibration", "force_rms_above_30Hz_N");
 }
 
 std::string against_pops(const DiagnosedRun& run) {
-  return against_roughness(run, "the smallest force steps");
+  return against_roughness(run, "the smallest force steps", "settled_force_step_max_N");
 }
 
 std::string against_shaking(const DiagnosedRun& run) {
-  return against_roughness(run, "the smallest vibration");
+  return against_roughness(run, "the smallest vibration", "vibration_power_above_30Hz_m2_per_s2");
 }
 
 std::string against_coarseness(const DiagnosedRun& run) {
@@ -203,8 +206,8 @@ std::string against_softness(const DiagnosedRun& run) {
 }
 
 std::string against_sums(const DiagnosedRun& run) {
-  return "K divided by this number, or an algorithm whose contacts do not add up, such as " +
-         other_laws(run, {"shaped_stiffness", "mean"});
+  return fmt::format("K / {:.3g}, or an algorithm whose contact stiffnesses do not add up, such as {}",
+                     *run.metric("ratio_max"), other_laws(run, {"shaped_stiffness", "mean"}));
 }
 
 std::string against_damping(const DiagnosedRun& run) {
@@ -214,7 +217,7 @@ std::string against_damping(const DiagnosedRun& run) {
 }
 
 std::string against_friction(const DiagnosedRun&) {
-  return R"(a smaller rendering.friction.mu_f_s_per_m, {"type": "dry"}, or a shorter step)";
+  return R"(a smaller rendering.friction.mu_f_s_per_m, rendering.friction {"type": "dry"}, or a shorter time.step_s)";
 }
 
 std::string against_encoder(const DiagnosedRun& run) {
@@ -243,7 +246,7 @@ std::string against_bounces(const DiagnosedRun& run) {
 }
 
 std::string against_chatter(const DiagnosedRun& run) {
-  return against_roughness(run, "the fewest reversals in this scene");
+  return against_roughness(run, "the fewest force reversals", "force_reversals_per_s");
 }
 
 std::string against_energy(const DiagnosedRun& run) {
@@ -260,7 +263,7 @@ std::string against_reversed_force(const DiagnosedRun&) {
 std::string against_drift(const DiagnosedRun& run) {
   if (run.scenario().rendering.dry_friction)
     return "a larger rendering.friction.mu, with which friction holds the tool";
-  return "rendering.friction {\"type\": \"dry\"} with a sufficient mu; viscous friction cannot hold a tool";
+  return "rendering.friction {\"type\": \"dry\"} with a sufficiently large mu; viscous friction cannot hold a tool";
 }
 
 }  // namespace hapbench

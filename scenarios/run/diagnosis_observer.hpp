@@ -21,19 +21,19 @@ struct RunObservations {
   std::uint64_t in_contact = 0;  ///< number of steps in contact
   /// Number of steps in contact whose rendered force reaches the force limit of device or rendering.
   std::uint64_t at_force_limit = 0;
-  std::uint64_t at_input_limit = 0;  ///< number of steps in contact whose hand force reaches the input limit of the
-                                     ///< device
-  double path_in_contact = 0.0;      ///< path length of the tip in contact [m]
-  double longest_step = 0.0;         ///< longest displacement of the tip in a step, as defined at
-                                     ///< OutcomeObserver::longest_step() [m]
-  Vec3 last_force = Vec3::Zero();    ///< rendered force in the last step [N]
+  /// Number of steps in contact whose hand force reaches the input limit of the device.
+  std::uint64_t at_input_limit = 0;
+  double path_in_contact = 0.0;  ///< path length of the tip in contact [m]
+  /// Largest OutcomeObserver::longest_step() of all trials [m].
+  double longest_step = 0.0;
+  Vec3 last_force = Vec3::Zero();            ///< rendered force in the last step [N]
   std::optional<ContactState> last_contact;  ///< state at the last step in contact, over all trials
   struct Quarter {
     std::uint64_t rows = 0;
-    bool always_in_contact = true;                     ///< true if every step of the quarter is in contact
-    Vec3 start = Vec3::Zero();                         ///< tip position in the first step of the quarter [m]
-    Vec3 high_squares = Vec3::Zero();                  ///< sum over the steps of the squared force above 30 Hz, for
-                                                       ///< each axis [N^2]
+    bool always_in_contact = true;  ///< true if every step of the quarter is in contact
+    Vec3 start = Vec3::Zero();      ///< tip position in the first step of the quarter [m]
+    /// Sum, over the steps of the quarter, of the squared force above 30 Hz, per axis [N^2].
+    Vec3 high_squares = Vec3::Zero();
     std::array<std::uint64_t, 3> high_sign_changes{};  ///< number of sign changes of the force above 30 Hz, per axis
   } last_quarter;
   Vec3 tip = Vec3::Zero();  ///< tip position in the last step [m]
@@ -48,12 +48,12 @@ class DiagnosisObserver final : public Observer {
 
   void on_step(const StepRecord& record) noexcept override;
 
-  /// Called after each trial with its OutcomeObserver::longest_step() [m].
+  /// Must be called after each trial. `length`: OutcomeObserver::longest_step() of the trial [m].
   void add_longest_step(double length) noexcept {
     observations_.longest_step = std::max(observations_.longest_step, length);
   }
 
-  /// Called after each trial with its OutcomeObserver::facts().
+  /// Must be called after each trial. `facts`: OutcomeObserver::facts() of the trial.
   void add_facts(OutcomeFacts facts) {
     OutcomeFacts& known = observations_.facts;
     if (!known.began_inside && known.scale_question.empty() && !known.holding_friction) known = std::move(facts);

@@ -18,9 +18,10 @@ void DragProgress::add(double time, const Vec3& position) noexcept {
   if (now_.target < static_cast<double>(sample_count_) * width_ / kSamples) return;
   const Sample before = std::exchange(samples_[sample_count_ % kSamples], now_);
   if (sample_count_++ < kSamples) return;
-  // Compare with the sample one tool width ago: does the tool stand still? The target may return along its path to a
-  // tool that does not move. Progress therefore counts only up to the distance that the tool can have moved: twice its
-  // largest distance from any of the samples, because it may have turned back.
+  // Detect a standstill. Compare the tool's progress with its progress in `before`, the sample since which the target
+  // point has advanced by one tool width. If the path leads back to a tool that stands still, the tool's progress grows
+  // although the tool does not move. The growth therefore counts only up to the distance that the tool can have moved:
+  // twice its largest distance from any of the samples, because the tool may have turned back.
   double moved = (position - before.position).norm();
   for (const Sample& sample : samples_) moved = std::max(moved, (position - sample.position).norm());
   if (std::min(now_.tool - before.tool, 2.0 * moved) >= kMinMovingFraction * (now_.target - before.target)) {

@@ -31,7 +31,7 @@ class DragProgress {
   std::optional<double> left_behind() const;
 
  private:
-  /// Progress of target point and tool along the path at one time.
+  /// Progress of the target point and of the tool along the path [m] at one time [s].
   struct Sample {
     double time = 0.0, target = 0.0, tool = 0.0;
     Vec3 position = Vec3::Zero();  ///< position of the tool [m]

@@ -49,7 +49,7 @@ bool raise_file_limit() {
   return ::setrlimit(RLIMIT_NOFILE, &limit) == 0;
 }
 
-/// Opens or creates a file, and its folder if another process has removed it. Throws IoError.
+/// Opens or creates a file. If another process has removed the file's folder, creates the folder first. Throws IoError.
 int opened(NewDirectories& directories, const fs::path& folder, const fs::path& file) {
   constexpr int kMaxAttempts = 1000;
   for (int attempt = 0;; ++attempt) {
@@ -70,7 +70,8 @@ FolderLock::FolderLock(NewDirectories& directories, fs::path folder, std::string
     struct flock lock = whole_file();
     const int error = ::fcntl(descriptor_, F_OFD_SETLK, &lock) == 0 ? 0 : errno;
     const bool is_busy = error == EAGAIN || error == EACCES;
-    // The holder may have removed the file between our open and our lock; then open it again.
+    // Another holder of the lock may have removed the file after it was opened above. Then open or create the file
+    // again.
     if (refers_to(file_, descriptor_)) {
       if (is_busy) {
         ::close(descriptor_);

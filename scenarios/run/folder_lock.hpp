@@ -7,15 +7,16 @@
 
 namespace hapbench {
 
-/// Sets of result files that commands write to a folder. A lock has the name of its set.
+/// Names of sets of result files. A command writes such a set to a folder, and locks the set by its name.
 inline constexpr const char *kRunFiles = "run", *kCompareFiles = "compare", *kReproduceFiles = "reproduce";
 
 /// Exclusive right to write a set of files to a folder. While an instance exists, no other thread or process can create
 /// an instance for the same folder and set. Locks for different sets do not exclude each other.
 ///
-/// The lock is an OFD lock (fcntl) on the hidden file .SET.lock in the folder. The kernel releases it when the process
-/// ends, also after SIGKILL; the file then stays, and the next lock takes it over. Otherwise the destructor removes the
-/// file. If another process removes the file between the opening and the locking, the file is created and opened again.
+/// The lock is an OFD lock (fcntl) on the hidden file .SET.lock in the folder. The destructor releases the lock and
+/// removes the file. If the process ends without the destructor, for example by SIGKILL, the kernel releases the lock.
+/// The file then stays, and the next instance locks it. If another process removes the file between the opening and the
+/// locking, the file is created and opened again.
 ///
 /// Cost: one file descriptor; about 20 us.
 class FolderLock {

@@ -18,9 +18,10 @@ namespace {
 // Position step of the central differences [m]: in usual scenarios, at most a ten-thousandth of the tool's width and of
 // the penetration depth.
 constexpr double kPositionStep = 1e-8;
-constexpr double kVelocityStep = 1e-4;   // velocity step of the differences [m/s]; any step is right for linear dampers
-constexpr double kRelativeError = 1e-7;  // estimated relative error of the differences; a matrix entry counts as zero
-                                         // if its ratio to the largest entry is at most this value
+constexpr double kVelocityStep = 1e-4;  // velocity step of the differences [m/s]; any step is right for linear dampers
+// Estimated relative error of the differences. A matrix entry counts as zero if its ratio to the largest entry is at
+// most this value.
+constexpr double kRelativeError = 1e-7;
 
 /// Returns the scenario without the parts that the linear theory leaves out.
 Scenario without_nonlinear_parts(Scenario scenario) {
@@ -166,8 +167,9 @@ class RestingTool {
   void hold(const Vec3& position) {
     HandleState handle{position, Vec3::Zero()};
     const ToolPose pose{position, axis_, roll_};
-    constexpr int kIterations = 8;  // each iteration reduces the error by the ratio of hand stiffness to servo
-                                    // stiffness
+    // Each iteration multiplies the error by the ratio of the hand's stiffness to the series stiffness of servo and
+    // structure.
+    constexpr int kIterations = 8;
     for (int i = 0; i < (admittance_ != nullptr ? kIterations : 1); ++i) {
       hand_ = parts_.hand->force(time_, {handle, pose, force_.rendered, force_.spring});
       if (admittance_ != nullptr && admittance_->servo.stiffness > 0.0)
@@ -193,8 +195,8 @@ class RestingTool {
       const Eigen::FullPivLU<Eigen::MatrixXd> within(acted.transpose() * slope * acted);
       if (within.rcond() > kSingular) return acted * within.solve(acted.transpose() * total_force());
     }
-    // If forces act in all directions, or change their direction as the tool moves, use the shortest least-squares
-    // solution.
+    // If forces act in all directions (rank 3), or if no displacement within the directions of the forces removes the
+    // total force, use the shortest least-squares solution.
     Vec3 step = Vec3::Zero();
     for (Eigen::Index k = 0; k < rank; ++k)
       step += svd.matrixU().col(k).dot(total_force()) / values[k] * svd.matrixV().col(k);

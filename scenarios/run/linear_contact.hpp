@@ -14,8 +14,9 @@ namespace hapbench {
 
 /// State of a run while the tool is in contact. From this state, linear_contact() searches for the equilibrium.
 struct ContactState {
-  ToolPose pose;      ///< pose of the tool; if the handle moves the tool, its position is that of the handle (not
-                      ///< the position that the encoder measures)
+  /// Pose of the tool. If the handle moves the tool, `pose` has the true position of the handle, and not the position
+  /// that the encoder measures.
+  ToolPose pose;
   double time = 0.0;  ///< [s]
 };
 
@@ -68,8 +69,8 @@ class ContactLoops {
  private:
   ContactState near_;
   bool is_stiffness_, at_any_pose_;
-  std::optional<LinearContact> known_;  ///< the last contact that was found, with the stiffness and damping of
-                                        ///< known_rendering_
+  /// The last contact that was found. It has the stiffness K and the damping B of known_rendering_.
+  std::optional<LinearContact> known_;
   RenderingConfig known_rendering_;
 };
 

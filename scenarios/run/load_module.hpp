@@ -71,12 +71,13 @@ void require_module_permission(const std::filesystem::path& file);
 /// Checks that a library may be loaded and is an ELF file, without loading it. Throws InputError.
 void inspect_module(const std::filesystem::path& file);
 
-/// Loads a library with a source of contacts. Thread-safe. Throws InputError without permission, or if the library
-/// cannot be used.
+/// Loads a library with a source of contacts. Thread-safe. Throws InputError if the user has not permitted the library,
+/// or if the library cannot be used.
 void require_contacts_in(const std::filesystem::path& file);
 
 /// Creates the contact source of a library for one run. `config`: the scenario's configuration for the library,
-/// as JSON text. Thread-safe. Throws InputError, also without permission.
+/// as JSON text. Thread-safe. Throws InputError if the user has not permitted the library, or if the library cannot be
+/// used.
 std::unique_ptr<ContactSource> module_contacts(const std::filesystem::path& file, const std::string& config,
                                                const HapbenchRun& run);
 

@@ -154,7 +154,7 @@ class OutcomeObserverImpl final : public OutcomeObserver {
     return is_held && handle_velocity_.norm() < kAtRest ? std::optional(device->coulomb) : std::nullopt;
   }
 
-  /// Returns the most likely reason why the tool lost or never reached the surface. An uncertain reason is phrased as a
+  /// Returns the most likely reason why the tool lost contact or never had contact. An uncertain reason is phrased as a
   /// question. `time_to_contact`: time in which the tool would reach the surface [s] (Approach::Closest).
   std::string likely_cause(const std::optional<double>& time_to_contact = {}) const {
     constexpr double kMaxTimeToContact = 100.0;  // longest plausible time to contact, in durations of the run
@@ -195,8 +195,9 @@ class OutcomeObserverImpl final : public OutcomeObserver {
     return position_is_free(scenario.motion) && scenario.time.stop_when.empty() &&
            !std::holds_alternative<TrackingHandFields>(scenario.hand);
   }
-  /// Returns true if only a constant force acts on a tool without contact. Returns false for multi-rate contacts, force
-  /// stages and passivity controllers, whose forces depend on earlier steps.
+  /// Returns true if only a constant force acts on a tool without contact. Returns false for a device that is not
+  /// ideal, for contacts of a module or a recording, and for multi-rate contacts, force stages and passivity
+  /// controllers, whose forces depend on earlier steps.
   static bool never_returns(const Scenario& scenario) {
     const RenderingConfig& rendering = scenario.rendering;
     const bool remembers = has_multi_rate_contacts(scenario) || rendering.force_stage || rendering.passivity_controller;
@@ -257,17 +258,17 @@ class OutcomeObserverImpl final : public OutcomeObserver {
                              : std::string("at the end it was not below the surface");
     if (p.deep) {
       return fmt::format(
-          "its tip centre was deeper below the surface than its half width, {}, at {:.4g} s at {}; largest depth {}; "
-          "{}",
+          "its tip centre was deeper below the surface than the half width of the tool, {}, at {:.4g} s at {}; largest "
+          "depth {}; {}",
           length_text(half_width), p.deep->time, millimetres(p.deep->point), length_text(p.deepest), end);
     }
-    // From here on, the tip centre was never deeper than the half width.
+    // In the remaining cases, the tip centre was never deeper than half the tool's width.
     if (p.left) return fmt::format("it entered the environment at {} and {}", millimetres(p.entered), end);
-    if (p.ends_inside)
-      return fmt::format("the core of the tool ended inside the environment; for the tip centre: {}", end);
+    if (p.ends_inside) return fmt::format("the core of the tool ended inside the environment; its tip centre: {}", end);
     if (const auto& core = inside_->core_passage().event(); core && (failure_ || inside_max() <= half_width)) {
       return fmt::format("its axis {} at {:.4g} s, from {} to {}",
-                         core->at_once ? "crossed it from face to face" : "entered it and left on another side",
+                         core->at_once ? "crossed the environment from face to face"
+                                       : "entered the environment and left it on another side",
                          core->time, millimetres(core->entered), millimetres(core->left));
     }
     return fmt::format(
@@ -284,8 +285,8 @@ class OutcomeObserverImpl final : public OutcomeObserver {
         length_text(closest.distance), closest.time, environment_text(), likely_cause(closest.time_to_contact));
   }
 
-  /// Returns true for a tool that was thrown out or pushed past the environment, and for a dragged tool that
-  /// left the surface.
+  /// Returns true if a tool that moves freely ended far from the environment (is_far()), or if a dragged tool left the
+  /// surface (drag_lost()).
   bool lost_contact() { return (is_far() && position_is_free(scenario_.motion)) || drag_lost(); }
   std::string lost_contact_text() {
     if (drag_lost()) {
@@ -327,7 +328,7 @@ class OutcomeObserverImpl final : public OutcomeObserver {
     std::string text = fmt::format(
         "the dragged tool ended {} behind the position to which its hand should have led it, {} along the path, at {}",
         length_text(*progress_->left_behind()), length_text(progress_->target_progress()), millimetres(position_));
-    // A tool that still moves may only need more time.
+    // If the tool still moves at the end of the run, it may only need more time to reach the target.
     const double speed = handle_velocity_.norm();
     if (speed > kMinMovingFraction * std::get<DragHandFields>(scenario_.hand).drag.speed)
       text += fmt::format(

@@ -19,8 +19,9 @@ namespace hapbench {
 struct OutcomeFacts {
   bool began_inside = false;   ///< the tip centre was inside the environment's solid in the first step
   std::string scale_question;  ///< question about a size that is probably wrong (scale_question()); usually empty
-  /// Dry friction of an impedance device that holds the handle at the end of the trial against a smaller force of the
-  /// hand [N per axis]. Empty if friction does not hold the handle, or if the tool touched the surface in the trial.
+  /// Dry friction of the impedance device [N per axis], if this friction holds the handle at the end of the trial
+  /// because the force of the hand is smaller. Empty if friction does not hold the handle, or if the tool touched the
+  /// surface in the trial.
   std::optional<double> holding_friction;
 };
 
@@ -38,10 +39,11 @@ enum class RunLength {
 /// - went_through: the tip centre is deeper than the tool's half width, or the core of the tool has passed through the
 ///   surface (Passage::deep and left, CorePassage::event). The outcome of the full run is then went_through, or
 ///   diverges if a later step exceeds a bound of the scenario.
-/// - lost_contact, or no_contact if the tool never touched: a freely moving tool is further from the environment's
-///   bounding box than the sum of the box's diagonal and the tool's extent, does not move towards the box, has no
-///   rendered force, and the hand (none, or of type force or push with a constant force, on an ideal device) does not
-///   pull it back. With any other hand the tool may come back, and only the end of the run determines the outcome.
+/// - lost_contact, or no_contact if the tool never touched the environment: a freely moving tool is further from the
+///   environment's bounding box than the sum of the box's diagonal and the tool's extent, does not move towards the
+///   box, and has no rendered force. The device is ideal, and there is no hand, or a hand of type force or push with a
+///   constant force that does not pull the tool back. Otherwise the tool may come back, and only the end of the run
+///   determines the outcome.
 struct FinalFailure {
   Outcome outcome;
   double time;         ///< [s]
@@ -74,9 +76,9 @@ class OutcomeObserver : public Observer {
   virtual const InsideDepths* depths() = 0;
 };
 
-/// Creates the observer of a trial. `scenario` and `parts` must outlive it. `metrics` must be notified before this
-/// observer in each step; null if warnings() is never called. `length`: determines whether the observer detects a final
-/// failure.
+/// Creates the observer of a trial. `scenario` and `parts` must outlive the observer. `metrics`: observer that must be
+/// notified of each step before the created observer; null if warnings() is never called. `length`: determines whether
+/// the created observer detects a final failure.
 std::unique_ptr<OutcomeObserver> outcome_observer(const Scenario& scenario, const NamedFiles& files,
                                                   const SimulationParts& parts,
                                                   const MetricsObserver* metrics = nullptr,

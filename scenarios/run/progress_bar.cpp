@@ -13,7 +13,7 @@
 namespace hapbench {
 namespace {
 
-// kSilence: time before the first line. kRedraw: shortest time between two redraws on a terminal.
+// kSilence: time before the first progress line. kRedraw: shortest time between two redraws on a terminal.
 constexpr auto kSilence = std::chrono::seconds(2);
 constexpr auto kRedraw = std::chrono::milliseconds(200);
 

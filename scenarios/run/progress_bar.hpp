@@ -35,8 +35,8 @@ class ProgressBar {
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;
 
-  /// Reports `done` of the total number of items. Redraws at most five times a second. With `counts`, also shows both
-  /// numbers and the estimated remaining time, which assumes the mean time per item so far.
+  /// Reports that `done` of the `total` items are finished. Redraws at most five times a second. If `counts` is true,
+  /// also shows `done`, `total` and the estimated remaining time, which assumes the mean time per item so far.
   void show(std::uint64_t done, bool counts = false);
 
  private:

@@ -42,9 +42,9 @@ std::vector<ResultTable> tables_with(const RecordFields& fields);
 /// Returns descriptions of all tables that a run can record.
 std::vector<ResultTable> record_tables();
 
-/// Returns an estimate of the bytes that a run of the scenario writes, all trials together. Assumes that the run
-/// makes all its steps, 12 bytes for each number and 30 contacts in each step. If the steps have about 30 contacts, the
-/// estimate is within a factor of two. O(1).
+/// Returns an estimate of the bytes that a run of the scenario writes, all trials together. Assumes that the run makes
+/// all its steps, that a number takes 12 bytes, and that each step has 30 contacts. If the steps have about 30
+/// contacts, the estimate is within a factor of two. O(1).
 double expected_output_bytes(const Scenario& scenario);
 
 }  // namespace hapbench

@@ -174,8 +174,9 @@ class Run {
   const Recorders& recorders() const { return recorders_; }
 
  private:
-  /// Makes all steps. At a final failure, removes the observers. If the failure is a loss of contact, the trial ends.
-  /// If it is a passage through the surface, the trial continues without observers, because it may still diverge.
+  /// Makes all steps of a trial. At a final failure, removes the observers. If the failure is a loss of contact, the
+  /// trial ends. If the failure is a passage through the surface, the trial continues without observers, because the
+  /// trial may still diverge.
   SimulationResult step_to_end(Simulation& simulation, const OutcomeObserver& outcome, ProgressBar& bar) {
     // Measure allocations, preemptions and time of the step loop.
     const AllocationCount allocations;
@@ -298,7 +299,7 @@ Result run_scenario(const CheckedScenario& checked, const std::optional<RunOutpu
   std::optional<ResultFolder> folder;
   if (output) folder.emplace(*output);
   if (output) tables = nullptr;
-  // Reserve memory for all elements, because the recorders keep pointers to them.
+  // Reserve memory for the tables of all trials, because the recorders keep pointers to these tables.
   if (tables != nullptr) tables->trials.reserve(trials.size());
   Run run(checked, shell, trials.size(), diagnose, length);
   for (std::size_t i = 0; i < trials.size(); ++i) {

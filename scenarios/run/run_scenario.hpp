@@ -27,8 +27,8 @@ namespace hapbench {
 /// - `progress`: whether and where to show a progress bar.
 /// - `tables`: receives the recorded tables in memory; ignored with `output`. Without `output` and `tables`,
 ///   the summary has neither provenance nor scenario hash.
-/// - `diagnose`: the result includes a diagnosis of what is wrong with the run (diagnosis.hpp); costs about 20
-///   ns a step.
+/// - `diagnose`: if true, the result includes a diagnosis of what is wrong with the run (diagnosis.hpp). The diagnosis
+///   costs about 20 ns a step.
 /// - `shell`: make_shell() of the scenario, if it already exists. Several runs may share it, also at the same
 ///   time.
 /// - `length`: with RunLength::until_failure, the observation of a run ends when the run fails for good or diverges

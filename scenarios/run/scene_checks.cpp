@@ -92,8 +92,9 @@ std::vector<Warning> stroke_warnings(const Stroke& stroke, const ToolShape& tool
   return warnings;
 }
 
-/// Returns a warning if the front point of the tool's core (struct Passage) lies behind the surface point nearest to
-/// it, on the side opposite to the normal of this surface point.
+/// Returns a warning if the tool starts behind the surface. Tests the point `core` on the tool's axis, core_offset()
+/// behind the tip centre: whether `core` lies on the side of its nearest surface point that is opposite to the normal
+/// of this surface point.
 std::optional<Warning> wrong_side_warning(const PointShell& shell, const ToolShape& tool, const ToolPose& pose) {
   const Vec3 core = pose.position - core_offset(tool) * pose.axis;
   // Find the nearest point of the surface.

@@ -13,7 +13,7 @@ namespace hapbench {
 
 /// Properties of a scenario's scene that are known before the run.
 struct SceneFacts {
-  /// The environment's point shell. An environment of springs has no points.
+  /// Bounding box and number of the points of the environment's point shell. An environment of springs has no points.
   struct Surface {
     Box box;
     std::size_t points = 0;

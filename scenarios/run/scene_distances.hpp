@@ -12,8 +12,8 @@ namespace hapbench {
 
 /// Distance between a tool and the points of a surface.
 struct Gap {
-  /// Distance of the tool from the nearest point [m]. Negative if points lie inside the tool: then minus the
-  /// depth of the deepest point.
+  /// Distance of the tool from the nearest point [m]. If points lie inside the tool, the depth of the deepest point
+  /// with a negative sign.
   double distance = 0.0;
   std::size_t touching = 0;  ///< number of points inside or on the tool
 };
@@ -26,8 +26,9 @@ Gap gap_between(const ToolShape& tool, const ToolPose& pose, const PointShell& s
 struct PointDistance {
   const char* path;  ///< path of the field, as in --set
   double metres;
-  bool is_given = true;  ///< false: no spacing is given, and the distance is the mean distance between neighbouring
-                         ///< vertices of the mesh
+  /// True if the scenario gives the spacing. If false, `metres` is an estimate of the mean distance between
+  /// neighbouring vertices of the mesh.
+  bool is_given = true;
 };
 
 /// Returns the point spacing of the environment; empty if the environment has no field that sets a spacing.

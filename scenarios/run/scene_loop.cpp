@@ -68,8 +68,8 @@ DeviceLoop admittance_loop(const Scenario& scenario, const AdmittanceDeviceConfi
   return result;
 }
 
-/// Returns the scenario in which the stiffness and damping of the friction bristle replace those of the contact
-/// springs. The linear loop of this scenario is the loop along a surface on which dry friction holds the tool. The
+/// Returns the scenario in which the stiffness and damping of the friction bristle replace the stiffness and damping of
+/// the contacts. The linear loop of this scenario is the loop along a surface on which dry friction holds the tool. The
 /// bristle integrates the velocity that the device measures. The deflection of the bristle is therefore the position,
 /// filtered by the device's velocity filter.
 Scenario stuck_scene(Scenario scenario) {
@@ -85,8 +85,8 @@ Scenario stuck_scene(Scenario scenario) {
 }
 
 /// Fields of a device that the linear model covers, as JSON pointers within the device. Each of these fields is part of
-/// the loop, or SampledLoop::nonlinearity() reports it, or it has no effect unless something saturates. If any other
-/// field differs from its default, there is no linear model.
+/// the loop, is reported by SampledLoop::nonlinearity(), or has no effect while nothing saturates. If any other field
+/// differs from its default, there is no linear model.
 constexpr std::string_view kKnownToTheory[] = {"/handle_mass_kg",
                                                "/viscous_N_s_per_m",
                                                "/coulomb_N",

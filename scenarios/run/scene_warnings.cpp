@@ -45,8 +45,7 @@ std::string scale_question(const Scenario& scenario, const ToolShape& tool, cons
 }
 
 std::string frame_problem(const Box& tool) {
-  constexpr double kSuspectRatio = 2.0;  // if two lengths of the tool have at least this ratio, its frame is probably
-                                         // wrong
+  constexpr double kSuspectRatio = 2.0;  // if two lengths of the tool have a larger ratio, its frame is probably wrong
   const Vec3 size = tool.size();
   const double gap = distance_to(tool, Vec3::Zero());
   if (gap > 0.0) return fmt::format("is {} away from its tip centre", length_text(gap));

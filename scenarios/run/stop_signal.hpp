@@ -9,14 +9,14 @@
 ///
 /// The received signal is a single flag of the process and is not passed as an argument. A signal is sent to a
 /// process and stops all of its work, including the calls of all Python threads. An argument would have to be passed
-/// by every caller of every loop, from the command through searches, jobs and claims to the step loop. A loop whose
-/// caller forgot the argument could not be stopped.
+/// through all functions from the command to the loop over the time steps. A loop whose caller forgot the argument
+/// could not be stopped.
 namespace hapbench {
 
-/// While an instance exists, the first SIGINT or SIGTERM is only recorded, so that work can end cleanly. A
-/// second signal more than 0.2 s later ends the process immediately, and so does the first signal if work has
-/// not ended after two seconds. Signals that were ignored before stay ignored. At most one instance may exist
-/// at a time. Without an instance, only stop_work() can stop work.
+/// While an instance exists, the first SIGINT or SIGTERM is only recorded, so that work can end cleanly. If work has
+/// not ended two seconds after this signal, the process is ended. A second signal more than 0.2 s after the first ends
+/// the process immediately. Signals that were ignored before stay ignored. At most one instance may exist at a time.
+/// Without an instance, only stop_work() can stop work.
 class StopSignal {
  public:
   StopSignal();

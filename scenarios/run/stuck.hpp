@@ -2,7 +2,8 @@
 
 namespace hapbench {
 
-/// A tool stands still while it moves by less than this fraction of the distance that its target moves.
+/// A tool counts as standing still while it moves by less than this fraction of the distance by which the hand's target
+/// moves.
 inline constexpr double kMinMovingFraction = 0.1;
 
 /// A standstill that lasted to the end of the run, while the target of the tool's hand moved on.

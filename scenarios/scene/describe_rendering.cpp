@@ -131,7 +131,7 @@ static void describe_hunt_crossley(Fields& f, double& chi) {
       {"hunt_crossley",
        "damping force -chi K sum c_i d_i <v, u_i> u_i, which is continuous when contacts begin and end"}};
   f.alternatives("damping", kTypes, Untyped::refused, 0, [&chi](Fields& fields, std::size_t) {
-    number(fields, parameter::kChi, chi, "chi", Presence::required);
+    number(fields, parameter::kChi, chi, "chi, coefficient of the damping", Presence::required);
   });
 }
 
@@ -142,7 +142,7 @@ static void describe(Fields& f, MultiRateSchedule& schedule) {
   f.choice("between", schedule.linear, {"hold", "linear"}, "kind of contacts between queries",
            "hold: depths stay as computed; linear: depths follow the tool's motion along the gradients");
   number(f, parameter::kDropout, schedule.dropout,
-         "probability that the result of a contact query is lost (except the first), drawn by the seed");
+         "probability that the result of a contact query is lost, drawn by the seed; the first result is never lost");
 }
 
 /// Describes the source of contacts: a name, or an object that names a file (a recording or a shared library).
@@ -209,12 +209,12 @@ void describe(Fields& f, RenderingConfig& rendering) {
       "multi-rate rendering: a slower loop computes the contacts; null: contacts are computed in every time step",
       [](Fields& schedule, MultiRateSchedule& value) { schedule.object(value); });
   f.boolean(key(parameter::kLocalAverage), rendering.local_average,
-            "merge colliding points that share a grid cell of the shell");
+            "true: merges the colliding points of each grid cell of the shell into one point");
   f.object(
       "reduction", rendering.reduction,
       "gradient-based reduction: keeps the deepest of contacts with similar gradients; the kept set changes abruptly; "
       "null: off");
-  number(f, parameter::kStiffness, rendering.stiffness, "K");
+  number(f, parameter::kStiffness, rendering.stiffness, "K, stiffness of one penalty spring");
   number(f, parameter::kDampingRatio, rendering.damping_ratio,
          "zeta, damping ratio of a contact, which gives B = 2 zeta sqrt(K M)");
   number(f, parameter::kDamping, rendering.damping,
@@ -240,8 +240,8 @@ void describe(Fields& f, RenderingConfig& rendering) {
   number(f, parameter::kRegularisation, rendering.regularisation, "eps, regularisation of algorithm least_squares");
   if_not_null(
       f, "force_stage", rendering.force_stage,
-      "force stage after the algorithm: receives its force with damping, friction and limits, and computes the force "
-      "to render; null: off",
+      "force stage after the algorithm: receives the algorithm's force with damping, friction and limits, and computes "
+      "the force to render; null: off",
       [](Fields& held, ForceStageConfig& value) { describe(held, value); });
   f.boolean(key(parameter::kPassivityController), rendering.passivity_controller,
             "adaptive damping that prevents the algorithm from creating energy");

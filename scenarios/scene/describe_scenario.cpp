@@ -145,10 +145,10 @@ static void describe(Fields& f, RecordFields& record) {
 static void describe(Fields& f, SettlingRule& metrics) {
   f.number(
       "from_s", metrics.from, {0.0, 1e9, "s"},
-      "time from which all steps in contact count as settled, and before which all count as landing; null: a landing "
-      "begins at each first touch");
+      "time from which all steps in contact count as settled; all steps before this time count as landing; null: a "
+      "landing begins at the first touch of the run, and at each touch after at least settling_s without contact");
   f.number("settling_s", metrics.time, {0.0, 1e9, "s"},
-           "duration of a landing, and time without contact after which the next touch is a first touch");
+           "duration of a landing; also the time without contact after which the next touch begins a landing");
 }
 
 static void describe(Fields& f, MetricBound& bound) {
@@ -184,17 +184,19 @@ static void describe(Fields& f, SixDofFields& fields) {
   f.number("hand_stiffness_N_per_m", fields.hand, {0.0, 1e12, "N/m", true}, "K_h, stiffness of the hand at the grip");
   f.number("hand_rotational_stiffness_N_m_per_rad", fields.hand_rotation, kTurning,
            "K_phi, rotational stiffness of the hand about the grip");
-  f.number("coupling_rotational_stiffness_N_m_per_rad", fields.coupling_rotation, kTurning,
-           "K_r, rotational stiffness of the coupling of the 6-DOF device; its stiffness is "
-           "rendering.stiffness_N_per_m");
+  f.number(
+      "coupling_rotational_stiffness_N_m_per_rad", fields.coupling_rotation, kTurning,
+      "K_r, rotational stiffness of the coupling of the 6-DOF device; the translational stiffness of this coupling is "
+      "rendering.stiffness_N_per_m");
   f.number("force_point_m", fields.force_point, {0.0, 1.0, "m"},
            "distance from the tip centre back along the axis to the point at which the devices apply the force");
   f.number("grip_m", fields.grip, kAlongAxis,
-           "distance from the force point to the grip, about which the hand yields; positive towards the tip");
+           "distance from the force point to the grip, the point about which the hand lets the handle rotate; positive "
+           "towards the tip");
   f.number(
       "pivot_m", fields.pivot, kAlongAxis,
-      "distance from the tip centre back along the axis to the point about which the intent turns; the scripted motion "
-      "of the tip is added to the turn");
+      "distance from the tip centre back along the axis to the point about which the intended motion rotates the tool; "
+      "the scripted motion of the tip is added to this rotation");
 }
 
 static void describe(Fields& f, ExpectFields& expect) {
@@ -214,8 +216,9 @@ static void describe(Fields& f, ExpectFields& expect) {
           });
 }
 
-/// Describes the field `extends`. read_scenario_text merges the scenario that a file extends and removes the field.
-/// If the field is still there, the JSON was not read from a file, and InputError is thrown.
+/// Describes the field `extends`. For a file, read_scenario_text() merges the scenario that this field names into the
+/// JSON and removes the field. If the field is still present, the JSON does not come from a file, and InputError is
+/// thrown.
 static void describe_extends(Fields& f) {
   std::string other;
   f.text(kExtends, other, 4096,
@@ -223,7 +226,7 @@ static void describe_extends(Fields& f) {
          "and expect). null and an object of another type replace the base's field",
          Presence::omitted);
   if (!f.reads() || !f.given(kExtends)) return;
-  fail_at(member(f.at(), kExtends), "got it in no file; allowed: in files");
+  fail_at(member(f.at(), kExtends), "got the field in a scenario that is not in a file; allowed: in scenario files");
 }
 
 void describe(Fields& f, Scenario& scenario) {
@@ -252,22 +255,25 @@ void describe(Fields& f, Scenario& scenario) {
   f.object("bounds", scenario.bounds, "bounds beyond which a run counts as diverged");
   f.if_any(
       "reference_force", scenario.reference_force,
-      "force that an ideal rendering would give on the prescribed motion, or in the same hand; the metrics of group "
-      "fidelity compare the rendered force with it. Without a type, it is given as functions of time",
+      "force that an ideal rendering would give on the prescribed motion, or in the same hand. The metrics of group "
+      "fidelity compare the rendered force with this reference force. Without a type, the reference force is given as "
+      "functions of time",
       [](Fields& value, ReferenceForceFields& reference) {
-        value.variant(reference, "reference force",
-                      {{"given", "given as functions of time"},
-                       {"rigid_contact",
-                        "K (x' - x), where x' is the free position of the tool nearest to its prescribed position "
-                        "x: frictionless contact with the rigid triangles of the mesh. K is rendering.stiffness. If a "
-                        "hand of type impedance or mass_spring_damper moves the tool, x is the hand's target and K the "
-                        "hand's stiffness: the static force, without inertia and damping"}},
-                      Untyped::first);
+        value.variant(
+            reference, "reference force",
+            {{"given", "force as a function of time"},
+             {"rigid_contact",
+              "K (x' - x): force of frictionless contact with the rigid triangles of the mesh. x is the prescribed "
+              "position of the tool, x' the nearest position in which the tool does not penetrate the mesh, and K is "
+              "rendering.stiffness_N_per_m. If a hand of type impedance or mass_spring_damper moves the tool, x is the "
+              "hand's target and K the hand's stiffness. The force is then static, without inertia and damping"}},
+            Untyped::first);
       });
   f.object_if_any(
       "six_dof", scenario.six_dof,
-      "compare the law on a 3-DOF device with a 6-DOF device, both quasi-static and in the hand that this object "
-      "describes; the scripted motion is the intent of the hand. Adds the metrics of group six_dof");
+      "comparison of the law on a 3-DOF device with a 6-DOF device. Both devices are quasi-static and held by the hand "
+      "that this object describes. The scripted motion is the motion that the hand intends. Adds the metrics of group "
+      "six_dof");
   f.object("record", scenario.record, "what is written in addition to summary.json");
   f.object("metrics", scenario.metrics, "which steps count as landing and which as settled contact");
   f.object("expect", scenario.expect,

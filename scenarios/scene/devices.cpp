@@ -92,7 +92,8 @@ static void describe(Fields& f, AdaptiveWindowFilter& filter) {
 static void describe(Fields& f, VelocityFilterConfig& filter) {
   f.variant(filter, "velocity filter",
             {{"difference", "difference of the last two positions, divided by the time step"},
-             {"low_pass", "that difference, smoothed by a Butterworth low-pass"},
+             {"low_pass",
+              "difference of the last two positions, divided by the time step and smoothed by a Butterworth low-pass"},
              {"adaptive_window",
               "slope of the line over the longest window of samples that fits a straight line (Janabi-Sharifi et al. "
               "2000)"}});
@@ -112,7 +113,7 @@ static void describe_preset(Fields& f, ImpedanceDeviceConfig& device) {
   if (preset) {
     device = config_of(*find_device_preset(*preset));
   } else if (!f.given("preset") && !f.given("handle_mass_kg")) {
-    fail_at(f.at(), "missing field; allowed: handle_mass_kg, or a preset, which has one");
+    fail_at(f.at(), "missing field; allowed: handle_mass_kg, or a preset, which supplies it");
   }
 }
 
@@ -188,17 +189,18 @@ void resolve_delay(Scenario& scenario) {
   // Convert to time steps and check the range.
   const double delay = *device->delay, samples = delay / scenario.time.step, given = device->delay_samples;
   if (samples > kMaxDeviceDelay) {
-    fail_at("/device/delay_s",
-            fmt::format("got {} s, {:.3g} time steps; allowed: at most {} of them", delay, samples, kMaxDeviceDelay));
+    fail_at("/device/delay_s", fmt::format("got {} s, {:.3g} time steps; allowed: at most {} time steps", delay,
+                                           samples, kMaxDeviceDelay));
   }
   // If the file gives the delay in seconds and in samples, both must be equal up to the rounding of the written
   // numbers.
   if (std::abs(given - samples) > 1e-9 * std::max(1.0, samples)) {
-    fail_at("/device/delay_s",
-            fmt::format(
-                "got {} s together with delay_samples {}; allowed: one of the two, or both where they say the same: "
-                "{} s are {:.6g} time steps of {} s",
-                delay, given, delay, samples, scenario.time.step));
+    fail_at(
+        "/device/delay_s",
+        fmt::format(
+            "got {} s together with delay_samples {}; allowed: one of the two, or both with consistent values: {} s "
+            "are {:.6g} time steps of {} s",
+            delay, given, delay, samples, scenario.time.step));
   }
   device->delay_samples = samples;
 }

@@ -25,7 +25,8 @@ using Shell = std::shared_ptr<const PointShell>;
 /// Allowed number of springs with the same direction, and of springs with random directions.
 constexpr IntegerRange kSpringCount = {0, 20'000'000};
 
-/// Throws InputError if the shell would have too many points. The template parameter is an analytic shape.
+/// Throws InputError if the point shell of an analytic shape would have too many points. `shell`: the shape and the
+/// spacing of its points.
 template <class Shell>
 void check_point_count(Fields& f, const Shell& shell) {
   if (f.reads())
@@ -41,7 +42,9 @@ void check_springs(const SpringsEnvironment& springs, const std::string& at) {
   }
   require_at_most(kMaxSurfacePoints, count, at, "springs");
   if (springs.bilateral || springs.signed_depths) return;
-  fail_at(at + "/signed", "got false; allowed: true with \"bilateral\": false, whose depths are positive as they are");
+  fail_at(
+      at + "/signed",
+      "got false; allowed with \"bilateral\": false: true, because a unilateral spring acts only at positive depths");
 }
 
 /// Throws InputError if the grid is too coarse for the hole and its walls, or would give too many points.
@@ -55,17 +58,20 @@ void check_block(const BlockEnvironment& environment, const std::string& at) {
   const auto fail = [&at](const char* field, const std::string& problem) { fail_at(at + "/" + field, problem); };
   if (size.maxCoeff() > longest) fail("grid_m", fmt::format("got {}; allowed: at least size_m / 1e5", grid));
   const double area = 2.0 * (size.x() * size.y() + size.y() * size.z() + size.z() * size.x());
-  // A vertex lies on a grid edge, and four cells share each grid edge.
+  // A vertex lies on a grid edge, and four cells share each grid edge. With per_cell, the shell has each vertex
+  // once for each of these cells.
   const double copies = environment.per_cell ? 4.0 : 1.0;
   require_at_most(kMaxSurfacePoints, copies * area / (grid * grid), at,
                   "shell points (from size_m, grid_m and vertices)");
   if (block.hole_diameter > std::min(size.x(), size.y()) - 2.0 * thinnest || block.hole_diameter < thinnest) {
     fail("hole_diameter_m",
-         fmt::format("got {}; allowed: at least 3 grid_m, leaving walls of 3 grid_m", block.hole_diameter));
+         fmt::format("got {}; allowed: at least 3 grid_m, with walls of at least 3 grid_m beside the hole",
+                     block.hole_diameter));
   }
   if (block.hole_depth > size.z() - thinnest || block.hole_depth < thinnest) {
     fail("hole_depth_m",
-         fmt::format("got {}; allowed: at least 3 grid_m, leaving a bottom of 3 grid_m", block.hole_depth));
+         fmt::format("got {}; allowed: at least 3 grid_m, with a bottom of at least 3 grid_m below the hole",
+                     block.hole_depth));
   }
 }
 
@@ -112,7 +118,8 @@ static void describe(Fields& f, Plane& plane) {
 
 static void describe(Fields& f, Slot& slot) {
   f.number("gap_m", slot.gap, kLength, "distance between the two faces, along x", Presence::required);
-  f.number("depth_m", slot.depth, kLength, "height of the faces below z = 0", Presence::required);
+  f.number("depth_m", slot.depth, kLength, "height of the faces, which extend from z = 0 downwards",
+           Presence::required);
   f.number("length_m", slot.length, kLength, "width of the faces along y", Presence::required);
   f.number("spacing_m", slot.spacing, kLength, "largest distance of neighbouring points", Presence::required);
   check_point_count(f, slot);
@@ -154,9 +161,11 @@ static void describe(Fields& f, MeshEnvironment& mesh) {
          "surface as OBJ, OFF, PLY or STL, the last two also binary; relative to the scenario file");
   f.number("scale", mesh.scale, {0.0, 1e6, "m", true},
            "length of one unit of the file in metres: 0.001 for millimetres", Presence::required);
-  f.number("spacing_m", mesh.spacing, kLength,
-           "spacing of the shell's points: the mesh is resampled so that no edge is longer and a cube of this size "
-           "contains one point; null: the mesh's own vertices");
+  f.number(
+      "spacing_m", mesh.spacing, kLength,
+      "spacing of the shell's points: the mesh is refined until no edge is longer than this spacing. Then each cube of "
+      "this size keeps one point for each of the directions +-x, +-y and +-z nearest to the points' normals. null: the "
+      "mesh's own vertices");
   f.boolean("flip_normals", mesh.flip,
             "inverts the normals of an open surface, such as a scan whose normals point inwards");
   f.number("grid_m", mesh.grid, kLength, "size of the grid cells of the local average; null: no grid");

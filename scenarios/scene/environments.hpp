@@ -19,7 +19,8 @@ void describe(Fields& f, Environment& environment);
 /// with equal environments share the shell (SharedCache). `files` are the scenario's files. Throws InputError if
 /// the environment's file cannot be used.
 std::shared_ptr<const PointShell> make_shell(const Scenario& scenario, const NamedFiles& files);
-/// Returns the environment's point shell. Reads the scenario's files again.
+/// Returns the result of make_shell() above with a new object of the scenario's files. These files are read again, also
+/// if the caller has read them before.
 inline std::shared_ptr<const PointShell> make_shell(const Scenario& scenario) {
   return make_shell(scenario, NamedFiles(scenario));
 }

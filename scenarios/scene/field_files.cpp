@@ -17,8 +17,9 @@ namespace fs = std::filesystem;
 /// Beginning of the error message about a field that does not exist.
 constexpr std::string_view kUnknownField = "unknown field";
 
-/// Returns a hint for an unknown field whose name resembles no field of its object: the paths of the fields with the
-/// nearest name in other objects. Empty if there are no such fields.
+/// Returns a hint for an unknown field whose name resembles no field of its object. Searches all objects of a scenario
+/// for the field name that is most similar to the unknown name. The hint lists the paths of all fields with this name,
+/// or says that only an object of another type has the field. Empty if no name is similar.
 std::string hint_from_other_objects(const std::string& pointer) {
   const std::vector<std::string> paths = scenario_field_paths();
   const auto own_name = [](const std::string& path) { return parts_of(path, '.').back(); };
@@ -34,11 +35,11 @@ std::string hint_from_other_objects(const std::string& pointer) {
 /// Returns the hint for an unknown field whose name resembles no field of its object. May be empty.
 std::string hint_for(const InputError& fault) {
   const bool is_of_law = fault.location().pointer.starts_with("/rendering/parameters/");
-  return is_of_law ? "; a law from outside brings its own with --module"
+  return is_of_law ? "; the parameters of a law in a module need the option --module"
                    : hint_from_other_objects(fault.location().pointer);
 }
 
-/// Returns the fault with the file's name in its location, and with hints for unknown names.
+/// Returns a copy of the fault. Adds `file` to its location, and a hint to the message about an unknown name.
 InputError in_file(const InputError& fault, const fs::path& file) {
   ErrorLocation location = fault.location();
   if (!location.file.empty()) {  // true if the fault is in a file that the scenario names
@@ -49,7 +50,7 @@ InputError in_file(const InputError& fault, const fs::path& file) {
   std::string problem = fault.problem();
   if (problem.find("nearest valid name") == std::string::npos) {
     if (problem.starts_with(kUnknownField)) problem.insert(kUnknownField.size(), hint_for(fault));
-    if (location.pointer == "/rendering/algorithm") problem += "; a law from outside comes with --module";
+    if (location.pointer == "/rendering/algorithm") problem += "; a law in a module needs the option --module";
   }
   return {fault.kind(), location, problem};
 }
@@ -78,7 +79,7 @@ void rethrow_with_file(const InputError& error, const LoadedScenario& loaded) {
 
 fs::path file_of(const LoadedScenario& loaded, const std::string& pointer) {
   if (!pointer.starts_with('/')) return loaded.file;
-  // Search for a file that sets the field. If no file sets the field, search for a file that has the object around it.
+  // Search for a file that sets the field. If no file sets the field, search for a file that has the enclosing object.
   for (Json::json_pointer at(pointer); !at.empty(); at = at.parent_pointer()) {
     for (const ScenarioLayer& layer : loaded.layers)
       if (layer.json.contains(at)) return layer.file;

@@ -7,7 +7,7 @@
 #include "results/summary/summary.hpp"
 #include "scenarios/input/input_error.hpp"
 
-/// Adds to an error or warning about a scenario field the name of the file that sets this field.
+/// Names the file that sets a scenario field, in errors and warnings about this field.
 namespace hapbench {
 
 struct LoadedScenario;
@@ -20,10 +20,10 @@ std::filesystem::path file_of(const LoadedScenario& loaded, const std::string& p
 /// of the value.
 std::vector<std::string> with_files(const LoadedScenario& loaded, const std::vector<Warning>& warnings);
 
-/// Throws a copy of the error that names `file` in front of each fault.
+/// Throws a copy of `error`. In the copy, the name of `file` stands in front of each fault.
 [[noreturn]] void rethrow_with_file(const InputError& error, const std::filesystem::path& file);
-/// Throws a copy of the error that names, in front of each fault, the file that has the fault: the scenario's
-/// file, or a file that it extends.
+/// Throws a copy of `error`. In the copy, the name of the file that has the fault stands in front of each fault. This
+/// file is the scenario's file, or a file that it extends.
 [[noreturn]] void rethrow_with_file(const InputError& error, const LoadedScenario& loaded);
 
 /// Calls `work` and returns its result. An InputError that `work` throws is passed to rethrow_with_file with

@@ -130,7 +130,8 @@ static void describe(Fields& f, TargetRules& task) {
   f.object("threshold", task.threshold,
            "force that the task compares with min_press_N, if it differs from the displayed force; null: the displayed "
            "force");
-  f.number("hold_s", task.hold, {0.0, 1000.0, "s", true}, "uninterrupted time on the target after which it is removed");
+  f.number("hold_s", task.hold, {0.0, 1000.0, "s", true},
+           "uninterrupted time on the target after which the target is removed");
   f.number("time_limit_s", task.time_limit, {0.0, 1000.0, "s", true},
            "time from activation after which the target disappears");
 }
@@ -160,7 +161,7 @@ static void describe(Fields& f, Subject& subject) {
   f.number("max_turn_rad_per_s", subject.max_turn, {0.0, 100.0, "rad/s"},
            "largest speed of the wrist (our assumption)");
   f.number("max_force_N", subject.max_force, {0.0, 1000.0, "N"},
-           "largest force of the arm; it yields rather than push harder (our assumption)");
+           "largest force of the arm; at this force the arm yields (our assumption)");
 }
 
 static void describe(Fields& f, TrackingHandFields& hand) {
@@ -175,7 +176,7 @@ void describe(Fields& f, HandFields& hand) {
   f.variant(hand, "hand",
             {{"none", "no hand: only the rendered force moves the tool"},
              {"force", "force as a function of time"},
-             {"push", "force as a function of time, along a direction that leans from straight down"},
+             {"push", "force as a function of time, in a constant direction that may be tilted from straight down"},
              {"impedance", "spring and damper that pull the handle to a moving target"},
              {"drag", "hand that leads the tool along a path over the surface and presses along its normal"},
              {"tracking", "simulated subject that follows targets on a display"},

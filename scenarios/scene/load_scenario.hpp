@@ -15,14 +15,15 @@
 
 namespace hapbench {
 
-/// A scenario whose fields are checked. Its files are not read yet (CheckedScenario in
-/// scenarios/run/checked_scenario.hpp).
+/// A scenario whose fields have been checked. The files that the scenario names have not been read;
+/// scenarios/run/checked_scenario.hpp reads and checks them.
 struct LoadedScenario {
   Scenario scenario;
   std::filesystem::path file;
   NamedFiles files;               ///< files that the scenario names
   std::vector<Warning> warnings;  ///< warnings about values in the file that have no effect, or are likely mistakes
-  /// Layers of ScenarioText, with the overrides applied to the first layer; empty if the file extends nothing.
+  /// The scenario's file and the files that it extends (ScenarioText::layers), with the overrides applied to the first
+  /// of these files. Empty if the scenario's file extends no other file.
   std::vector<ScenarioLayer> layers;
 };
 

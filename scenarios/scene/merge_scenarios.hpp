@@ -10,13 +10,13 @@ namespace hapbench {
 /// Merges `more` over `base` by the rules of read_scenario_text (scenario_text.hpp).
 void merge_fields(Json& base, const Json& more);
 
-/// Removes from `object` the field that excludes `field`, such as "duration_s" for "steps". Does nothing if there is no
-/// such field.
+/// Removes from `object` the field that excludes `field`; for example, the field "steps" excludes "duration_s". Does
+/// nothing if `object` has no field that excludes `field`.
 void drop_alternative(Json& object, std::string_view field);
 
-/// Removes the device's field `delay_samples` if the device also has `delay_s`. An effective scenario has both fields.
-/// Its `delay_samples` was computed for its time step, and an extending scenario or an override may change the time
-/// step.
+/// Removes the device's field `delay_samples` if the device also has `delay_s`. A result of effective_scenario() has
+/// both fields, and its `delay_samples` was computed from `delay_s` and the time step. Called when a scenario that
+/// extends this scenario, or an override, changes the time step.
 void drop_derived_samples(Json& scenario);
 
 }  // namespace hapbench

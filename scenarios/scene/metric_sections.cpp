@@ -128,7 +128,7 @@ void SectionObservers::report(const MetricsObserver& metrics, const InsideDepths
   for (std::size_t i = 0; i < observers_.size(); ++i) {
     const SectionKind& kind = kSections[kinds_[i]];
     if (trials_ > 1 && !kind.merges) continue;
-    // Add the section's metrics, and its members that are not metrics.
+    // Add the section's metrics. Then add the section's JSON members that are not metrics.
     Section section(result.metrics, kind.name);
     observers_[i]->report(section);
     observers_[i]->add_members(result.sections[kind.name] = nlohmann::ordered_json::object());

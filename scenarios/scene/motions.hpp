@@ -13,7 +13,7 @@ namespace hapbench {
 /// Describes the fields of `motion` with meaning, unit, range and default.
 void describe(Fields& f, MotionFields& motion);
 
-/// Returns the scripted orientation; normalises its directions.
+/// Returns the scripted orientation that `fields` describe. Its directions are normalised.
 Orientation make_orientation(const OrientationFields& fields);
 
 /// Returns the scripted or recorded motion of the tool. `files` are the scenario's files. Throws InputError if a

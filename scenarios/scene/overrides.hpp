@@ -17,8 +17,9 @@ inline std::string_view overridden_path(std::string_view override) noexcept {
 /// (".001", "+1"). Any other text becomes a JSON string.
 Json override_value(const std::string& text);
 
-/// Applies an override "path=value". A number in the dotted path is an index of a list. A field that excludes the
-/// overridden field is removed. Throws InputError.
+/// Applies an override "path=value". If a part of the dotted path follows a list, it is an index of this list. A field
+/// that excludes the overridden field is removed. Throws InputError if `text` does not have this form, or if the path
+/// has too many parts or an index that the list does not have.
 void apply_override(Json& scenario, const std::string& text);
 
 /// Returns true if the override does not change the run, so that the scenario's expectations still apply to it.

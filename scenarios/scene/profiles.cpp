@@ -64,7 +64,7 @@ void profile(Fields& f, std::string_view name, Profile& profile, const char* uni
       if constexpr (!std::is_same_v<std::decay_t<decltype(shape)>, Profile::Constant>) moving = shape;
     };
     std::visit(take, profile.shape());
-    // Describe a number or an object with a type. When a file is read, replace the profile.
+    // Describe the profile as a number, or as an object with a type. If the fields are read from a file, set `profile`.
     value.plain_or_object(
         !profile.is_constant(),
         [&](Fields& v) {

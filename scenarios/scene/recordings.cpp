@@ -17,7 +17,7 @@ namespace hapbench {
 namespace {
 
 constexpr std::size_t kMaxSamples = 10'000'000;  ///< maximum number of samples of a stroke
-/// Allowed deviation of a quaternion's norm from 1. Three decimals in the file suffice.
+/// Allowed deviation of a quaternion's norm from 1. Quaternions that the file gives with three decimals are accepted.
 constexpr double kMaxNormError = 1e-3;
 /// Quantities of a stroke: time, position, axis or orientation, measured force.
 const std::vector<TableQuantity> kStrokeColumns = {
@@ -92,7 +92,7 @@ struct OtherLengths {
 
 constexpr std::size_t kMaxContacts = 20'000'000;      ///< maximum number of contacts of a recording
 constexpr std::size_t kMaxContactsPerTime = 100'000;  ///< maximum number of contacts with the same time
-/// Allowed deviation of a gradient's norm from 1. Three decimals in the file suffice.
+/// Allowed deviation of a gradient's norm from 1. Gradients that the file gives with three decimals are accepted.
 constexpr double kMaxLengthError = 1e-3;
 constexpr double kRounding = 1e-12;  ///< gradients whose norm deviates from 1 by at most this value are not normalised
 /// Quantities of a trace: time, position, gradient, depth.
@@ -157,13 +157,13 @@ ContactTrace parse_contact_trace(std::string_view text, const std::filesystem::p
   for (std::size_t i = 0; i < table.rows(); ++i) {
     const auto row = table.row(i);
     const auto refuse = [&](const std::string& problem) { faults.add(i, problem); };
-    // Start a new time, or add the contact to the current time.
+    // If the time is later than the time of the previous row, start a new group of contacts with the same time.
     if (trace.times.empty() || trace.times.back().time < row[0])
       trace.times.push_back({row[0], i});
     else if (row[0] < trace.times.back().time)
       refuse(fmt::format("got time {} after {}; allowed: ascending times", row[0], trace.times.back().time));
     else if (i - trace.times.back().first >= kMaxContactsPerTime)
-      refuse(fmt::format("got more contacts at time {}; allowed: at most {}", row[0], kMaxContactsPerTime));
+      refuse(fmt::format("got too many contacts at time {}; allowed: at most {}", row[0], kMaxContactsPerTime));
     // Check the contact and normalise its gradient.
     ContactTrace::Contact contact{{row[1], row[2], row[3]}, {row[4], row[5], row[6]}, row[7]};
     const double length = contact.gradient.norm();
@@ -171,7 +171,7 @@ ContactTrace parse_contact_trace(std::string_view text, const std::filesystem::p
       refuse(fmt::format("got a gradient ux,uy,uz of length {}; allowed: 1 within {}", length, kMaxLengthError));
     if (std::abs(length - 1.0) > kRounding) contact.gradient /= length;
     if (contact.depth < 0.0)
-      refuse(fmt::format("got depth {}; allowed: >= 0, how deep the point is in the tool", contact.depth));
+      refuse(fmt::format("got depth {}; allowed: >= 0, the depth of the point inside the tool", contact.depth));
     trace.contacts.push_back(contact);
   }
   faults.throw_if_any();

@@ -21,8 +21,8 @@ namespace hapbench {
 namespace {
 
 /// Warns about a depth model or reduction in `json` that differs from the depth model or reduction that the
-/// algorithm fixes. Also warns about contacts from a recording or a shared library, if the algorithm ignores such
-/// contacts, or if the algorithm is defined with one depth model only: these contacts bring their own depths.
+/// algorithm fixes. Also warns about contacts from a recording or a shared library in two cases: the algorithm ignores
+/// these contacts; or the algorithm is defined with one depth model only, which did not compute their depths.
 void warn_of_fixed_stages(const Scenario& scenario, const Json& json, std::vector<Warning>& warnings) {
   const RenderingConfig& fixed = scenario.rendering;
   const AlgorithmEntry& entry = *find_algorithm(fixed.algorithm);
@@ -35,9 +35,10 @@ void warn_of_fixed_stages(const Scenario& scenario, const Json& json, std::vecto
   if (has_external_contacts(scenario) && !entry.reported_depth_model.empty()) {
     warnings.push_back(
         {"other_contacts", "/rendering/contact_source",
-         fmt::format("not used: algorithm \"{}\" finds its contacts itself, so that its force and metrics are those of "
-                     "the points of the surface",
-                     fixed.algorithm)});
+         fmt::format(
+             "not used: algorithm \"{}\" finds its contacts itself: force and metrics belong to contacts with the "
+             "points of the surface",
+             fixed.algorithm)});
   } else if (has_external_contacts(scenario) && !entry.fixed_depth_model.empty()) {
     warnings.push_back(
         {"other_depths", "/rendering/contact_source",
@@ -61,9 +62,9 @@ void warn_of_idle_integrator(const Scenario& scenario, std::vector<Warning>& war
            scenario.integrator.type->info.name)});
 }
 
-/// Warns about an admittance device if the force of the hand does not depend on the handle, because servo and mechanics
-/// then have no effect. Does not warn if only fields of sensor and limiter differ from the defaults, because these
-/// fields always have an effect.
+/// Warns about an admittance device if the force of the hand does not depend on the handle's motion, because the
+/// device's servo and mechanics then have no effect. Does not warn if only fields of the sensor and the limiter differ
+/// from the defaults, because these fields always have an effect.
 void warn_of_idle_device(const Scenario& scenario, std::vector<Warning>& warnings) {
   const char* hand = std::holds_alternative<NoHandFields>(scenario.hand)      ? "none"
                      : std::holds_alternative<ForceHandFields>(scenario.hand) ? "force"
@@ -84,7 +85,8 @@ void warn_of_idle_device(const Scenario& scenario, std::vector<Warning>& warning
 }
 
 /// Warns about numbers of a device that are outside the range of haptic devices and probably have a wrong unit.
-/// "hapbench import device" applies the same limits to a log.
+/// `hapbench import device` has the same limits of the handle's mass and of the encoder step, for numbers that it
+/// identifies from the log of a device.
 void warn_of_unlikely_device(const Scenario& scenario, std::vector<Warning>& warnings) {
   // Smallest and largest mass of a handle and of a carriage [kg].
   constexpr std::pair kHandles{1e-3, 20.0}, kCarriages{1e-3, 100.0};
@@ -177,9 +179,9 @@ void warn_of_stiff_bristle(const Scenario& scenario, std::vector<Warning>& warni
            bristle.K, bristle.dt, r.mass)});
 }
 
-/// Returns a warning about the first script of waypoints within `json` whose last segment begins after the end of
-/// the run, or nullopt. `at` is the JSON pointer of `json`; `duration` is the length of the run [s].
-/// Precondition: the reader has checked `json`.
+/// Searches `json` for scripts of waypoints and returns a warning about the first script whose last segment begins at
+/// or after the end of the run. Returns nullopt if `json` has no such script. `at` is the JSON pointer of `json`;
+/// `duration` is the length of the run [s]. Precondition: the fields of `json` are valid.
 std::optional<Warning> first_unplayed(const Json& json, const std::string& at, double duration) {
   if (!json.is_object()) return std::nullopt;
   // Check a script of waypoints. The time of the second-to-last waypoint is the beginning of the last segment.

@@ -37,8 +37,8 @@ struct TimeFields {
   double step = 0.0005;                  ///< [s]
   std::int64_t steps = 1;                ///< number of time steps
   std::vector<StopCondition> stop_when;  ///< empty: the run never ends early
-  /// The metrics use every stride-th time step, so that a run with a smaller time step is sampled at the same
-  /// times. Not a field of the file.
+  /// The metrics use only every stride-th time step. Two runs with different time steps are thus sampled at the same
+  /// times if the product of step and stride is equal. Not a field of the scenario file.
   std::int64_t stride = 1;
 };
 
@@ -54,9 +54,9 @@ struct RandomSprings {
 };
 /// Springs between the tool's tip and the origin, without a surface.
 struct SpringsEnvironment {
-  bool bilateral = true;      ///< true: springs push and pull; false: a spring acts only while its depth is positive
-  bool signed_depths = true;  ///< true: the depth is <p, u>, with the tip p and the spring's direction u; false: its
-                              ///< absolute value
+  bool bilateral = true;  ///< true: springs push and pull; false: a spring acts only while its depth is positive
+  /// Depth of a spring: <p, u> if true, |<p, u>| if false, with the tip's position p and the spring's direction u.
+  bool signed_depths = true;
   std::vector<SpringGroup> groups;
   RandomSprings random;
 };
@@ -64,7 +64,8 @@ struct BlockEnvironment {
   BlockWithHole block;
   double grid = 0.0001;  ///< spacing of the density field [m]
   Density density = Density::signed_distance;
-  /// true: the shell contains a vertex once for each cell that shares it (thesis 2.1, C.2); false: once.
+  /// true: the shell contains a vertex several times, once for each grid cell that shares it (thesis 2.1, C.2);
+  /// false: the shell contains each vertex once.
   bool per_cell = false;
 };
 struct PointShellEnvironment {
@@ -172,7 +173,7 @@ struct DragHandFields {
   /// Angle between the tool's axis and the normal [rad]. Empty: the motion gives the orientation.
   std::optional<double> tilt = 0.0;
   double azimuth = 0.0;       ///< direction of the tilt: angle about the normal from the direction of travel [rad]
-  double smoothing = 0.0005;  ///< radius of SmoothedSurface [m]
+  double smoothing = 0.0005;  ///< radius R over which SmoothedSurface averages points of the shell [m]
 };
 /// Returns the length of the drag hand's path [m]. If the hand has a direction and no path, returns the distance
 /// that it travels in `duration` [s].
@@ -213,7 +214,7 @@ struct IntegratorFields {
   double tolerance = kEventTolerance;        ///< time tolerance of the integrator `event` [s]
 };
 
-/// The output files of a run besides its summary.
+/// What a run records: the tables that it writes besides its summary, and optional sections of the summary.
 struct RecordFields : TrajectoryExtras {
   bool trajectory = true;
   std::int64_t every = 1;  ///< records every n-th time step
@@ -234,18 +235,21 @@ bool records_rows(const RecordFields& record);
 struct GivenForceFields {
   std::array<Profile, 3> force;  ///< [N]
 };
-/// The reference force is k (x' - x) of frictionless contact with the rigid triangles of the mesh. If the tool's
+/// The reference force is k (x' - x). x' is the collision-free position at which a tool that a spring pulls towards x
+/// rests, without friction, on the rigid triangles of the mesh (scenarios/run/rigid_contact_force.hpp). If the tool's
 /// position is prescribed, x is this position and k is rendering.stiffness. Otherwise x is the target of the hand's
-/// spring and k the stiffness of this spring. x' is the collision-free position at which a tool that is pulled towards
-/// x rests (scenarios/run/rigid_contact_force.hpp).
+/// spring and k is the stiffness of this spring.
 struct RigidContactFields {};
 using ReferenceForceFields = std::variant<GivenForceFields, RigidContactFields>;
 
-/// Value of SixDofFields::law for the proxy with the rotational stiffness that renders the force of a 6-DOF device.
+/// Value of SixDofFields::law that selects the algorithm "proxy" with the rotational stiffness
+/// HandAndCoupling::matched_rotation(). With this stiffness, and with the grip at the force point, the proxy on a 3-DOF
+/// device renders the force of a 6-DOF device.
 inline constexpr const char* kMatchedProxy = "matched_proxy";
 
-/// Comparison with a 6-DOF device (SixDofObserver): hand, coupling and three points on the tool's axis. The force point
-/// is the point at which the device measures and applies its force.
+/// Parameters of the comparison with a 6-DOF device (SixDofObserver): the law on the 3-DOF device, springs of hand and
+/// coupling, and the positions of force point, grip and pivot on the tool's axis. At the force point, the device
+/// measures and applies its force.
 struct SixDofFields {
   std::string law;                 ///< name of an algorithm, or kMatchedProxy; empty: the scenario's algorithm
   double hand = 500.0;             ///< K_h, stiffness of the hand [N/m]
@@ -308,8 +312,8 @@ double trial_count(const HandFields& hand);
 /// search.
 bool has_external_contacts(const Scenario& scenario);
 
-/// Returns true if some steps do not use contacts of the same step: contacts are searched at a lower rate, delayed or
-/// lost. The contact is then not part of a loop with the period of a step.
+/// Returns true if some steps use contacts of an earlier step, because contacts are searched at a lower rate, delayed
+/// or lost. An analysis of the contact as a control loop with the period of one time step is then not valid.
 inline bool has_multi_rate_contacts(const Scenario& scenario) {
   return scenario.rendering.multi_rate && scenario.rendering.multi_rate->any();
 }

@@ -29,8 +29,10 @@ void check_sizes(const Scenario& scenario, double steps) {
   }
   const double rows = steps / static_cast<double>(scenario.record.every);
   if (records_rows(scenario.record) && rows > kMaxRows) {
-    fail_at("/record/every", fmt::format("got {:.3g} recorded rows; allowed: at most {:.0g}, record less often or less",
-                                         rows, kMaxRows));
+    fail_at("/record/every",
+            fmt::format(
+                "got {:.3g} recorded rows; allowed: at most {:.0g}; record fewer steps (record.every) or fewer files",
+                rows, kMaxRows));
   }
   // The measured times of all steps of all trials are kept in memory.
   if (scenario.record.timing)
@@ -91,8 +93,8 @@ constexpr Rule kRules[] = {
     {"/integrator/tolerance_s", "allowed for integrator.type \"event\" only",
      [](const Scenario& s) { return s.integrator.type != &kEvent && s.integrator.tolerance != kEventTolerance; }},
     {"/reference_force",
-     "contradicts motion.position of type \"free\"; allowed with a prescribed position, or type \"rigid_contact\" and "
-     "a hand of type \"impedance\" or \"mass_spring_damper\" without tremor, whose target leads the tool",
+     "contradicts motion.position of type \"free\"; allowed: a prescribed position, or a reference_force of type "
+     "\"rigid_contact\" with a hand of type \"impedance\" or \"mass_spring_damper\" without tremor",
      [](const Scenario& s) {
        const ImpedanceHandFields* spring = spring_of(s.hand);
        const bool is_led = is_rigid_contact(s) && spring != nullptr && !spring->tremor;
@@ -114,20 +116,22 @@ constexpr Rule kRules[] = {
        return s.record.force_reference && !s.reference_force && !is<RecordedPosition>(s.motion.position);
      }},
     {"/six_dof",
-     "contradicts motion.position of type \"free\"; allowed with a prescribed motion, the intent of the hand",
+     "contradicts motion.position of type \"free\"; allowed: a prescribed motion, which is the intended motion of the "
+     "hand",
      [](const Scenario& s) { return s.six_dof && is<FreePosition>(s.motion.position); }},
     {"/six_dof",
-     "got it with springs or hole_2d, in which nothing holds a tool that turns in space; allowed: a surface",
+     "got the environment springs or hole_2d, which do not resist a rotation of the tool; allowed: an environment with "
+     "a surface in space",
      [](const Scenario& s) {
        return s.six_dof && (is<SpringsEnvironment>(s.environment) || is<Hole2d>(s.environment));
      }},
-    {"/six_dof", "got it with contacts of contact_source \"{}\"; allowed: \"own\"",
+    {"/six_dof", "got rendering.contact_source \"{}\"; allowed: \"own\"",
      [](const Scenario& s) { return s.six_dof && has_external_contacts(s); }},
-    {"/six_dof", "got stiffness_N_per_m 0 in rendering; allowed: a stiffness above 0, which is that of the coupling",
+    {"/six_dof", "got rendering.stiffness_N_per_m 0; allowed: > 0, because it is the stiffness of the coupling",
      [](const Scenario& s) { return s.six_dof && s.rendering.stiffness == 0.0; }},
-    {"/record/six_dof", "got true; allowed: false, unless there is a six_dof",
+    {"/record/six_dof", "got true; allowed: false, unless the scenario has the field six_dof",
      [](const Scenario& s) { return s.record.six_dof && !s.six_dof; }},
-    {kTurningProxy, "got a number with springs, which act at the tip centre and turn nothing; allowed: null",
+    {kTurningProxy, "got a number with springs, which act at the tip centre and cannot rotate the proxy; allowed: null",
      [](const Scenario& s) { return turns(s.rendering) && is<SpringsEnvironment>(s.environment); }},
     {kTurningProxy, "got a number with multi-rate contacts (rendering.contacts); allowed: null",
      [](const Scenario& s) { return turns(s.rendering) && s.rendering.multi_rate && s.rendering.multi_rate->any(); }},
@@ -140,13 +144,13 @@ constexpr Rule kRules[] = {
      }},
     {"/hand/type", "got \"push\", which pushes along z; allowed in the plane of \"hole_2d\": \"force\"",
      [](const Scenario& s) { return is<PushHandFields>(s.hand) && is<Hole2d>(s.environment); }},
-    {"/hand/type", "got \"drag\" with springs, which have no surface; allowed: environments that have one",
+    {"/hand/type", "got \"drag\" with springs, which have no surface; allowed: environments with a surface",
      [](const Scenario& s) { return is<DragHandFields>(s.hand) && is<SpringsEnvironment>(s.environment); }},
     {"/motion/position/type", "got a prescribed position; allowed: \"free\" with hand \"drag\", which moves the tool",
      [](const Scenario& s) { return is<DragHandFields>(s.hand) && !is<FreePosition>(s.motion.position); }},
     {"/motion/orientation",
-     "got tilt_rad, azimuth_rad or roll_rad together with hand \"drag\", which turns the tool; allowed: without, or "
-     "hand.tilt_rad null",
+     "got tilt_rad, azimuth_rad or roll_rad together with hand \"drag\", which rotates the tool; allowed: none of "
+     "these fields, or hand.tilt_rad null",
      [](const Scenario& s) {
        const auto* drag = std::get_if<DragHandFields>(&s.hand);
        if (drag == nullptr || !drag->tilt) return false;
@@ -181,12 +185,12 @@ constexpr Rule kRules[] = {
      "got a prescribed position; allowed: \"free\" with device \"impedance\", whose handle moves the tool",
      [](const Scenario& s) { return handle_moves_tool(s.device) && !is<FreePosition>(s.motion.position); }},
     {"/rendering/passivity_controller",
-     "got true; allowed: false with device \"impedance\": the controller looks ahead by the virtual mass, which is "
-     "not there",
+     "got true; allowed: false with device \"impedance\": the controller predicts the motion of a virtual mass, which "
+     "this device does not have",
      [](const Scenario& s) { return handle_moves_tool(s.device) && s.rendering.passivity_controller; }},
     {"/rendering/force_stage/max_damping_N_s_per_m",
      "got null; allowed with device \"impedance\" or a prescribed position: a number, because there is no virtual mass "
-     "to take it from",
+     "that determines the default",
      [](const Scenario& s) {
        const bool has_mass = is<FreePosition>(s.motion.position) && !handle_moves_tool(s.device);
        if (has_mass || !s.rendering.force_stage) return false;
@@ -203,7 +207,8 @@ void check_drag_hand(const Scenario& scenario, double steps) {
   const double entries = drag_length(*hand, steps * scenario.time.step) / SurfacePath::spacing(hand->smoothing);
   if (entries <= kMaxPathEntries) return;
   fail_at("/hand/smoothing_m",
-          fmt::format("got a path of {:.3g} times the tenth of it; allowed: at most {:.0g}", entries, kMaxPathEntries));
+          fmt::format("got a path {:.3g} times as long as a tenth of smoothing_m; allowed: at most {:.0g} times",
+                      entries, kMaxPathEntries));
 }
 
 /// Throws InputError if a subject's reaction delay or the total number of steps is too large.

@@ -14,7 +14,7 @@
 namespace hapbench {
 namespace {
 
-/// Returns the documentation of a complete scenario. `definitions` is passed to guide_to.
+/// Returns the documentation of a scenario that extends no other scenario. `definitions` is passed to guide_to.
 ValueGuide full_scenario(Json* definitions) {
   Scenario defaults;
   ValueGuide guide = guide_to([&defaults](Fields& f) { f.object(defaults); }, definitions);
@@ -34,9 +34,10 @@ bool allows_parts(const Json& schema) {
   return std::all_of(schema.begin(), schema.end(), allows_parts);
 }
 
-/// Returns the schema of a file that extends another file. Such a file may omit any field, and the meaning of
-/// some fields depends on the base file, such as the type of an object. Only fields whose meaning does not depend
-/// on the base file are checked. `at` is the reference to the schema of a complete file.
+/// Returns the schema of a file that extends another file (the base file). The file may omit any field. The meaning of
+/// some fields depends on the base file, for example if only the base file has the type of their object. The schema
+/// checks only fields whose meaning does not depend on the base file. `at` is the reference to the schema `full`, of a
+/// file that extends no other file.
 Json partial_schema(const ValueGuide& full, const std::string& at) {
   Json schema = {{"type", "object"}, {"properties", Json::object()}, {"additionalProperties", false}};
   for (const FieldGuide& field : full.fields) {
@@ -57,8 +58,8 @@ Json partial_schema(const ValueGuide& full, const std::string& at) {
 }
 
 /// Appends the fields of an object and, recursively, the fields of the objects in it. `at` is the object's dotted
-/// path, with a dot at the end unless it is empty. `types` is the condition on types under which the object
-/// exists.
+/// path, with a dot at the end unless it is empty. The object exists only under the condition `types`, such as
+/// `hand.type "drag"`; an empty condition is always true.
 void add_fields(std::vector<ScenarioField>& all, const ValueGuide& object, const std::string& at,
                 const std::string& types) {
   for (const ValueGuide& choice : object.choices) add_fields(all, choice, at, types);

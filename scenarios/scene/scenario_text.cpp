@@ -53,7 +53,9 @@ void check_chain(const std::vector<ScenarioLayer>& layers, const fs::path& next)
   if (std::ranges::none_of(layers, is_next)) return;
   std::string chain;
   for (const ScenarioLayer& layer : layers) chain += layer.file.string() + " -> ";
-  throw InputError(fmt::format("got a circle, {}{}; allowed: a chain that ends", chain, next.string()));
+  throw InputError(
+      fmt::format("got a cycle of base scenarios, {}{}; allowed: a chain of base scenarios without repetition", chain,
+                  next.string()));
 }
 
 /// Returns the file that `json` extends. `json` was read from `file`.
@@ -73,7 +75,7 @@ fs::path base_file(const Json& json, const fs::path& file, const std::vector<Sce
   }
 }
 
-/// Appends the file and, recursively, the files that it extends to `layers`. Returns their merged fields.
+/// Appends to `layers` the file and, recursively, all files that it extends. Returns the merged fields of these files.
 Json read_extended(const fs::path& file, std::vector<ScenarioLayer>& layers) {
   // Read this file.
   Json json;

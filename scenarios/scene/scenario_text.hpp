@@ -24,8 +24,8 @@ struct ScenarioLayer {
 struct ScenarioText {
   std::filesystem::path file;
   Json json;
-  /// The file, then the scenario that it extends, then that scenario's base, and so on; empty if it extends
-  /// nothing.
+  /// The file itself, then the file that it extends, then the file that this file extends, and so on. Empty if the
+  /// first file extends no other file.
   std::vector<ScenarioLayer> layers = {};
 };
 

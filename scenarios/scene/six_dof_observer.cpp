@@ -16,8 +16,9 @@ RenderingConfig rendering_of(const Scenario& scenario, const six_dof::HandAndCou
   return config;
 }
 
-/// Returns the pose that the hand intends, computed from the scripted pose. A rotation of the tool moves the tip about
-/// the pivot, in addition to the scripted motion of the tip.
+/// Returns the pose that the hand intends, computed from the scripted pose `pose`. A rotation of the tool moves the tip
+/// about the pivot, in addition to the scripted motion of the tip. `first_axis` is the tool's axis in the script at
+/// t = 0.
 six_dof::Intent intent_of(const SixDofFields& fields, const ToolPose& pose, const Vec3& first_axis) noexcept {
   six_dof::Intent intent;
   intent.orientation = Eigen::Quaterniond(pose.rotation()).normalized();

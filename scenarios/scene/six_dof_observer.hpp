@@ -11,8 +11,8 @@ namespace hapbench {
 
 /// Compares, in every step, the force of the scenario's law on a 3-DOF device with the force of a 6-DOF device
 /// (algorithms/six_dof/devices.hpp). The scripted motion is the pose that the hand intends to reach. Both devices are
-/// computed in static equilibrium, so neither time nor the simulated force affects the result. Allocates nothing during
-/// the run; about 0.1 ms to some ms a step.
+/// computed in static equilibrium, so neither time nor the simulated force affects the result. Allocates no memory
+/// during the run. Each step takes about 0.1 ms to some ms of computing time.
 class SixDofObserver final : public MetricObserver {
  public:
   SixDofObserver() = default;
@@ -23,7 +23,7 @@ class SixDofObserver final : public MetricObserver {
   void on_step(const StepRecord& record) noexcept override;
   void report(Section& section) const override { metrics_.report(section); }
 
-  /// The comparison in the last step.
+  /// Returns the comparison in the latest step.
   const SixDofRow& row() const noexcept { return row_; }
 
  private:

@@ -16,8 +16,8 @@
 namespace hapbench {
 namespace {
 
-constexpr std::size_t kMaxProfilePoints = 1000;  // maximum number of points of a tool's outline; the cost of a time
-                                                 // step grows with this number
+/// Maximum number of points of a tool's outline. The computing time of a time step grows with the number of points.
+constexpr std::size_t kMaxProfilePoints = 1000;
 
 /// Types of tools, in the order of the variant ToolFields.
 constexpr TypeName kToolTypes[] = {

@@ -7,7 +7,7 @@
 
 namespace hapbench {
 
-/// Identifies a trial of a simulated subject. A scenario without subjects has a single trial, with the numbers 0.
+/// Identifies a trial of a simulated subject. A scenario without subjects has a single trial, Trial{0, 0}.
 struct Trial {
   std::size_t subject = 0;  ///< index of the subject, from 0
   std::size_t number = 0;   ///< index of the subject's trial, from 0

@@ -48,8 +48,7 @@ class ContactBuffer {
   void extend(std::size_t n) { size_ += n; }
   /// Appends a copy of contact `from` of another buffer. Precondition: size() < capacity().
   void push_copy_of(const ContactBuffer& other, std::size_t from) { copy(other, from, size_++); }
-  /// Replaces the contents by the contacts of another buffer and pads. Precondition: other.size() <=
-  /// capacity().
+  /// Replaces the contents by the contacts of another buffer and calls pad(). Precondition: other.size() <= capacity().
   void assign(const ContactBuffer& other);
   /// Overwrites contact `to` with contact `from`.
   void copy(std::size_t from, std::size_t to) { copy(*this, from, to); }

@@ -8,7 +8,7 @@
 namespace hapbench {
 namespace {
 
-/// Edge length of a cell, in distances between neighbouring points.
+/// Edge length of a cell, divided by the distance between neighbouring points.
 constexpr double kSpacingsPerCell = 2.5;
 /// Maximum number of cells per point, which bounds the memory. Most cells are empty, because shells are
 /// surfaces.

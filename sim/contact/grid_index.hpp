@@ -11,8 +11,8 @@
 namespace hapbench {
 
 /// Uniform grid of cubic cells around points. for_spacing() makes the cells 2.5 point spacings wide, the fastest size
-/// measured (0.25 mm for a shell with 0.1 mm spacing). The number of cells is at most 8 times the number of points, or
-/// 4096 if that is more, whatever the extent.
+/// measured (0.25 mm for a shell with 0.1 mm spacing). The number of cells is at most 4096 or 8 times the number of
+/// points, whichever is larger; if this limit would be exceeded, the cells are made larger.
 class GridCells {
  public:
   /// Creates cells with edges of length `edge` [m], or longer edges if there would be too many cells.
@@ -26,7 +26,7 @@ class GridCells {
     std::size_t first = 1, last = 0;
     bool empty() const { return first > last; }
   };
-  /// Returns the cells that meet the interval low … high [m] along an axis.
+  /// Returns the numbers, along an axis, of the cells that overlap the interval from `low` to `high` [m] of this axis.
   Range range(double low, double high, int axis) const;
   /// Returns the number of the cell that contains a point. Cell (i, j, k) has the number (i * count(1) + j) *
   /// count(2) + k. A point outside the bounds belongs to the nearest cell.

@@ -17,15 +17,16 @@ constexpr std::size_t kAtOnce = 4;
 constexpr std::size_t kMaxCells = 1024;
 /// Maximum number of distance evaluations in one search, which bounds its time.
 constexpr std::size_t kMaxEvaluations = 20000;
-/// Tolerances in half widths of the tool. A point at most kOnTool outside the tool counts as in the tool. Beyond
+/// Lengths in units of the tool's half width. A point counts as in the tool if it is outside by at most kOnTool. Beyond
 /// the border of an open surface, a cell with a half diagonal shorter than kCoarse is not halved further.
 constexpr double kOnTool = 1e-9, kCoarse = 0.25;
 
-/// Lengths in half widths of the tool. A segment of the tool's axis shorter than kShort is not halved. A segment longer
-/// than kLong has a single ball around it; a shorter segment has further balls. kPolyline: largest distance between the
+/// Lengths in units of the tool's half width. A segment of the tool shorter than kShort is not halved. A segment longer
+/// than kLong has a single ball around it; a shorter segment has several balls. kPolyline: largest distance between the
 /// outline of a body of revolution and the polyline that represents this outline.
 constexpr double kShort = 0.02, kLong = 1.0, kPolyline = 2e-4;
-/// Offsets of further ball centres from the centre of the smallest ball, in half widths.
+/// Distances along the axis from the centre of a segment's smallest ball to the centres of its other balls, positive
+/// towards the shank, in units of the tool's half width.
 constexpr double kCentreOffsets[] = {0.25, -0.25, 0.5, -0.5, 1.0, -1.0, 2.0, -2.0, 4.0, -4.0, 8.0};
 
 }  // namespace
@@ -143,8 +144,8 @@ bool InsideSearch::into_tool(const ToolPose& pose, Vec3& point) noexcept {
   return false;
 }
 
-/// Moves from a point of the tool to deeper points of the tool and updates the largest depth. `near`: the signed
-/// distance at a point nearby.
+/// Moves from a point of the tool to deeper points of the tool and updates the largest depth. `near`: a point
+/// near `point` and the signed distance at the near point.
 void InsideSearch::improve(const ToolPose& pose, Vec3 point, const KnownDistance& near) noexcept {
   constexpr int kMoves = 8, kHalvings = 6;
   const MutablePointArrays answer{x_.data(), y_.data(), z_.data()};
@@ -225,9 +226,10 @@ std::vector<InsideBound::Ball> InsideBound::balls_of(const Segment& segment) con
   return balls;
 }
 
-/// Returns the bound from one ball. Does not evaluate the distance at the ball's centre again in two cases: the bound
-/// from the last evaluation is sufficient; or only a sufficient bound is useful (`best` is false), and a new evaluation
-/// clearly cannot give a sufficient bound.
+/// Returns an upper bound of the depth from one ball. The bound comes from the signed distance at the ball's centre. A
+/// bound is sufficient if it is at most `enough`. The distance from the last evaluation of the ball is used again if
+/// the bound from it is sufficient. It is also used again if `best` is false and a new evaluation certainly cannot give
+/// a sufficient bound.
 InsideBound::Evaluation InsideBound::evaluate(Ball& ball, const BoundRequest& q) {
   const Vec3 centre = q.pose.position + ball.position * q.pose.axis;
   const double beyond = ball.radius + q.moved + std::abs(ball.position) * q.turned;

@@ -13,9 +13,9 @@ namespace hapbench {
 /// width.
 inline constexpr double kGradientStep = 1e-3;
 
-/// Computes how deep a tool is inside a solid: max(0, -phi) over the tool's body, where phi is the signed
-/// distance to the solid's surface, negative inside. This is not the depth of a contact, which saturates at the
-/// tool's half width and is 0 for a tool that lies inside as a whole.
+/// Computes how deep a tool is inside a solid: the largest value of max(0, -phi) over all points of the tool, where phi
+/// is the signed distance to the solid's surface, negative inside the solid. The depth of a contact is another
+/// quantity: it is at most the tool's half width, and there is no contact if the whole tool is inside the solid.
 ///
 /// Method (branch and bound): phi changes by at most the distance between two points, so no point in a box with
 /// centre c and half diagonal R is deeper than R - phi(c). Boxes that meet the tool are halved until none can
@@ -71,7 +71,9 @@ class InsideSearch {
   double best_ = 0.0, tolerance_ = kTolerance;
   std::size_t evaluations_ = 0;
   std::optional<KnownDistance> tip_;  ///< signed distance at the tip centre of the last search
-  bool beyond_border_ = false;        ///< true if a point beyond the border may be deeper
+  /// True if the tip centre, or a point that may be deeper than the deepest point found, is beyond the border of an
+  /// open surface.
+  bool beyond_border_ = false;
 };
 
 /// Upper bound of the depth of a tool in a solid (InsideSearch), from a dozen distance evaluations instead of
@@ -80,10 +82,11 @@ class InsideSearch {
 /// The tool lies in the body of revolution of its outline. Each segment of this body along the axis lies in a
 /// ball around any centre on the axis, if the radius reaches the segment's farthest point. The signed distance
 /// phi changes by at most the distance between two points, so no point in a ball of radius R around c is deeper
-/// than R - phi(c). When the tool moves, the bound grows by at most the displacement of c. The smallest ball
-/// fits round tips and shanks. Larger balls, with centres ahead of or behind the segment, touch a rim or a flat
-/// end along the surface's normal and therefore fit a rim or a flat end at any tilt. A segment for which no ball
-/// gives a sufficient bound is halved.
+/// than R - phi(c). When the tool moves, the bound grows by at most the displacement of c. The bound of a ball is close
+/// to the depth if the deepest points of ball and tool are close to each other. The smallest ball has such a bound for
+/// round tips and shanks. At a rim or a flat end, one of several larger balls has such a bound; their centres are ahead
+/// of or behind the segment, and the tilt of the tool determines which ball is best. A segment for which no ball gives
+/// a sufficient bound is halved.
 class InsideBound {
  public:
   /// Tool and solid must outlive the bound.

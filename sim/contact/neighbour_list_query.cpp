@@ -11,7 +11,7 @@
 namespace hapbench {
 namespace {
 
-/// Thickness of the skin (the layer around the tool whose points are listed), in half widths of the tool. With a
+/// Thickness of the skin (the layer around the tool whose points are listed), in units of the tool's half width. With a
 /// thicker skin every step tests more points. With a thinner skin lists must be rebuilt more often.
 constexpr double kSkinPerHalfWidth = 0.2;
 /// Maximum number of times that a skin without points is doubled.

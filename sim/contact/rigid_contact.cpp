@@ -10,8 +10,8 @@
 namespace hapbench {
 namespace {
 
-/// A search ends after a move shorter than this fraction of the tool's radius, or after kMaxMoves moves. Rounding of
-/// positions is about 1e-16 m in scenes of centimetres, 2e-13 of a radius of half a millimetre.
+/// A search ends after a move of at most kAtRest times the tool's radius, or after kMaxMoves moves. Positions in scenes
+/// of centimetres have rounding errors of about 1e-16 m, which is 2e-13 times a radius of half a millimetre.
 constexpr double kAtRest = 1e-12;
 constexpr int kMaxMoves = 200;
 /// A half-space is violated if a point is outside by more than this [m].
@@ -68,8 +68,8 @@ RigidContact::RigidContact(TriangleSoup surface, const RoundTool& tool) : tool_(
   }
 }
 
-/// Returns the distance of the segment from `tip` to `end` from a triangle. Precondition: the segment does not cross
-/// the triangle.
+/// Returns the Gap between a triangle and the tool's segment, which has the ends `tip` and `end`. Precondition: the
+/// segment does not cross the triangle.
 RigidContact::Gap RigidContact::gap(const Triangle& t, const Vec3& tip, const Vec3& end) const {
   Pair best{};
   double smallest = std::numeric_limits<double>::infinity();
@@ -167,8 +167,8 @@ bool RigidContact::project(const Vec3& wanted, Vec3& result) const {
 }
 
 /// Returns the point nearest to `wanted` that lies in all half-spaces. Repeatedly adds the half-space that the result
-/// violates most to the working set, until the result violates none. Returns the free position if rounding prevents a
-/// solution or the working set is full.
+/// violates most to the working set, until the result violates none. Returns the last free position if rounding
+/// prevents a solution or the working set is full.
 Vec3 RigidContact::nearest_in_half_spaces(const Vec3& wanted) {
   working_.clear();
   Vec3 result = wanted;

@@ -46,8 +46,8 @@ class RigidContact {
     Vec3 a, b, c, centre;
     double radius;
   };
-  /// Distance of the tool's segment from a triangle [m], and the gradient of this distance with respect to the tool's
-  /// position.
+  /// Distance between the tool's segment and a triangle [m], and the gradient of this distance with respect to the
+  /// tool's position. `at_far_end`: true if the far end of the segment is its point nearest to the triangle.
   struct Gap {
     double distance;
     Vec3 normal;

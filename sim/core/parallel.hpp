@@ -1,6 +1,6 @@
 #pragma once
 
-/// Parallel loops by oneTBB. In WebAssembly, which has no threads here, they run sequentially.
+/// Parallel loops by oneTBB. The build for WebAssembly has no threads and runs the loops sequentially.
 #ifndef __wasm__
 #include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/task_arena.h>

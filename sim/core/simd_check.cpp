@@ -7,9 +7,10 @@
 int main() {
   const std::string wrong = hapbench::simd::first_wrong_operation(hapbench::simd::kOperations);
   if (wrong.empty()) return 0;
-  std::fprintf(stderr,
-               "hapbench: compiled by this compiler, \"%s\" of eight doubles at a time is wrong; use another one or "
-               "-DHAPBENCH_SIMD=OFF\n",
-               wrong.c_str());
+  std::fprintf(
+      stderr,
+      "hapbench: compiled by this compiler, the operation \"%s\" on eight doubles at a time gives wrong results; use "
+      "another compiler or -DHAPBENCH_SIMD=OFF\n",
+      wrong.c_str());
   return 1;
 }

@@ -73,9 +73,9 @@ struct ProfilePoint {
 /// file has no field for this setting; RenderingConfig::skips holds it.
 enum class Skips { on, off };
 
-/// Allowed values of a number that the user sets. Both bounds are allowed unless `above_min` is set. The unit is
-/// printed in messages: an SI unit, "1" for a dimensionless number, or empty if the number has the same unit as another
-/// number.
+/// Allowed values of a number that the user sets: from `min` to `max`. `max` is allowed; `min` is allowed if
+/// `above_min` is false. Messages print the unit: an SI unit, "1" for a dimensionless number, or empty if the number
+/// has the same unit as another number.
 struct NumberRange {
   double min;
   double max;

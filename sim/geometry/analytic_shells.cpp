@@ -20,7 +20,7 @@ double between(double a, double b, double k, double n) {
   return k == n ? b : a + (b - a) * (k / n);
 }
 
-/// Adds the points of the edge from a to b, without a and b.
+/// Adds the points of the profile's edge from a to b, but not a and b themselves.
 void add_face(std::vector<SurfacePoint>& points, const Vec3& a, const Vec3& b, const Vec3& normal, double spacing) {
   const double n = intervals((b - a).norm(), spacing);
   for (double k = 1; k < n; ++k) {
@@ -116,8 +116,8 @@ std::vector<SurfacePoint> surface_points(const ConicalHole& cone) {
     const double radius = along * sine, z = k == rings ? 0.0 : along * cosine - cone.depth;
     const double quarter = intervals(std::numbers::pi / 2 * radius, cone.spacing);
     for (double i = 0; i < quarter; ++i) {
-      // Rotations by 90 degrees swap coordinates instead of computing them again, so that the points agree bit for
-      // bit.
+      // Compute a point in the first quadrant. Its rotations by 90, 180 and 270 degrees use the same cosine and sine,
+      // so that the four points agree bit for bit.
       const double angle = (i + 0.5) / quarter * std::numbers::pi / 2;
       const double c = math::cos(angle), s = math::sin(angle);
       for (const auto& [x, y] : {std::pair(c, s), std::pair(-s, c), std::pair(-c, -s), std::pair(s, -c)}) {
@@ -157,14 +157,14 @@ double signed_distance(const ConicalHole& cone, const Vec3& q) {
 
 double signed_distance(const BlockWithHole& block, const Vec3& q) {
   const double R = block.hole_diameter / 2, H = block.hole_depth, z = q.z();
-  // Distances beyond the faces; negative between opposite faces.
+  // Signed distances from the side faces and from the bottom face, positive outside of the cuboid.
   const double x = std::abs(q.x()) - block.size.x() / 2, y = std::abs(q.y()) - block.size.y() / 2;
   const double below = -z - block.size.z();
   const double rho = length(q.x(), q.y());
 
   // Outside of the cuboid.
   if (std::max({x, y, z, below}) > 0.0) {
-    // Above the mouth of the hole, the closest point is on the rim of the top face.
+    // Above the mouth of the hole, the closest point is on the rim of the hole.
     if (rho < R && z > 0.0) return length(z, R - rho);
     const double beyond_sides = length(std::max(x, 0.0), std::max(y, 0.0));
     return length(beyond_sides, std::max({z, below, 0.0}));

@@ -4,10 +4,10 @@
 
 #include "sim/geometry/point_shell.hpp"
 
-/// Surfaces in closed form. Each has a function that samples it with points (`surface_points`) and an exact signed
-/// distance. Every edge of a surface is divided into equal intervals no longer than the spacing, with a point at
-/// both ends. The normal of a point on an edge is the normalised mean of the normals of the two adjacent faces.
-/// `point_count` returns the number of points before any is created, as a double, so that absurdly large numbers
+/// Surfaces in closed form. For each surface, `surface_points` returns sample points, and `signed_distance` returns the
+/// exact signed distance. Every edge of a surface is divided into equal intervals no longer than the spacing, with a
+/// point at both ends. The normal of a point on an edge is the normalised mean of the normals of the two adjacent
+/// faces. `point_count` returns the number of points without creating them, as a double, so that absurdly large numbers
 /// can be rejected.
 namespace hapbench {
 
@@ -62,10 +62,10 @@ std::vector<SurfacePoint> surface_points(const Plane& plane);
 std::vector<SurfacePoint> surface_points(const Slot& slot);
 std::vector<SurfacePoint> surface_points(const ConicalHole& cone);
 
-// Signed distance of a point from the exact surface [m], negative in the material. The material is below the plane,
-// behind the faces of the slot, below the top of the planar hole and outside the hole, and outside the cone. Beyond
-// the borders of these open surfaces (see solid.hpp) the surfaces are continued: flat faces stay flat, and the cone
-// ends at its mouth.
+// Signed distance of a point from the exact surface [m], negative in the material. Where the material is: below the
+// Plane; at |x| > gap / 2 for the Slot; below the flat top of the Hole2d, except in the hole; outside the cone of the
+// ConicalHole. Beyond the borders of these open surfaces (see solid.hpp), flat faces are continued as planes. The cone
+// is not continued: its surface ends at its mouth.
 
 double signed_distance(const Plane& plane, const Vec3& point);
 double signed_distance(const Slot& slot, const Vec3& point);

@@ -14,8 +14,8 @@ namespace {
 
 constexpr double kFar = 1e4;  ///< longer than any distance in a scene [m]
 
-/// Returns an upper bound of the distance of a point from the surface [m]. The relative and the absolute margin cover
-/// rounding; the absolute margin is for points on the surface.
+/// Returns an upper bound of the distance of point q from the surface [m], computed from the distance known at a nearby
+/// point. The relative margin covers rounding. The absolute margin covers rounding for points on the surface.
 double largest_distance(const Vec3& q, const KnownDistance& near) {
   constexpr double kRelative = 1e-9, kAbsolute = 1e-12;
   return (1.0 + kRelative) * (std::abs(near.value) + (q - near.point).norm()) + kAbsolute;
@@ -158,8 +158,8 @@ class MeshSolid final : public Solid {
   // Filled for an open mesh only:
   std::vector<Vec3> vertex_normals_;
   std::vector<bool> border_vertices_;
-  std::vector<std::uint8_t> at_border_;            ///< bit k of a triangle: its edge from corner k is on the border
-  std::vector<std::array<Vec3, 3>> edge_normals_;  ///< sums of the normals of each edge, by triangle and corner
+  std::vector<std::uint8_t> at_border_;            ///< [t]: bit k is set if the edge from corner k is on the border
+  std::vector<std::array<Vec3, 3>> edge_normals_;  ///< [t][k]: sum of normals at the edge from corner k of triangle t
 };
 
 /// Solid given by points with normals.

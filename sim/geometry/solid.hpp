@@ -61,9 +61,10 @@ class Solid {
   Box region_;
 };
 
-/// Solids in closed form (signed_distance in analytic_shells.hpp), valid at any depth below their surfaces. The
-/// distance is known above and below the square, beyond the faces of the slot in x, between the ends of the planar
-/// hole's flat top, and above and below the cone's mouth.
+/// Solids in closed form (signed_distance in analytic_shells.hpp), valid at any depth below their surfaces. Points at
+/// which the distance is known: for the Plane, above and below the square; for the Slot, with |y| <= length / 2 and
+/// -depth <= z <= 0, at any x; for the Hole2d, between the ends of the flat top in x; for the ConicalHole, above and
+/// below its mouth; for the BlockWithHole, all points.
 std::unique_ptr<const Solid> make_solid(const Plane& plane);
 std::unique_ptr<const Solid> make_solid(const Slot& slot);
 std::unique_ptr<const Solid> make_solid(const Hole2d& hole);

@@ -11,7 +11,7 @@ namespace hapbench {
 namespace {
 
 constexpr std::uint32_t kMaxLeafTriangles = 4;  ///< maximum number of triangles in a leaf
-/// Size of the search stack. Halving 2^32 triangles takes 32 levels, and a search stores one box for each level.
+/// Size of the search stack. The tree of 2^32 triangles has 32 levels, and a search stores one node for each level.
 constexpr std::size_t kStackSize = 64;
 /// nearest() skips a triangle if the squared distance of its plane exceeds the smallest squared distance found so far
 /// by this factor.
@@ -49,9 +49,10 @@ struct ClosestPoint {
   unsigned corners;  ///< see TriangleTree::Nearest
 };
 
-/// Returns the point of a triangle closest to p, from the region of the triangle's plane above which p lies (C.
-/// Ericson, Real-Time Collision Detection, 2005, 5.1.5). p is relative to corner a; ab2, abac and ac2 are the dot
-/// products of ab and ac. For a triangle without area the closest point is on a corner or an edge.
+/// Returns the point of a triangle closest to p (C. Ericson, Real-Time Collision Detection, 2005, 5.1.5): determines
+/// whether the closest point lies on a corner, on an edge or inside the triangle. p and the result are relative to
+/// corner a. ab2, abac and ac2 are the dot products of ab and ac. If the triangle has no area, the closest point is on
+/// a corner or an edge.
 ClosestPoint closest_point(const Vec3& p, const Vec3& ab, const Vec3& ac, double ab2, double abac, double ac2) {
   const double along_ab = p.dot(ab), along_ac = p.dot(ac);
   if (along_ab <= 0.0 && along_ac <= 0.0) return {Vec3::Zero(), 1u};
@@ -79,8 +80,8 @@ double side_of_edge(const Vec3& a, const Vec3& b, double x, double y) {
   return before(a, b) ? area(a, b) : -area(b, a);
 }
 
-/// Returns true if the vertical line passes to the left of the edge from a to b; `side` is side_of_edge(). A line
-/// that meets the edge is treated as if it were moved slightly in x, and much less in y.
+/// Returns true if the vertical line passes to the left of the edge from a to b. `side`: result of side_of_edge() for
+/// the line and the edge. A line that meets the edge is treated as if it were moved slightly in x, and much less in y.
 bool left_of_edge(double side, const Vec3& a, const Vec3& b) {
   if (side != 0.0) return side > 0.0;
   return a.y() != b.y() ? b.y() < a.y() : b.x() > a.x();

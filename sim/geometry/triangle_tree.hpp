@@ -57,11 +57,11 @@ class TriangleTree {
   struct Nearest {
     double distance2;        ///< [m^2]
     std::uint32_t triangle;  ///< index of the triangle
-    /// Bit k is set if corner k belongs to the vertex, edge or face on which the position lies; 7 inside the triangle.
+    /// Corners of the vertex, edge or face on which `position` lies: bit k is set for corner k. 7 inside the triangle.
     unsigned corners;
     Vec3 position;  ///< [m]
   };
-  /// Returns the closest point on the triangles if it is closer than `at_most` [m], and nothing otherwise.
+  /// Returns the point of the triangles that is closest to `point`; nullopt if it is not closer than `at_most` [m].
   std::optional<Nearest> nearest(const Vec3& point, double at_most) const noexcept;
 
   /// Returns the winding number of a closed surface around a point: 1 inside a valid solid, 0 outside.
@@ -97,7 +97,7 @@ class TriangleTree {
   };
   /// Triangle during the construction of the tree.
   struct Item {
-    Vec3 middle, low, high;  ///< sum of the corners, and bounding box
+    Vec3 middle, low, high;  ///< sum of the corners [m]; smallest and largest corner of the bounding box [m]
     std::uint32_t number;
   };
   /// Splits a node with too many triangles into two children.
@@ -107,7 +107,8 @@ class TriangleTree {
   template <class DistanceTo, class IsLess, class MayBeNearer, class Use>
   void visit_nearest_first(const DistanceTo& distance_to, const IsLess& is_less, const MayBeNearer& may_be_nearer,
                            const Use& use) const;
-  /// Calls `use` with each triangle in the leaves that are reached through nodes for which `enters(node)` is true.
+  /// Calls `use` with each triangle of every leaf that is searched. A node is searched only if `enters(node)` is true,
+  /// and its children are searched only if the node itself is.
   template <class Enters, class Use>
   void visit(const Enters& enters, const Use& use) const;
 

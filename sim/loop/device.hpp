@@ -29,8 +29,8 @@ struct HandImpedance {
   Mat3 damping = Mat3::Zero();    ///< [N s/m]
 };
 
-/// Model of the human hand: its force on the handle as a function of time and perception. One instance holds
-/// the state of one run.
+/// Model of the human hand: its force on the handle as a function of time and of what the person feels and sees
+/// (HandView). One instance holds the state of one run.
 class Hand {
  public:
   virtual ~Hand() = default;
@@ -38,7 +38,8 @@ class Hand {
   virtual void reset() noexcept {}
   /// Returns the force of the hand on the handle at time t [N]. Called once in every step.
   virtual Vec3 force(double t, const HandView& view) noexcept = 0;
-  /// Returns the linearisation of the last force(). Zero for a hand whose force does not depend on the handle.
+  /// Returns the linearisation of the force that force() returned last. Zero for a hand whose force does not depend on
+  /// the handle.
   virtual HandImpedance impedance() const noexcept { return {}; }
   /// Returns the target task that the hand performs, or null. The task lives as long as the hand.
   virtual const TargetTask* task() const noexcept { return nullptr; }
@@ -58,7 +59,7 @@ struct DeviceEnergy {
   double hand = 0.0;        ///< work done by the hand on the handle
   double actuator = 0.0;    ///< work done by the actuator
   double dissipated = 0.0;  ///< work done by friction and structural damping; never positive
-  double stored = 0.0;      ///< kinetic and elastic energy of the parts, relative to the reset
+  double stored = 0.0;      ///< kinetic and elastic energy of the parts, minus its value at the reset
 
   /// Returns the balance with `energy` [J] added to the stored energy.
   DeviceEnergy plus_stored(double energy) const noexcept { return {hand, actuator, dissipated, stored + energy}; }
@@ -74,7 +75,7 @@ class Device {
   virtual void reset(const ToolState& tool) noexcept = 0;
   /// Returns the hand's force [N] as measured in this step.
   virtual MeasuredForce measure(const Vec3& hand_force) noexcept = 0;
-  /// Moves the handle with the tool over one step of dt [s], while the hand applies `hand_force` [N].
+  /// Moves the handle over one step of dt [s], in which it follows the tool and the hand applies `hand_force` [N].
   virtual void advance(const ToolState& /*tool*/, const Vec3& /*hand_force*/, double /*dt*/) noexcept {}
   virtual const HandleState& handle() const noexcept = 0;
   /// Returns the energy balance; nullopt if the handle is the tool itself and has no mass or friction.

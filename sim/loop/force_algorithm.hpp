@@ -38,10 +38,10 @@ enum class Friction : std::uint8_t { none, sticks, slides };
 /// The result of an algorithm for one state of the tool.
 struct RenderedForce {
   Vec3 spring = Vec3::Zero();          ///< f_spring, force of the penalty springs on the tool [N]
-  Vec3 rendered = Vec3::Zero();        ///< f_render = spring + damping + friction, after limits [N]
+  Vec3 rendered = Vec3::Zero();        ///< f_render = spring + damping + friction, after the force limits [N]
   Mat3 S = Mat3::Zero();               ///< stiffness tensor in units of the spring stiffness K
-  double depth_max = 0.0;              ///< largest depth of the colliding points [m], before point stages change them
-  Friction friction = Friction::none;  ///< `none` if dry friction is off or no contact has a load
+  double depth_max = 0.0;              ///< largest depth of the colliding points [m], before any point stage
+  Friction friction = Friction::none;  ///< `none` if dry friction is off or no contact carries a normal force
 };
 
 /// Elastic energy of the penalty springs in one step, and the moment that they would exert about the tip
@@ -49,21 +49,21 @@ struct RenderedForce {
 /// contact forces f_i sum to f_spring. They depend on the algorithm:
 ///
 ///  - Laws with weights: f_i = -K c_i d_i u_i.
-///  - virtual_coupling and least_squares: f_i = -K_p (d_i + <u_i, s>) u_i, the penalty springs after the
-///    coupling has stretched by s. K_p is K for virtual_coupling, and K / eps with the regularisation eps for
-///    least_squares. These forces push and pull against each other, so the moment may be much larger than the
+///  - virtual_coupling and least_squares: f_i = -K_p (d_i + <u_i, s>) u_i, the forces of the penalty springs while the
+///    coupling is stretched by the vector s [m]. K_p is K for virtual_coupling, and K / eps with the regularisation eps
+///    for least_squares. These forces push and pull against each other, so the moment may be much larger than the
 ///    product of f_spring and the lever arm.
 ///  - original_averaging and highest_depth: the law has one spring without a point of application, so each of
 ///    the n contacts gets f_spring / n.
 ///  - proxy: f_i = -K lambda_i m_i for the points that hold the proxy, with multiplier lambda_i and tool normal
-///    m_i, and r_i from the proxy's tip centre. If points lie deep inside the proxy, their depths are multiplied by a
-///    factor < 1, so that the proxy moves out slowly. The forces f_i of these points are multiplied by the same
-///    factor. If several sets of points hold the proxy equally well, the solver uses one of them. The total force
-///    is the same for each set, but the moment may differ.
+///    m_i. Here r_i starts at the proxy's tip centre. If points lie deep inside the proxy, their depths are multiplied
+///    by a factor < 1, so that the proxy moves out slowly. The forces f_i of these points are multiplied by the same
+///    factor. If several sets of points hold the proxy equally well, the solver uses one of them. The total force is
+///    the same for each set, but the moment may differ.
 ///  - A passivity controller scales all contact forces by the factor by which it scales f_spring.
 ///
-/// Damping, friction and force limits act on the tool as a whole and do not contribute. The springs of a spring
-/// set act at the tip centre.
+/// Damping, friction and force limits act on the tool as a whole and contribute to neither value. The springs of a
+/// spring set act at the tip centre, so their moment is zero.
 struct SpringState {
   double energy = 0.0;         ///< elastic energy [J]
   Vec3 moment = Vec3::Zero();  ///< moment on the tool about its tip centre [N m]; the device does not render it
@@ -76,7 +76,7 @@ inline bool has_springs(const ContactBuffer& rendered, const RenderedForce& forc
 }
 
 /// Linearisation of the rendered force for small motions of the tool, for implicit integrators: df = -stiffness
-/// dp - damping dv, with displacement dp [m] and velocity change dv [m/s].
+/// dp - damping dv, with displacement dp [m] and velocity change dv [m/s] of the tip centre.
 struct ForceJacobian {
   Mat3 stiffness = Mat3::Zero();  ///< K S, stiffness [N/m]
   Mat3 damping = Mat3::Zero();    ///< normal damping (B S for a linear damper) plus friction [N s/m]
@@ -89,9 +89,11 @@ struct AlgorithmWork {
   SearchWork search = {};              ///< work of the algorithm's own contact searches, at other poses than the tool's
   std::uint64_t steps_controlled = 0;  ///< steps in which a passivity controller changed the force
 
-  std::uint64_t steps_staged = 0;  ///< steps in which a force stage (energy tank or actuator-limited passivity) changed
-                                   ///< the force
-  double energy_staged = 0.0;      ///< energy [J] that a force stage prevented the force from giving to the tool
+  /// Steps in which a force stage (energy tank or actuator-limited passivity) changed the force.
+  std::uint64_t steps_staged = 0;
+  /// Work on the tool [J] of the forces before the force stage, minus the work of the rendered forces, both over the
+  /// simulated motion.
+  double energy_staged = 0.0;
 
   AlgorithmWork& operator+=(const AlgorithmWork& other) noexcept {
     iterations += other.iterations;
@@ -118,7 +120,7 @@ class ForceAlgorithm {
   /// On return it holds the rendered contacts with their weights.
   virtual void compute(const ToolState& tool, ContactBuffer& contacts, RenderedForce& out) noexcept = 0;
   /// Returns the elastic energy and the moment of the springs in the last `compute`. The arguments are the tool and the
-  /// rendered contacts of this `compute`. Called only if an observer or a controller needs the result.
+  /// rendered contacts of this `compute`. Called only if an observer or a passivity controller needs the result.
   virtual SpringState spring_state(const ToolState& tool, const ContactBuffer& contacts) const noexcept = 0;
   /// Returns the Jacobian of the force of the last `compute` with the contacts held constant. Called by
   /// implicit integrators only.

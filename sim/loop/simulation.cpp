@@ -89,9 +89,9 @@ double Simulation::roll_at(double t) const noexcept {
   return roll_wanted_ ? parts_.motion->roll_at(t) : 0.0;
 }
 
-/// Returns the angular velocity [rad/s] of the turn from the current step's orientation to the given orientation, in
-/// the time `fraction` dt. A first-order low-pass with cut-off frequency f weights the new value with
-/// 1 - e^(-2 pi f t), where t is this time.
+/// Returns the low-pass filtered angular velocity [rad/s] after a turn from the current step's orientation to the given
+/// orientation in the time t = `fraction` dt. The first-order low-pass with cut-off frequency f weights the angular
+/// velocity of this turn with 1 - e^(-2 pi f t), and the previous output with e^(-2 pi f t).
 Vec3 Simulation::angular_velocity_after(double fraction, const Vec3& axis, double roll) const noexcept {
   const double time = fraction * config_.dt;
   const double taken = -math::expm1(-2.0 * std::numbers::pi * *angular_velocity_cutoff_ * time);
@@ -100,9 +100,9 @@ Vec3 Simulation::angular_velocity_after(double fraction, const Vec3& axis, doubl
   return (1.0 - taken) * tool_.angular_velocity + taken * turn(from, to) / time;
 }
 
-/// Moves the tool to its scripted pose at the current step. The orientation always follows the script. If the
-/// angular velocity is used, omega_k is the rotation of the last step divided by dt, and omega_0 = 0. A prescribed
-/// position also gives the velocity, v_k = (p_k - p_{k-1}) / dt, and v_0 = v_1.
+/// Moves the tool to its scripted pose at the current step k. The orientation always follows the script. If the
+/// algorithm reads the angular velocity, omega_k is the low-pass filtered rotation from step k - 1 to step k divided by
+/// dt, and omega_0 = 0. A prescribed position also gives the velocity, v_k = (p_k - p_{k-1}) / dt, and v_0 = v_1.
 void Simulation::move_tool_by_script() noexcept {
   const double t = static_cast<double>(row_) * config_.dt;
   const Vec3 axis = parts_.motion->axis_at(t);
@@ -166,7 +166,8 @@ bool Simulation::step() noexcept {
   ++result_.rows;
   if (check_stop_rules()) return true;
 
-  // Move the tool with the forces of this step: through the handle that it follows, or by integrating the virtual mass.
+  // Move the tool with the forces of this step. If the handle moves the tool, move the handle and put the tool on it.
+  // Otherwise integrate the motion of the virtual mass.
   if (handle_moves_tool_) {
     parts_.device->drive(r.force.rendered, r.hand_force);
     put_tool_on_handle();

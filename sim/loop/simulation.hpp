@@ -26,8 +26,8 @@ enum class Ending {
 };
 
 /// Ends a run early after the first step in which its condition holds, as in the thesis's peg-in-hole runs
-/// (section A.1.2). The condition depends on `ending`. left_hole: the tip centre is above height 0, the height of the
-/// hole's mouth. tool_horizontal: the tool's axis, which points down at first, has reached the plane
+/// (section A.1.2). The condition depends on `ending`. left_hole: the tip centre is above the hole's mouth, which has
+/// height 0 along `up`. tool_horizontal: the tool's axis, which points down at first, has reached the plane
 /// perpendicular to `up`.
 struct StopRule {
   Ending ending;
@@ -90,7 +90,8 @@ struct StepRecord {
   std::uint64_t step = 0;
   double time = 0.0;  ///< t_k = k dt [s]
   ToolState tool;
-  /// Roll angle of the tool [rad], also if its pose omits the roll; computed only if an observer reads it.
+  /// Roll angle of the tool about its axis [rad], also for a solid of revolution, whose pose omits the roll. Computed
+  /// only if an observer, the pose or the angular velocity needs it; 0 otherwise.
   double roll = 0.0;
   RenderedForce force;
   Vec3 hand_force = Vec3::Zero();  ///< force of the hand on the handle [N]
@@ -115,15 +116,15 @@ struct StepRecord {
 class Observer {
  public:
   virtual ~Observer() = default;
-  /// Returns true if on_step reads `ratio`. Otherwise it is not computed.
+  /// Returns true if on_step reads `ratio`. If no observer reads `ratio`, it need not be computed.
   virtual bool wants_ratio() const noexcept { return false; }
-  /// Returns true if on_step reads `roll`. Otherwise it is not computed.
+  /// Returns true if on_step reads `roll`. If no observer reads `roll`, it need not be computed.
   virtual bool wants_roll() const noexcept { return false; }
-  /// Returns true if on_step reads `springs` and `device`. Otherwise they are not computed.
+  /// Returns true if on_step reads `springs` and `device`. If no observer reads them, they need not be computed.
   virtual bool wants_energy() const noexcept { return false; }
-  /// Returns true if on_step reads `springs`. Otherwise it is not computed.
+  /// Returns true if on_step reads `springs`. If no observer reads `springs`, it need not be computed.
   virtual bool wants_springs() const noexcept { return wants_energy(); }
-  /// Returns true if on_step reads `found`. Otherwise it is null.
+  /// Returns true if on_step reads `found`. If no observer reads `found`, it is null.
   virtual bool wants_found() const noexcept { return false; }
   /// Called once in every step, before the integrator moves the tool.
   virtual void on_step(const StepRecord& record) noexcept = 0;
@@ -181,17 +182,18 @@ class Simulation {
   bool ratio_wanted_ = false;
   bool springs_wanted_ = false;
   bool energy_wanted_ = false;
-  /// Copy of the contacts before point stages merge or drop any of them; null unless an observer reads them.
+  /// Copy of the contacts before any point stage merges or drops contacts; null unless an observer reads the copy.
   std::unique_ptr<ContactBuffer> found_;
   bool position_is_free_ = false;
-  bool tool_rolls_ = false;                        ///< true if the tool is not a solid of revolution, so that its pose
-                                                   ///< includes the roll
-  bool turn_rolls_ = false;                        ///< true if the angular velocity includes the rotation about the
-                                                   ///< tool's axis
-  bool roll_wanted_ = false;                       ///< true if an observer or the tool needs the roll angle
-  bool handle_is_separate_ = false;                ///< true if the handle is a body separate from the tool
-  bool handle_moves_tool_ = false;                 ///< true if the tool follows the handle; there is then no virtual
-                                                   ///< mass
+  /// True if the pose of the tool includes the roll, because the tool is not a solid of revolution.
+  bool tool_rolls_ = false;
+  /// True if the angular velocity includes the rotation about the tool's axis.
+  bool turn_rolls_ = false;
+  /// True if the roll angle has to be computed, because an observer, the pose or the angular velocity needs it.
+  bool roll_wanted_ = false;
+  bool handle_is_separate_ = false;  ///< true if the handle is a body separate from the tool
+  /// True if the tool follows the handle; there is then no virtual mass.
+  bool handle_moves_tool_ = false;
   std::optional<double> angular_velocity_cutoff_;  ///< [Hz]; nullopt if nothing reads the angular velocity
   ContactBuffer contacts_;
 

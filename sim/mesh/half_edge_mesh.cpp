@@ -24,8 +24,9 @@ Vec3 position(const HalfEdgeMesh& mesh, OpenMesh::VertexHandle vertex) {
   return {p[0], p[1], p[2]};
 }
 
-/// Key of a group of points in subsampled(): the centre of the points' cube divided by the cube's edge length, then the
-/// axis and the sign of the largest component of the points' normals.
+/// Key of a group of points in subsampled(). The first three numbers are the centre of the cube that contains the
+/// points, divided by the cube's edge length. The other two are the axis and the sign of the largest component of the
+/// points' normals.
 using CubeKey = std::array<double, 5>;
 
 struct CubeKeyHash {
@@ -48,8 +49,8 @@ using Triangle = TriangleSoup::Triangle;
 struct Hinge {
   std::array<std::uint32_t, 2> triangles;
   std::array<std::uint32_t, 2> corners;  ///< corner of each triangle at which the edge starts
-  bool opposed;                          ///< true if the triangles run along the edge in opposite directions, as
-                                         ///< consistently wound neighbours do
+  /// True if the triangles run along the edge in opposite directions, as consistently wound neighbours do.
+  bool opposed;
 };
 
 constexpr std::uint32_t kNone = 0xffffffffu;
@@ -79,11 +80,11 @@ struct Shape {
   bool holds(const Shape& other) const {
     return (other.box.min.array() >= box.min.array()).all() && (other.box.max.array() <= box.max.array()).all();
   }
-  /// The threshold is larger than the rounding error. Two sheets back to back, which enclose no volume, therefore do
-  /// not count as inside out.
+  /// The threshold is larger than the rounding error of the volume. A part that consists of two coincident sheets, and
+  /// so encloses no volume, therefore does not count as inside out.
   bool is_inside_out() const { return volume < -1e-12 * size() * size() * size(); }
-  /// The threshold is a thickness of a millionth of the size. The two sides of a plane quadrilateral, divided along
-  /// different diagonals, can enclose this volume if coordinates have six or seven digits.
+  /// The volume counts as zero up to the area times a millionth of the size. A plane quadrilateral whose two sides are
+  /// divided along different diagonals can enclose this volume, if the file rounds coordinates to six or seven digits.
   bool encloses_nothing() const { return std::abs(volume) <= 1e-6 * size() * area; }
 };
 
@@ -121,12 +122,12 @@ class MeshParts {
     return std::nullopt;
   }
 
-  /// Reverses all triangles of a part if most of its triangles are reversed, so that the majority keeps its
-  /// original winding. Returns the number of triangles that are still reversed, without the triangles of
-  /// `has_opposite`, which the file holds in both windings.
+  /// If most triangles of a part are marked for reversal, inverts the marks of all its triangles, so that the majority
+  /// keeps its original winding. Returns the number of triangles that are then marked. Does not count triangles for
+  /// which `has_opposite` is true, because the file holds them in both windings.
   std::size_t follow_majority(const std::vector<bool>& has_opposite) {
-    std::vector<std::int64_t> balance(count(), 0);  // number of reversed triangles minus number of other triangles, for
-                                                    // each part
+    // For each part: number of reversed triangles minus number of other triangles.
+    std::vector<std::int64_t> balance(count(), 0);
     for (std::size_t t = 0; t < part_.size(); ++t) balance[part_[t]] += reversed_[t] ? 1 : -1;
     std::vector<bool> mostly_reversed(count());
     std::transform(balance.begin(), balance.end(), mostly_reversed.begin(), [](std::int64_t b) { return b > 0; });
@@ -136,9 +137,10 @@ class MeshParts {
     return count;
   }
 
-  /// Reverses closed parts that enclose a negative volume, together with the parts inside their bounding boxes.
-  /// Returns the number of reversed parts. Only the kMaxEnclosingParts largest parts are tested for enclosing other
-  /// parts.
+  /// Orients the closed parts outwards. A closed part in the bounding box of a larger closed part is reversed if the
+  /// larger part is reversed. Any other closed part is reversed if it encloses a negative volume. Only the
+  /// kMaxEnclosingParts largest of these other parts are tested for enclosing smaller parts. Returns the number of
+  /// reversed parts.
   std::size_t orient_outwards(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles) {
     // Compute the bounding box and the volume of each part.
     shapes_.assign(count(), Shape{});
@@ -175,7 +177,8 @@ class MeshParts {
     return static_cast<std::size_t>(std::count(inside_out.begin(), inside_out.end(), true));
   }
 
-  /// Adds the largest parts to the findings. Precondition: orient_outwards() was called.
+  /// Adds the number of parts and the description of the largest parts to the findings. Precondition: orient_outwards()
+  /// was called.
   void describe(MeshFindings& found) const {
     found.component_count = count();
     std::vector<std::uint32_t> order(count());
@@ -291,8 +294,8 @@ Copies copies_in(const std::vector<Triangle>& triangles, const std::vector<Trian
   return copies;
 }
 
-/// Removes triangles that have the same corners as an earlier triangle. Returns for each remaining triangle whether
-/// there was a copy with the opposite winding. Updates `sides`.
+/// Removes triangles that have the same corners as an earlier triangle, and removes their sides from `sides`. Returns
+/// for each remaining triangle whether a copy with the opposite winding was removed.
 std::vector<bool> drop_copies(std::vector<Triangle>& triangles, std::vector<TriangleSide>& sides, MeshFindings& found) {
   Copies copies = copies_in(triangles, sides, found);
   if (copies.is_copy.empty()) return copies.has_opposite;
@@ -309,7 +312,8 @@ std::vector<bool> drop_copies(std::vector<Triangle>& triangles, std::vector<Tria
   return copies.has_opposite;
 }
 
-/// Returns the two triangles of every edge that has exactly two. Adds the midpoints of all other edges to the findings.
+/// Returns a hinge for every edge that belongs to exactly two triangles. Adds the midpoints of all other edges to the
+/// findings.
 std::vector<Hinge> hinges_of(const std::vector<TriangleSide>& sides, const std::vector<Vec3>& vertices,
                              MeshFindings& found) {
   std::vector<Hinge> hinges;
@@ -323,10 +327,10 @@ std::vector<Hinge> hinges_of(const std::vector<TriangleSide>& sides, const std::
   return hinges;
 }
 
-/// Assigns the triangles' corners to vertices of the surface (union-find). Corner 3 t + i is corner i of triangle
-/// t. Corners are joined across hinges, so that each vertex is one triangle fan. A half-edge mesh can represent
-/// every such surface, because at most one triangle side runs from one vertex to another. Two sides between the same
-/// two vertices belong to a hinge or are the two ends of an open fan, and they run in opposite directions.
+/// Assigns the triangles' corners to vertices of the surface (union-find). Corner 3 t + i is corner i of triangle t.
+/// Corners at the same end of a hinge's edge are joined, so the triangles around each vertex form one fan. A half-edge
+/// mesh can represent the result, because at most one triangle side runs from a vertex a to a vertex b: if two sides
+/// connect a and b, they belong to one hinge or are the two ends of an open fan, and run in opposite directions.
 class Fans {
  public:
   explicit Fans(std::size_t triangles) : parent_(3 * triangles) { std::iota(parent_.begin(), parent_.end(), 0u); }
@@ -337,7 +341,7 @@ class Fans {
     return corner;
   }
 
-  /// Joins the corners at both ends of the common edge.
+  /// At each end of the hinge's edge, joins the corners of its two triangles.
   void join(const Hinge& hinge) {
     const auto [t, u] = hinge.triangles;
     const auto [i, j] = hinge.corners;
@@ -378,8 +382,8 @@ std::vector<OpenMesh::VertexHandle> add_vertices(HalfEdgeMesh& mesh, const std::
   return handles;
 }
 
-/// Returns the half-edge mesh of the triangles, with reversed winding where `reversed` is set. `edges`: the number of
-/// its edges.
+/// Returns the half-edge mesh of the triangles, with reversed winding where `reversed` is set. `edges`: number of edges
+/// of the mesh.
 HalfEdgeMesh connected(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles, std::size_t edges,
                        Fans& fans, const std::vector<bool>& reversed) {
   HalfEdgeMesh mesh;
@@ -481,8 +485,9 @@ double refined_face_count(const HalfEdgeMesh& mesh, double longest_edge, double 
       if (b > a) std::swap(a, b);
       if (c > a) std::swap(a, c);
       if (a <= largest) continue;
-      // The median to the longest side divides the triangle. A triangle is divided independently of its neighbours,
-      // because the longest edge of the mesh is the longest side of both its triangles.
+      // The median to the longest side divides the triangle; `median` is its squared length. The neighbours of the
+      // triangle have no influence: refine() always divides the longest edge of the mesh, which is the longest side of
+      // both triangles at this edge.
       const double median = (2.0 * b + 2.0 * c - a) / 4.0;
       open.push_back({a / 4.0, b, median});
       open.push_back({a / 4.0, c, median});
@@ -495,7 +500,7 @@ double refined_face_count(const HalfEdgeMesh& mesh, double longest_edge, double 
 
 std::vector<SurfacePoint> subsampled(const std::vector<SurfacePoint>& points, double spacing) {
   using Nearest = std::pair<double, std::size_t>;  // distance from the cube's centre [m], and index of the point
-  // For each cube and each direction of the normal (key_of), find the point closest to the centre of the cube.
+  // For each group of points with the same key (CubeKey), find the point closest to the centre of the cube.
   std::unordered_map<CubeKey, Nearest, CubeKeyHash> nearest;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Vec3 cube = (points[i].position / spacing + Vec3::Constant(0.5)).array().floor();

@@ -30,8 +30,8 @@ std::vector<SurfacePoint> vertices_with_normals(const HalfEdgeMesh& mesh);
 /// surface. Precondition: longest_edge > 0.
 void refine(HalfEdgeMesh& mesh, double longest_edge);
 
-/// Returns the number of faces that refine() would produce. If this number exceeds `max_count`, returns early with
-/// some number above `max_count`, so that absurdly large numbers can be rejected quickly.
+/// Returns the number of faces that the mesh would have after refine(). If this number exceeds `max_count`, returns
+/// early with some number above `max_count`, so that absurdly large numbers can be rejected quickly.
 double refined_face_count(const HalfEdgeMesh& mesh, double longest_edge, double max_count);
 
 /// Returns a subsample of the points. Space is divided into cubes with edges of length `spacing` [m], bounded by
@@ -50,8 +50,9 @@ struct MeshComponent {
   bool is_closed = true;
   bool is_cavity = false;    ///< true if the component is closed, with normals towards its inside
   bool is_reversed = false;  ///< true if the component is closed, and its winding was reversed
-  bool is_flat = false;  ///< true if the component is closed but encloses no volume, such as the two sides of a sheet
-                         ///< that are divided into different triangles
+  /// True if the component is closed but encloses no volume, such as the two sides of a sheet that are divided into
+  /// different triangles.
+  bool is_flat = false;
 
   double diameter() const { return box.size().norm(); }
 };
@@ -61,19 +62,19 @@ struct MeshFindings {
   std::size_t degenerate_triangles = 0;  ///< triangles with two equal corners; omitted
   std::size_t repeated_triangles = 0;    ///< triangles with the corners and the winding of an earlier triangle; omitted
   std::size_t opposite_triangles = 0;    ///< triangles with the corners of an earlier triangle, reversed; omitted
-  bool is_double_sided = false;          ///< every triangle was present in both windings
+  bool is_double_sided = false;          ///< true if every triangle was present in both windings
   std::size_t flipped_triangles = 0;     ///< triangles wound against the majority of their connected part; reversed
-  std::size_t inverted_parts = 0;  ///< closed parts that were reversed, because their normals or the normals of the
-                                   ///< part around them pointed inwards
+  /// Closed parts that were reversed, because their normals or the normals of the part around them pointed inwards.
+  std::size_t inverted_parts = 0;
   /// Midpoints [m] of the edges with more than two triangles (non-manifold edges). The surface is cut along them.
   std::vector<Vec3> non_manifold_edges = {};
   /// Midpoints [m] of the edges with one triangle only, where the surface is open.
   std::vector<Vec3> open_edges = {};
   std::size_t component_count = 0;
-  /// The components, at most kMaxComponents, by decreasing diameter.
+  /// The components in order of decreasing diameter; only the first kMaxComponents.
   std::vector<MeshComponent> components = {};
 };
-/// Maximum number of components that MeshFindings describes.
+/// Maximum number of components that MeshFindings::components describes.
 inline constexpr std::size_t kMaxComponents = 20;
 
 /// Result of mesh_from_triangles().
@@ -93,20 +94,20 @@ class MeshError : public std::runtime_error {
 ///
 /// - Triangles: keeps the first of several triangles with the same corners, in any winding.
 /// - Vertices: merges vertices at the same position and omits unused vertices; keeps the order of the others. If
-/// several triangle fans touch in one point only, each fan keeps a vertex of its own.
-/// - Edges: an edge with more than two triangles connects none of them, so the fans at its ends get separate
-/// vertices as well.
+/// several triangle fans touch in one point only, each fan gets a vertex of its own.
+/// - Edges: an edge with more than two triangles does not connect these triangles. They belong to different fans, and
+/// each fan gets a vertex of its own.
 /// - Winding: makes the winding of each connected part consistent, following the majority of its triangles. Orients
 /// closed parts outwards. A part inside the bounding box of a larger part may be a cavity, and is therefore
-/// reversed together with the larger part.
+/// reversed if and only if the larger part is reversed.
 ///
 /// Throws MeshError if there are no triangles, a coordinate is not finite, the surface is not orientable (a Moebius
 /// band), or more than 10,000 triangles meet in one vertex (which would take quadratic time). O(n log n) otherwise.
 /// Precondition: vertex indices are valid.
 CheckedMesh mesh_from_triangles(const TriangleSoup& soup);
 
-/// Returns the triangles of the component with the largest diameter, the first if several are equally large, with all
-/// vertices of the mesh.
+/// Returns the triangles of the component with the largest diameter; of several equally large components, the first.
+/// The result contains all vertices of the mesh, also those of other components.
 TriangleSoup largest_component(const HalfEdgeMesh& mesh);
 
 }  // namespace hapbench

@@ -61,7 +61,7 @@ bool triangulate(const std::vector<int>& polygon, std::vector<CubeTriangle>& tri
   return false;
 }
 
-/// Grid nodes around the box of a density field, numbered from 0 along each axis. Cells lie between the nodes.
+/// Grid nodes in and around the box of a density field, numbered from 0 along each axis. Cells lie between the nodes.
 /// Lengths in m.
 class NodeGrid {
  public:
@@ -97,8 +97,8 @@ double density_at(const DensityField& field, const Vec3& node) {
 }
 
 /// Layer of grid nodes with equal z: the nodes inside the solid, the crossed edges that start at the nodes, and the
-/// numbers of the vertices on these edges. Each node is one bit: word w of line j holds the nodes (64 w … 64 w +
-/// 63, j).
+/// numbers of the vertices on these edges. An edge is crossed if one of its nodes is inside the solid and the other is
+/// outside. Each node is one bit: word w of line j holds the nodes (64 w … 64 w + 63, j).
 class GridLayer {
  public:
   /// Crossed edges that start at the nodes of a word, one bit for each node. The vertices on the edges along x and
@@ -332,7 +332,8 @@ class SlabBuilder {
   Slab slab_;
 };
 
-/// Merges the vertices that two neighbouring slabs share; the upper slab keeps them.
+/// Merges the vertices that two neighbouring slabs share: removes them from the lower slab, and adds their normals to
+/// the normals in the upper slab.
 void move_shared_vertices(std::vector<Slab>& slabs) {
   for (std::size_t s = 0; s + 1 < slabs.size(); ++s) {
     std::vector<SurfacePoint>&below = slabs[s].surface.vertices, &above = slabs[s + 1].surface.vertices;
@@ -372,7 +373,7 @@ std::vector<CubeTriangle> cube_triangles(unsigned inside) {
       next[static_cast<std::size_t>(edge_between(c[i], c[(i + 1) % 4]))] = edge_between(c[last % 4], c[(last + 1) % 4]);
     }
   }
-  // Follow the segments to closed polygons, and divide these into triangles.
+  // Follow the segments around each closed polygon, and divide the polygon into triangles.
   std::vector<CubeTriangle> triangles;
   for (std::size_t start = 0; start < next.size(); ++start) {
     std::vector<int> polygon;
@@ -434,7 +435,7 @@ ShellPoints points_by_cell(const IsoSurface& surface, double spacing) {
   shell.points.reserve(cells.vertices.size());
   shell.cells.reserve(cells.vertices.size());
   std::uint32_t number = 0;
-  // Repeat the vertices of each cell, in the order of the cells.
+  // Append the vertices of each cell, cell by cell. A vertex of several cells is appended once for each of them.
   for (const std::uint32_t cell : grid_order(centres, spacing)) {
     for (std::uint32_t i = cells.starts[cell]; i < cells.starts[cell + 1]; ++i) {
       const SurfacePoint& vertex = surface.vertices[cells.vertices[i]];

@@ -13,13 +13,13 @@ constexpr double kSingleRounding = 2.5e-7;
 /// Length that counts as zero, relative to the diameter of a polygon. Files often hold coordinates of six or seven
 /// digits.
 constexpr double kSmallLength = 1e-6;
-/// Length of the area vector, relative to the square of the diameter, up to which the plane of a polygon is not
-/// determined.
+/// If the area vector of a polygon is not longer than this number times the square of the diameter, the polygon's plane
+/// cannot be determined from it.
 constexpr double kSmallArea = 1e-9;
-/// Doubled area of a triangle, relative to the square of the diameter, up to which its corners count as collinear.
+/// The corners of a triangle count as collinear up to this doubled area, relative to the square of the diameter.
 constexpr double kFlat = 1e-12;
 /// Ear quality of a spike, a corner whose two neighbours are at the same position. Larger than the quality of every
-/// triangle, because an ear beside a spike may lie outside the polygon.
+/// triangle, so that spikes are clipped first: an ear beside a spike may lie outside the polygon.
 constexpr double kSpike = 1.0;
 
 std::string percent(double fraction) {
@@ -174,7 +174,8 @@ void PolygonDivider::refuse_crossings() const {
                          " crosses the edge between its corners " + name(edges[j]) + "; allowed: a simple polygon");
     }
   }
-  if (!turns_once()) throw PolygonError("crosses itself: its boundary makes several turns; allowed: a simple polygon");
+  if (!turns_once())
+    throw PolygonError("crosses itself: its boundary winds around several times; allowed: a simple polygon");
 }
 
 /// Returns true if the direction along the boundary makes one full turn in total. Also returns true if rounding would
@@ -247,14 +248,15 @@ void PolygonDivider::clip_ears() {
   for (std::size_t i = 0; i < points_.size(); ++i) qualities_[i] = ear_quality(i);
   while (points_.size() > 3) {
     auto best = std::ranges::max_element(qualities_);
-    // A clipped corner may have freed an ear elsewhere.
+    // If no ear is known, compute the qualities again until an ear is found: a clipped corner no longer blocks ears.
     for (std::size_t i = 0; i < points_.size() && *best == 0.0; ++i) {
       qualities_[i] = ear_quality(i);
       best = qualities_.begin() + static_cast<std::ptrdiff_t>(i);
     }
     clip(*best > 0.0 ? static_cast<std::size_t>(best - qualities_.begin()) : flattest_corner());
   }
-  // If no triangle is reversed, the triangles cover the polygon exactly once, provided that it does not cross itself.
+  // Three corners are left. If their triangle is not reversed either, the triangles cover the polygon exactly once,
+  // provided that the polygon does not cross itself.
   if (doubled_area_at(1) < -rounding_) throw PolygonError("crosses itself; allowed: a simple polygon");
   clip(1);
 }

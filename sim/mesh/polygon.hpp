@@ -36,14 +36,15 @@ struct DividedPolygon {
 /// divided in its projection onto this plane:
 ///
 /// - as a fan around its first corner, if no triangle of the fan is reversed or flat. This includes all convex polygons
-/// without three corners on a line, and polygons without area.
+/// without three corners on a line. Flat triangles in the fan are accepted if all corners lie on a line, or if the
+/// polygon has more than kMaxPolygonCorners corners.
 /// - by ear clipping otherwise, the best-shaped ear first. O(n^2). Flat triangles are avoided: if the corners a, b and
 /// c lie on a line, the edge from a to c would belong to three triangles, the flat triangle and one on each side of the
 /// edge. A boundary that touches itself is allowed, such as the bridge between an outline and a hole.
 ///
 /// Differences below the rounding error of single precision do not count. Throws PolygonError if the polygon crosses
-/// itself, is not planar (kMaxUnevenness), or has too many corners (kMaxPolygonCorners). Preconditions: at least 3
-/// corners; finite coordinates of at most 1e100.
+/// itself, is not planar (kMaxUnevenness), or has too many corners for ear clipping (kMaxPolygonCorners).
+/// Preconditions: at least 3 corners; finite coordinates of at most 1e100.
 class PolygonDivider {
  public:
   const DividedPolygon& divide(std::span<const Vec3> corners);
@@ -65,8 +66,8 @@ class PolygonDivider {
   /// Sets `points_`, `rounding_` and the unevenness. Returns false if all corners are on a line.
   bool project(std::span<const Vec3> corners);
   /// Result of fan(), the test of the fan around the first corner. `good`: the fan covers the polygon once.
-  /// `has_flat_triangles`: it covers the polygon once, but some of its triangles have no area. `invalid`: it does not
-  /// cover the polygon once.
+  /// `has_flat_triangles`: the fan covers the polygon once, but some of its triangles have no area. `invalid`: the fan
+  /// does not cover the polygon once.
   enum class Fan { good, has_flat_triangles, invalid };
   Fan fan() const;
   void drop_repeated_corners();
@@ -79,8 +80,8 @@ class PolygonDivider {
   /// new edge from c to a.
   bool blocks(std::size_t j, const Point& a, const Point& b, const Point& c) const;
   /// Returns the remaining corner to clip if rounding leaves no ear: the corner with the flattest triangle if a
-  /// triangle is flat, otherwise the corner with the triangle of the largest positive area. Throws PolygonError if
-  /// there is neither.
+  /// triangle is flat, otherwise the corner with the triangle of the largest positive area. Throws PolygonError if no
+  /// triangle is flat and no triangle has a positive area.
   std::size_t flattest_corner() const;
   void clip(std::size_t i);
   std::size_t before(std::size_t i) const { return (i == 0 ? points_.size() : i) - 1; }

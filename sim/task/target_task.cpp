@@ -8,8 +8,8 @@
 namespace hapbench {
 namespace {
 
-/// Updates the output of a first-order low-pass over dt [s], during which the input is constant. Without a cut-off,
-/// output = input.
+/// Updates the output of a first-order low-pass over the time dt [s], during which the input is constant. If there is
+/// no cut-off frequency, output = input.
 void follow(double& output, double input, std::optional<double> cutoff, double dt) noexcept {
   output = cutoff ? output - math::expm1(-2.0 * std::numbers::pi * *cutoff * dt) * (input - output) : input;
 }
@@ -71,8 +71,8 @@ void TargetTask::advance(const Vec3& tip, double spring, double rendered, double
   }
 }
 
-/// Returns true if the checked force is at least min_press_force. For an active target, also returns true if the
-/// force has been lower for no longer than the grace time.
+/// Returns true if the checked force is at least min_press_force, or if the target is active and the force has been
+/// lower for no longer than the grace time.
 bool TargetTask::is_pressed(double dt) noexcept {
   if (checked_ >= rules_.min_press_force) {
     low_for_ = 0.0;

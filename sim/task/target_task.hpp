@@ -14,8 +14,8 @@ namespace hapbench {
 enum class TargetDisplay { panel, height };
 
 /// A displayed force gauge, on which a person cannot read single samples. It shows the spring force along +z
-/// through a first-order low-pass filter. Without a Threshold in the rules, the task also compares this reading with
-/// min_press_force.
+/// through a first-order low-pass filter. If the rules contain no Threshold, the task compares the reading of this
+/// gauge with min_press_force.
 struct Gauge {
   double cutoff = 30.0;  ///< cut-off frequency of the low-pass [Hz]
   double grace = 0.1;  ///< time for which the reading may stay below min_press_force without interrupting the hold [s]
@@ -34,8 +34,8 @@ enum class LowForce {
   nothing    ///< the time on the target continues to count
 };
 
-/// The force along +z that the task compares with min_press_force: single samples, or filtered by a first-order
-/// low-pass. The gauge that the subject sees may show a different force.
+/// The force along +z that the task compares with min_press_force: either its single samples, or the force filtered by
+/// a first-order low-pass. The gauge that the subject sees may show a different force.
 struct Threshold {
   PressForce force = PressForce::rendered;
   std::optional<double> cutoff = {};  ///< cut-off frequency of the low-pass [Hz]; nullopt: single samples
@@ -49,11 +49,11 @@ struct TargetRules {
   /// Positions at which targets appear [m]; only the displayed components count.
   std::vector<Vec3> positions;
   std::uint64_t targets_per_position = 5;  ///< number of targets at each position in one trial
-  double tolerance = 0.0002;               ///< largest distance at which the tip is on the target [m]
-  /// Largest distance at which force and speed are logged [m]; nullopt: tolerance.
+  double tolerance = 0.0002;               ///< largest distance from the target at which the tip is on it [m]
+  /// Largest distance of the tip from the target at which force and speed are logged [m]; nullopt: tolerance.
   std::optional<double> logged = {};
-  double min_press_force = 1.0;             ///< smallest force along +z that counts as pressing; activates the target
-                                            ///< [N]
+  /// Smallest force along +z that counts as pressing and activates the target [N].
+  double min_press_force = 1.0;
   std::optional<Gauge> gauge = {};          ///< nullopt: the subject sees every sample of the rendered force
   std::optional<Threshold> threshold = {};  ///< nullopt: the task checks the force that the subject sees
   double hold = 1.0;                        ///< uninterrupted time on the target after which the target is removed [s]
@@ -69,9 +69,10 @@ struct TargetResult {
 
 /// The task of one trial. Targets appear one at a time in a pseudo-random order, equally often at each position. A
 /// target waits until the subject presses; the press activates the target and starts the time limit. The target is
-/// removed when the tip has stayed on it and pressed for the holding time. Dips of the force within the grace time do
-/// not count. A target that is never activated also disappears after the time limit, so that a trial always ends; this
-/// rule is an assumption of this project. Allocates in the constructor only.
+/// removed when the tip has stayed on it and pressed for the holding time. A force below min_press_force for no longer
+/// than the grace time does not interrupt the holding time. A target that is never activated disappears when the time
+/// limit has passed since its appearance, so that a trial always ends; this rule is an assumption of this project.
+/// Allocates in the constructor only.
 class TargetTask {
  public:
   /// Preconditions: at least one position, targets_per_position > 0. `seed` determines the order of the targets.

@@ -24,8 +24,8 @@ inline constexpr double kOnAxis = 1e-12;
 inline constexpr double kNever = std::numeric_limits<double>::infinity();
 
 /// Returns the closed outline of a solid of revolution as a polyline in the axial half plane [m]. Adds the discs
-/// that close the ends and, for a round tip, a quarter of a circle about the tip centre. The circle is a polyline
-/// that deviates by less than 0.013 % of the radius.
+/// that close the ends and, for a round tip, a quarter of a circle about the tip centre. The polyline deviates from the
+/// circle by less than 0.013 % of the radius.
 inline std::vector<ProfilePoint> closed_outline(std::vector<ProfilePoint> outline, Tip tip) {
   if (outline.front().rho > 0.0) outline.insert(outline.begin(), {outline.front().s, 0.0});
   const auto [s, radius] = outline.back();
@@ -96,9 +96,9 @@ inline PackVector unit_or(const simd::Mask& defined, const PackVector& v, const 
   return select(defined, {v.x * scale, v.y * scale, v.z * scale}, other);
 }
 
-/// Writes one byte for each pack of the ranges, range after range: the bits of the mask that `test` returns for the
-/// pack. Pose and points are passed by value. Passed by reference, they would be read from memory again after every
-/// written byte, because a byte may alias any object.
+/// Writes to `marks` one byte for each pack of the ranges, range after range: the bits of the mask that `test` returns
+/// for the pack. Pose and points are passed by value. Passed by reference, they would be read from memory again after
+/// every written byte, because a byte may alias any object.
 template <class Test>
 void mark(const ToolPose pose, const PointArrays points, std::span<const PackRange> ranges, std::uint8_t* marks,
           const Test& test) {
@@ -130,9 +130,8 @@ struct AxisInterval {
   double low, high;
 };
 
-/// Restricts an interval of the axis to the part of the body that may be near `bounds`; the body lies within
-/// `radius` [m] of its axis. A point of the axis whose disc meets `bounds` lies in `bounds` grown by the radius on
-/// all sides. Comparisons with NaN leave the interval unchanged.
+/// Restricts an interval of the tool's axis to the points that may be within `radius` [m] of the box `bounds`: the
+/// points in `bounds` grown by the radius on all sides. Comparisons with NaN leave the interval unchanged.
 inline AxisInterval axis_interval_near(AxisInterval part, const ToolPose& pose, double radius,
                                        const Box& bounds) noexcept {
   for (int k = 0; k < 3; ++k) {
@@ -148,19 +147,19 @@ inline AxisInterval axis_interval_near(AxisInterval part, const ToolPose& pose, 
   return part;
 }
 
-/// Returns the bounding box of all discs of this radius perpendicular to an interval of the axis [m]; an empty box
-/// if the interval is empty.
+/// Returns the bounding box [m] of a cylinder about the axis, with the given radius, that extends over an interval of
+/// the axis; an empty box if the interval is empty.
 inline Box box_around(const AxisInterval& part, const ToolPose& pose, double radius) noexcept {
   if (part.low > part.high) return {Vec3::Ones(), -Vec3::Ones()};
   const Vec3 tip = pose.position + part.high * pose.axis;
   const Vec3 bottom = pose.position + part.low * pose.axis;
-  // A disc with normal a has the half extent radius sqrt(1 - <a, e>^2) along e.
+  // A disc perpendicular to a unit vector a has the half extent radius sqrt(1 - <a, e>^2) along a unit vector e.
   const Vec3 disc = radius * (Vec3::Ones() - pose.axis.cwiseAbs2()).cwiseMax(0.0).cwiseSqrt();
   return {tip.cwiseMin(bottom) - disc, tip.cwiseMax(bottom) + disc};
 }
 
-/// Returns a row of equal balls along the axis whose union contains a cylinder. Each ball contains a slice of the
-/// cylinder, at most as long as the cylinder is wide.
+/// Returns a row of equal balls along the axis whose union contains a cylinder of this radius and length [m]. Each ball
+/// contains a slice of the cylinder that is at most as long as the cylinder is wide.
 inline ToolShape::Cover row_of_balls(double radius, double length) {
   const double balls = std::ceil(length / (2.0 * radius));
   return {static_cast<std::size_t>(balls), (1.0 + 1e-9) * math::hypot(radius, length / balls / 2.0)};

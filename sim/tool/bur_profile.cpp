@@ -13,11 +13,11 @@ namespace {
 
 constexpr double kSagittaPerDiameter = 1e-3;
 constexpr double kShankPerDiameter = 10.0;
-constexpr double kNarrowEnd = 0.6;  ///< narrow end of tapered and inverted cones, relative to the wide end
+constexpr double kNarrowEnd = 0.6;  ///< diameter of the narrow end of a cone frustum, relative to the wide end
 constexpr double kRearOfFlame = 1.0 / 3.0;
 
 [[noreturn]] void refuse_length(const char* what, double is, const char* has_to, double bound) {
-  refuse(what, " is ", is, " m and has to be ", has_to, ' ', bound, " m");
+  refuse(what, " is ", is, " m and must be ", has_to, ' ', bound, " m");
 }
 
 /// Profile under construction, from the shank's end to the tip.
@@ -27,7 +27,7 @@ class Outline {
     points_ = {{head_begins - 2.0 * kShankPerDiameter * shank_radius, shank_radius}, {head_begins, shank_radius}};
   }
 
-  /// Adds a segment to this point, unless the profile already ends there.
+  /// Adds a segment from the profile's end to the point (s, rho), unless the profile already ends at this point.
   void line_to(double s, double rho) {
     if (points_.back() != ProfilePoint{s, rho}) points_.push_back({s, rho});
   }

@@ -32,7 +32,7 @@ struct BurProfile {
 /// | tapered | a cone frustum that narrows to 0.6 of the diameter, flat end | centre of the end |
 /// | inverted_cone | a cone frustum that widens from 0.6 of the diameter, flat end | centre of the end |
 /// | pear | a cone that widens from the shank and touches the ball at its end | centre of the ball |
-/// | flame | two arcs: from the shank to the diameter in the rear third, then to a pointed tip | the pointed tip |
+/// | flame | an arc that widens to the diameter over the rear third, then an arc to a pointed tip | the pointed tip |
 ///
 /// Arcs are polylines with corners on the arc and a sagitta (largest deviation from the arc) of at most a
 /// thousandth of the diameter. Throws std::invalid_argument with the allowed range if a length is invalid for the

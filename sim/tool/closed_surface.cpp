@@ -14,10 +14,11 @@
 namespace hapbench {
 namespace {
 
-/// Smallest volume relative to the bounding cube. A surface with a smaller volume is flat up to rounding.
+/// Smallest allowed volume, relative to the cube of the bounding box's longest edge. A surface that encloses less is
+/// flat up to rounding.
 constexpr double kFlat = 1e-12;
 
-/// Returns the range of node indices along an axis that lie within [low, high], as first and one past the last.
+/// Returns an index range, as first and one past the last, that contains all nodes within [low, high] along an axis.
 std::pair<std::size_t, std::size_t> nodes_within(const GridNodes& nodes, int axis, double low, double high) {
   // One more node on each side covers the rounding of the division.
   const double first = std::floor((low - nodes.origin[axis]) / nodes.spacing) - 1.0;
@@ -45,7 +46,7 @@ TriangleSoup welded(std::span<const Vec3> vertices, std::span<const TriangleCorn
   // Renumber the corners, and omit degenerate triangles.
   for (const TriangleCorners& t : triangles) {
     if (std::max({t[0], t[1], t[2]}) >= vertices.size())
-      refuse("a triangle of the mesh names a vertex that it has not");
+      refuse("a triangle of the mesh refers to a vertex that does not exist");
     const TriangleCorners corners{merged[t[0]], merged[t[1]], merged[t[2]]};
     const bool degenerate = corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0];
     if (!degenerate) surface.triangles.push_back(corners);
@@ -80,7 +81,7 @@ ClosedSurface::ClosedSurface(std::span<const Vec3> vertices, std::span<const Tri
 }
 
 void ClosedSurface::check_edges() const {
-  // Count the open edges and the edges with inconsistent winding; keep the midpoint of the first.
+  // Count the open edges and the edges with inconsistent winding; keep the midpoint of the first such edge.
   std::size_t open = 0, against = 0;
   Vec3 where = Vec3::Zero();
   for_each_edge(sides_by_edge(triangles()), [&](std::span<const TriangleSide> edge) {
@@ -90,9 +91,9 @@ void ClosedSurface::check_edges() const {
   });
   if (open + against == 0) return;
   const std::string wound =
-      against > 0 ? joined(", ", against, " edges whose triangles are wound against each other") : "";
-  refuse("the mesh bounds no solid: ", open, " open edges (a triangle on one side only)", wound, "; the first at [",
-         coordinates(where), "] m; close its holes");
+      against > 0 ? joined(", ", against, " edges whose triangles have inconsistent winding") : "";
+  refuse("the mesh bounds no solid: ", open, " boundary edges (edges with only one triangle)", wound,
+         "; the first at [", coordinates(where), "] m; close its holes");
 }
 
 void ClosedSurface::measure() {
@@ -112,7 +113,8 @@ void ClosedSurface::measure() {
   if (!(std::abs(volume) > kFlat * edge * edge * edge))
     refuse("the mesh encloses no volume (", volume, " m^3, ", edge, " m long)");
   if (volume < 0.0)
-    refuse("the mesh is inside out (volume ", volume, " m^3): turn its triangles counter-clockwise from outside");
+    refuse("the mesh is inside out (volume ", volume,
+           " m^3): order the corners of its triangles counter-clockwise, seen from outside");
 }
 
 /// Returns the crossings of each column of a layer (equal x) with the triangles, from below.

@@ -15,7 +15,7 @@ namespace {
 using simd::Mask, simd::Pack, simd::select;
 
 /// Largest |cosine| of the angle between a contact's normal and the axis at which the side counts as parallel to the
-/// surface. All points of a line along the side are then extreme.
+/// surface. All points of a line along the side are then support points.
 constexpr double kAlongSide = 1e-9;
 
 Vec3 shortest_gradient(const Cylinder& tool, const ToolPose& pose, const ContactBuffer& contacts, std::size_t i) {
@@ -60,7 +60,7 @@ double exit_side(double radius, const Vec3& rho, const Vec3& radial_u) {
 }
 
 /// Returns the exit distance through the half ball beyond the tip plane; kNever if the ray misses the ball or
-/// leaves it behind the plane.
+/// leaves the ball behind the tip plane, on the bottom's side.
 double exit_half_ball(double radius, const Vec3& x, const Vec3& u, double s, double slope) {
   const double b = x.dot(u);
   const double c = radius * radius - x.squaredNorm();
@@ -77,9 +77,9 @@ double exit_distance(const Cylinder& tool, const ToolPose& pose, const Vec3& poi
   const double s = x.dot(pose.axis);
   const double slope = u.dot(pose.axis);
   double d = exit_side(tool.radius(), x - s * pose.axis, u - slope * pose.axis);
-  // A ray leaves through the tip only if it runs forwards and through the bottom only if it runs backwards. For
-  // points inside, a positive exit implies this. For a point on the tip or the bottom the sign of s is only
-  // rounding, so the direction is tested as well.
+  // A ray leaves through the tip only if it runs forwards (slope > 0), and through the bottom only if it runs
+  // backwards. For a point inside, a positive distance implies this direction. For a point on the tip or on the bottom,
+  // the sign of the distance is only rounding, so the direction is tested as well.
   if (tool.tip() == Tip::round) {
     d = std::min(d, exit_half_ball(tool.radius(), x, u, s, slope));
   } else if (slope > 0.0) {
@@ -206,7 +206,8 @@ void Cylinder::surface_constraints(const ToolPose& pose, const Vec3& wanted, dou
       outwards = select(beyond_both, side * edge_scale, outwards);
       along = select(beyond_both, forward * (end * edge_scale), along);
 
-      // If the displacement `wanted` violates the constraint, use a face that is flush with the surface instead.
+      // If the displacement `wanted` violates the constraint at an edge, use instead the constraint of a face that is
+      // flush with the surface.
       const PackVector n(&contacts.nx[i], &contacts.ny[i], &contacts.nz[i]);
       const Pack faces_side = -out.dot(n), faces_end = -forward * axis.dot(n);
       const Mask bumps = at_edge && outwards * out.dot(move) + along * axis.dot(move) > distance;
@@ -245,7 +246,7 @@ void Cylinder::support_points(const ToolPose& pose, const ContactBuffer& contact
     const Mask on_axis = outwards <= zero;
     const Pack scale = select(on_axis, zero, radius / select(on_axis, one, outwards));
     const AxialPack q(pose, &contacts.x[i], &contacts.y[i], &contacts.z[i]);
-    // A side parallel to the surface touches along a line: use the point beside the contact.
+    // A side parallel to the surface touches it along a line: use the point of this line closest to the contact.
     const Pack beside = simd::max(-length, simd::min(q.s, zero));
     Pack s = select(forward > zero, zero, -length);
     s = select(simd::abs(forward) < along_side, beside, s);

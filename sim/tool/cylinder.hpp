@@ -17,8 +17,8 @@ namespace hapbench {
 /// nothing.
 class Cylinder final : public ToolShape {
  public:
-  /// Radius and length in m, both > 0. The length is measured from the tip plane to the bottom, without a round
-  /// tip.
+  /// Radius and length in m, both > 0. The length is measured from the bottom to the tip plane s = 0 and does not
+  /// include the half ball of a round tip.
   Cylinder(double radius = 0.0005, double length = 0.01, Tip tip = Tip::flat);
 
   double radius() const noexcept { return radius_; }
@@ -51,7 +51,8 @@ class Cylinder final : public ToolShape {
                            ContactBuffer& contacts) const noexcept override;
   void support_points(const ToolPose& pose, const ContactBuffer& contacts,
                       const MutablePointArrays& surface_points) const noexcept override;
-  /// The grown cylinder extends beyond a flat tip, so its tip centre lies `margin` ahead along the axis.
+  /// The grown cylinder extends beyond a flat tip by `margin`, so its tip centre lies `margin` ahead of the tip centre
+  /// of this cylinder.
   Grown grown(double margin) const override;
 
  private:

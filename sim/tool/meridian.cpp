@@ -47,11 +47,10 @@ class Checker {
     for (std::size_t i = 0; i < points_.size(); ++i) check_point(i);
     const std::size_t last = points_.size() - 1;
     if (tip_ == Tip::round && (points_[last].s != 0.0 || points_[last].rho == 0.0)) {
-      refuse(last,
-             "a round tip is half a ball about the tip centre, so the profile has to end beside it: s = 0, rho > 0");
+      refuse(last, "a round tip is half a ball about the tip centre, so the profile must end at s = 0 with rho > 0");
     }
     if (!(points_[0].s < points_[last].s)) {
-      refuse(last, "a profile runs from the shank's end to the tip, so its last s has to be larger than its first");
+      refuse(last, "a profile runs from the shank's end to the tip, so its last s must be larger than its first");
     }
     check_corners();
     check_crossings();
@@ -66,14 +65,14 @@ class Checker {
 
   void check_point(std::size_t i) const {
     const ProfilePoint& p = points_[i];
-    if (!std::isfinite(p.s) || !std::isfinite(p.rho)) refuse(i, "both numbers have to be finite");
-    if (p.s > 0.0) refuse(i, "s has to be <= 0: the tip centre has s = 0, and the shank lies behind it");
-    if (p.rho < 0.0) refuse(i, "rho, the distance from the axis, has to be >= 0");
+    if (!std::isfinite(p.s) || !std::isfinite(p.rho)) refuse(i, "both numbers must be finite");
+    if (p.s > 0.0) refuse(i, "s must be <= 0: the tip centre has s = 0, and the shank lies behind it");
+    if (p.rho < 0.0) refuse(i, "rho, the distance from the axis, must be >= 0");
     if (i > 0 && p.rho == 0.0 && points_[i - 1].rho == 0.0)
-      refuse(i, "on the axis as the point before: no body between");
+      refuse(i, "on the axis, like the previous point: there is no body between the two points");
     const bool inner = i > 0 && i + 1 < points_.size();
     if (inner && p.rho == 0.0) refuse(i, "only the first and the last point may lie on the axis");
-    if (i > 0 && p == points_[i - 1]) refuse(i, "the same as the point before");
+    if (i > 0 && p == points_[i - 1]) refuse(i, "equal to the previous point");
   }
 
   /// Returns the segments of the closed outline.
@@ -104,7 +103,7 @@ class Checker {
       const ProfilePoint a = corner(all[k].from), b = corner(all[k].to), c = corner(all[k + 1].to);
       const double forwards = dot(a, b, c);
       if (forwards < 0.0 && std::abs(cross(a, b, c)) <= -kStraight * forwards) {
-        refuse(static_cast<std::size_t>(all[k].to), "here the profile goes back on itself");
+        refuse(static_cast<std::size_t>(all[k].to), "here the profile reverses onto itself");
       }
     }
   }
@@ -144,7 +143,8 @@ Meridian::Line line_between(const ProfilePoint& a, const ProfilePoint& b) {
   return {{ns, nr, ns * a.s + nr * a.rho}, nr * a.s - ns * a.rho, length};
 }
 
-/// Divides the section that a meridian encloses, without the half ball of a round tip (s <= 0), into convex parts.
+/// Divides the part s <= 0 of the section that a meridian encloses into convex parts. The half ball of a round tip
+/// (s > 0) is not divided.
 class SectionParts {
  public:
   /// Convex part under construction.
@@ -215,7 +215,7 @@ class SectionParts {
     if (part->above.back() != above) part->above.push_back(above);
   }
 
-  /// Returns true if line `to` is line `from`, or continues it without turning inwards.
+  /// Returns true if `to` and `from` are the same line, or if line `to` follows line `from` without turning inwards.
   bool goes_on(std::size_t from, std::size_t to) const {
     return from == to ||
            (to == from + 1 && lines_[from].ns * lines_[to].nr - lines_[from].nr * lines_[to].ns <= kStraight);
@@ -270,7 +270,8 @@ void Meridian::add_parts() {
     parts.push_back({part.low, part.high, first, heights.size(), part.below.has_value()});
   }
 
-  // The body is convex if it is one part above the axis, and a round tip continues it without turning inwards.
+  // The body is convex if its section is one part that reaches the axis. If the tip is round, the outline also must not
+  // turn inwards where the half ball begins.
   const Line& last = lines[profile.size() - 2];
   convex = cut.size() == 1 && !cut[0].below && (tip == Tip::flat || (last.nr > 0.0 && last.ns <= kStraight));
   if (!convex) return;

@@ -24,8 +24,8 @@ struct HalfPlane {
   }
 };
 
-/// Closed outline of a solid of revolution, prepared for the loops of contact search and depths. Where the profile
-/// ends off the axis, a disc closes it.
+/// Closed outline of a solid of revolution, prepared for the loops of contact search and depths. If an end of the
+/// profile is not on the axis, a disc closes the outline at this end.
 struct Meridian {
   /// `points`: profile from the shank's end to the tip. Throws std::invalid_argument that names the first invalid
   /// point: fewer than two points, a number that is not finite, s > 0, rho < 0, a point on the axis that is neither
@@ -36,7 +36,7 @@ struct Meridian {
   /// Line segment of the outline, on the boundary of a half plane whose normal points out of the body. The segment
   /// begins at coordinate `start` along the direction (nr, -ns).
   struct Line : HalfPlane {
-    double start;   ///< coordinate of its first point along its direction [m]
+    double start;   ///< coordinate of the segment's first point along this direction [m]
     double length;  ///< length of the segment [m]
   };
   /// Line rho = at_tip + slope s.
@@ -45,7 +45,8 @@ struct Meridian {
     double slope;
   };
   /// Convex region of the section: the points with low <= s <= high that lie on or below all lines heights[first] …
-  /// heights[last - 1]. If `above_last` is set, the points lie on or above the last of these lines instead.
+  /// heights[last - 1]. If `above_last` is true, the points lie on or above line heights[last - 1], and on or below all
+  /// others.
   struct Part {
     double low, high;
     std::size_t first, last;

@@ -56,8 +56,8 @@ struct GridPack {
         u >= one && u <= Pack(f.last.x()) && v >= one && v <= Pack(f.last.y()) && w >= one && w <= Pack(f.last.z());
   }
 
-  /// Moves the points to the closest points of the grid, NaN to its first corner. Returns the squared displacements
-  /// [spacings^2].
+  /// Moves each point to the closest point of the grid. Coordinates that are NaN become 1, the smallest coordinate.
+  /// Returns the squared displacements [spacings^2].
   Pack clamp(const GridFrame& f) {
     Pack out2(0.0);
     const auto clamp_one = [&out2](Pack& coordinate, double last) {
@@ -265,7 +265,7 @@ class ExitSearch {
   /// afterwards shrinks the bracket.
   void add_sample(double distance, double value) {
     if (!bracketed_) return march(distance, value);
-    // Illinois variant of regula falsi: if an end of the bracket stays twice, its value is halved.
+    // Illinois variant of regula falsi: if the same end of the bracket stays twice in succession, its value is halved.
     if (value <= 0.0) {
       inside_ = distance;
       below_ = value;
@@ -292,7 +292,7 @@ class ExitSearch {
     inside_ = distance;
     below_ = value;
     if (distance <= max_distance_) return;
-    // The direction is zero or not finite.
+    // The body is nowhere longer than max_distance_, so the direction of the ray is zero or not finite.
     inside_ = 0.0;
     done_ = true;
   }
@@ -344,12 +344,13 @@ void MeshTool::mark_near(const ToolPose& pose, double margin, const PointArrays&
   }
 }
 
-// Alternately shrinks `bounds` to the part near the tool's box, and the tool's box to the part near these bounds.
+// Alternately shrinks `bounds` to its intersection with the tool's box, and the tool's box to its intersection with the
+// shrunk bounds. The sides of the two boxes are not parallel, so each further iteration may shrink them.
 Box MeshTool::box_near(const ToolPose& pose, double margin, const Box& bounds) const noexcept {
   const Mat3 rotation = pose.rotation();
   const Mat3 back = rotation.transpose();
   const Box body{grid_->box().min - Vec3::Constant(margin), grid_->box().max + Vec3::Constant(margin)};
-  // Covers rounding in the rotations.
+  // The slack [m] covers rounding in the rotations.
   const double slack = 1e-12 * (reach() + margin + pose.position.cwiseAbs().maxCoeff());
   Box part = body, near = turned(body, rotation, pose.position);
   for (int k = 0; k < kShrinkIterations; ++k) {
@@ -398,7 +399,7 @@ std::vector<ProfilePoint> MeshTool::outline() const {
       }
     }
   }
-  // The rear end is the highest point of the body in the tool frame.
+  // The rear end is the point of the body with the largest z in the tool frame. s = -z.
   std::vector<ProfilePoint> outline = {{-grid_->box().max.z(), 0.0}};
   for (std::size_t k = nodes.count[2]; k-- > 0;) {
     if (widest[k] >= 0.0) outline.push_back({-nodes.coordinate(2, k), widest[k]});
@@ -488,7 +489,8 @@ void MeshTool::surface_constraints(const ToolPose& pose, const Vec3& wanted, dou
         const Vec3 local = rotation.transpose() * m;
         contacts.depth[k] = grid_->hull().support(local) - local.dot(x);
         if (m.dot(wanted) > -contacts.depth[k]) {
-          // If the displacement `wanted` violates the constraint, use the face most flush with the surface.
+          // If the displacement `wanted` violates the constraint, use the constraint of a flat face of the body
+          // instead: the face that is most nearly parallel to the surface.
           const Vec3 back = rotation.transpose() * -normal;
           double largest = kFlush;
           for (const SignedDistanceGrid::Face& face : grid_->flat_faces()) {

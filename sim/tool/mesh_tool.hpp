@@ -11,9 +11,9 @@ namespace hapbench {
 /// Tool with the shape of any closed mesh: the points where the field of a SignedDistanceGrid is <= 0. Uses the
 /// whole pose, including the roll.
 ///
-/// The contact search tests the sign of the same number whose negative is the depth, so both agree exactly. A depth
-/// differs from the distance to the mesh by at most SignedDistanceGrid::error_bound(). Where the closest part of
-/// the mesh is flat, away from edges, the depth differs only by rounding.
+/// The depth of a point is minus the field's value, and the contact search tests the sign of the same value, so both
+/// agree exactly. A depth differs from the distance to the mesh by at most SignedDistanceGrid::error_bound(). Where the
+/// closest part of the mesh is flat, away from edges, the depth differs from this distance only by rounding.
 ///
 /// For a convex mesh the proxy's guarantee (ToolShape::surface_constraints) holds whatever the error of the
 /// gradient: the constraint of a point is the plane that is normal to the field's gradient and touches the mesh

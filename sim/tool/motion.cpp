@@ -55,8 +55,8 @@ Segment segment_at(const Profile::Waypoints& w, double t) {
   return {last->second, next->second - last->second, duration, (t - last->first) / duration};
 }
 
-/// Unit vectors of the tilted tool: `up` is the reversed tool axis, and `side` is the lean direction after the same
-/// tilt.
+/// Unit vectors of the tilted tool: `up` is the reversed tool axis. `side` is perpendicular to it: the direction in
+/// which the tool leans, tilted by the same angle.
 struct TiltedFrame {
   Vec3 up, side;
 };
@@ -201,7 +201,8 @@ Vec3 RecordedMotion::axis_at(double t) const noexcept {
   const Segment segment = segment_at(t);
   if (segment.from->orientation) return axis_of(orientation_in(segment));
   const Vec3 axis = segment.from->axis + segment.fraction * (segment.to->axis - segment.from->axis);
-  // Between opposite axes the interpolation passes through zero; return the axis of the earlier sample there.
+  // If the axes of the two samples are opposite, the interpolated vector may be zero; then return the axis of the
+  // earlier sample.
   return unit_or(axis, segment.from->axis);
 }
 

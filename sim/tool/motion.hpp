@@ -32,9 +32,9 @@ struct ToolPose {
 struct ToolState {
   ToolPose pose;
   Vec3 velocity = Vec3::Zero();  ///< velocity of the tip centre [m/s]
-  /// Angular velocity over the previous step [rad/s], low-pass filtered if the algorithm requests it. Zero unless an
-  /// algorithm reads it. Includes the rotation about the axis if the pose or the script (Motion::scripts_roll) has such
-  /// a rotation.
+  /// Angular velocity over the previous step [rad/s], low-pass filtered if the algorithm requests it. Zero if the
+  /// algorithm does not read it. Includes the rotation about the tool's axis if the pose includes the roll, or if the
+  /// script rotates the tool about its axis (Motion::scripts_roll).
   Vec3 angular_velocity = Vec3::Zero();
 };
 
@@ -59,8 +59,8 @@ Mat3 turn_matrix(const ToolPose& from, const ToolPose& to) noexcept;
 /// such a pose.
 Vec3 turn(const ToolPose& from, const ToolPose& to) noexcept;
 
-/// Scalar function of time t [s]. Evaluation takes O(1), for n waypoints O(log n). The unit of the value depends on
-/// the use.
+/// Scalar function of time t [s]. Evaluation takes O(log n) for n waypoints, and O(1) for the other shapes. The unit of
+/// the value depends on the use.
 class Profile {
  public:
   struct Constant {
@@ -88,8 +88,8 @@ class Profile {
     double rate(double t) const noexcept;
   };
   enum class Interpolation { linear, cosine };
-  /// Pairs (t [s], value) with strictly increasing times; constant before the first and after the last. `cosine`
-  /// starts and ends each segment with zero rate.
+  /// Pairs (t [s], value) with strictly increasing times. The function is constant before the first and after the last
+  /// pair. With the interpolation `cosine`, its rate is zero at the start and at the end of each segment.
   struct Waypoints {
     std::vector<std::pair<double, double>> points;
     Interpolation interpolation = Interpolation::linear;
@@ -131,7 +131,7 @@ class Motion {
   /// revolution leaves out the rotation about its axis. The angular velocity of any other tool contains it in both
   /// cases.
   virtual bool scripts_roll() const noexcept { return false; }
-  /// Returns true if the tip centre is integrated, false if position_at() prescribes it.
+  /// Returns false if position_at() prescribes the tip centre, and true otherwise.
   virtual bool position_is_free() const noexcept { return true; }
   /// Returns the tip centre at time t [s], in m. Called only if the position is prescribed.
   virtual Vec3 position_at(double /*t*/) const noexcept { return Vec3::Zero(); }
@@ -172,14 +172,14 @@ class ScriptedMotion final : public Motion {
 };
 
 /// Playback of a recorded motion: linear interpolation between samples, constant before the first and after the
-/// last. Orientations are interpolated at constant angular velocity along the shorter arc (slerp). Axes without
-/// orientations are interpolated linearly and normalised, with roll 0.
+/// last. Orientations are interpolated at constant angular velocity along the shorter arc (slerp). If the samples have
+/// no orientations, their axes are interpolated linearly and normalised, and the roll is 0.
 class RecordedMotion final : public Motion {
  public:
   struct Sample {
     double time = 0.0;  ///< [s], strictly increasing from sample to sample
     Vec3 position = Vec3::Zero();
-    /// Unit vector out of the tip; computed from `orientation` if that is set.
+    /// Unit vector along the tool's axis, out of the tip. If `orientation` is set, it determines the axis.
     Vec3 axis = {0.0, 0.0, -1.0};
     /// Rotation from the tool frame to the world frame, a unit quaternion. Either all samples have an orientation
     /// or none.

@@ -16,10 +16,10 @@ namespace {
 
 using simd::Mask, simd::Pack, simd::select;
 
-/// Returns the points of `all` that lie in the section with s <= 0. s: axial coordinate; rho2: squared distance from
-/// the axis. Compares squared heights, because a square root costs as much as the tests of four lines. This function
-/// and the tests below are always inlined: as function calls, which pass packs through memory, they would make a
-/// simulation step with a bur 10 % slower.
+/// Returns a mask of the points of `all` that lie in the part s <= 0 of the meridian's section. s: axial coordinate;
+/// rho2: squared distance from the axis. Compares squared heights, because a square root costs as much as the tests of
+/// four lines. This function and the tests below are always inlined: as function calls, which pass packs through
+/// memory, they would make a simulation step with a bur 10 % slower.
 [[gnu::always_inline]] inline Mask in_section(const Meridian& meridian, const Mask& all, const Pack& s,
                                               const Pack& rho2) {
   const auto height = [&](std::size_t k) {
@@ -73,16 +73,17 @@ Pack convex_depth(const Meridian& meridian, const Pack& s, const Pack& rho) {
 /// Closest point on the profile's segments and discs.
 struct NearestPoint {
   Pack distance2;
-  Pack vs, vr;  ///< normal of the segment at the closest point; at a corner, the vector from the query point to the
-                ///< corner
+  /// If the closest point is inside a segment: outward normal of the segment. If the closest point is a corner
+  /// (`at_corner`): vector from the query point to the corner. Components along s and rho.
+  Pack vs, vr;
   Mask at_corner;
 };
 
 /// Returns the closest point of the outline for points with axial coordinate s and distance rho from the axis.
 [[gnu::always_inline]] inline NearestPoint nearest_point(const Meridian& meridian, const Pack& s, const Pack& rho) {
   const Pack zero(0.0);
-  // Closer to a corner than this distance [m], rounding dominates the direction to the corner. The segment's normal is
-  // then used, which is one of the valid directions.
+  // At a distance [m] from a corner below this one, rounding dominates the direction to the corner. The normal of the
+  // segment is then used, which is one of the valid directions.
   const Pack at_line(1e-12 * meridian.widest);
   NearestPoint nearest{Pack(std::numeric_limits<double>::infinity()), zero, zero, Pack(1.0) < zero};
   for (const Meridian::Line& line : meridian.lines) {
@@ -101,8 +102,8 @@ struct NearestPoint {
   return nearest;
 }
 
-/// Returns the distance to the closest point of the outline. nearest_point() is inlined, so its other results are not
-/// computed here.
+/// Returns the distance to the closest point of the outline. nearest_point() is inlined, so the compiler omits the
+/// computation of its other results.
 Pack nearest_distance(const Meridian& meridian, const Pack& s, const Pack& rho) {
   return simd::sqrt(nearest_point(meridian, s, rho).distance2);
 }
@@ -159,9 +160,9 @@ double exit_of_convex(const HalfPlane& plane, const AxialRay& ray) {
   return q.a > 0.0 ? (q.root - q.b) / q.a : 0.0;
 }
 
-/// Tolerances relative to the reach of the body. kAtStart: an outgoing intersection this little behind the start of
-/// the ray counts as a start on the surface. kAtEnd: an intersection this little beyond the end of a segment
-/// counts, so that no ray passes between two segments.
+/// Tolerances relative to the reach of the body. kAtStart: if the ray leaves the body at most this far before its
+/// start, the start counts as a point on the surface. kAtEnd: an intersection at most this far beyond the end of a
+/// segment counts as an intersection with the segment, so that no ray passes between two segments.
 constexpr double kAtStart = 1e-12, kAtEnd = 1e-9;
 
 /// Returns the distance to the first point where the ray leaves the body through the segment; kNever if there is no
@@ -216,12 +217,12 @@ double exit_distance(const Meridian& meridian, const ToolPose& pose, const Vec3&
   return d < kNever ? d : 0.0;
 }
 
-/// Sine of the angle between a surface and a segment below which the surface is parallel to the segment, so that
-/// every point of the segment is extreme.
+/// If the sine of the angle between a surface and a segment is below this number, the surface counts as parallel to the
+/// segment: every point of the segment may then be a support point.
 constexpr double kAlongLine = 1e-9;
 
-/// Returns the unit vector from the axis to the points, perpendicular to the axis even if the points are close to the
-/// axis; `any` where `defined` is not set.
+/// Returns the unit vectors from the axis to the points, perpendicular to the axis even if the points are close to the
+/// axis. For points whose bit in `defined` is not set, returns `any`.
 PackVector away_from_axis(const AxialPack& q, const PackVector& axis, const Mask& defined, const PackVector& any) {
   const PackVector rho{q.rho_x, q.rho_y, q.rho_z};
   // Rounding of s gives a short radial vector a relatively large component along the axis; remove it.
@@ -265,8 +266,8 @@ void Revolved::mark_near(const ToolPose& pose, double margin, const PointArrays&
 Box Revolved::box_near(const ToolPose& pose, double margin, const Box& bounds) const noexcept {
   const AxisInterval whole{meridian_.low - margin, std::max(meridian_.high, meridian_.ball) + margin};
   const AxisInterval part = axis_interval_near(whole, pose, meridian_.widest + margin, bounds);
-  // Points in `bounds` have axial coordinates s in the interval `part`. Points of the body near them have axial
-  // coordinates within `margin` of this interval.
+  // A point in `bounds` that is at most `margin` away from the body has its axial coordinate s in the interval `part`.
+  // The closest point of the body has its axial coordinate within `margin` of this interval.
   double widest = part.high + margin >= 0.0 ? meridian_.ball : 0.0;
   for (std::size_t i = 0; i + 1 < meridian_.profile.size(); ++i) {
     const auto [a, b] = std::pair(meridian_.profile[i], meridian_.profile[i + 1]);
@@ -293,7 +294,7 @@ void Revolved::shortest_depths(const ToolPose& pose, ContactBuffer& contacts) co
     const Pack rho = simd::sqrt(q.rho2);
     Pack d = convex ? convex_depth(meridian_, q.s, rho) : nearest_distance(meridian_, q.s, rho);
     if (round) d = select(q.s > zero, simd::min(d, ball - simd::sqrt(q.distance2())), d);
-    // In the ball, rounding may place a point outside of a line that touches the ball.
+    // For a point in the half ball, rounding may make the depth below a segment that touches the ball negative.
     simd::store(simd::max(d, zero), &contacts.depth[i]);
   }
 }
@@ -307,7 +308,7 @@ void Revolved::shortest_gradients(const ToolPose& pose, ContactBuffer& contacts)
     const AxialPack q(pose, &contacts.x[i], &contacts.y[i], &contacts.z[i]);
     const Pack rho = simd::sqrt(q.rho2);
     const NearestPoint nearest = nearest_point(meridian_, q.s, rho);
-    // Transform the unit vector to the closest point from the half plane to the world frame.
+    // Normalise the direction to the closest point, and transform it from the axial half plane to the world frame.
     const Pack scale = one / simd::sqrt(nearest.vs * nearest.vs + nearest.vr * nearest.vr);
     const Pack vs = nearest.vs * scale, vr = nearest.vr * scale;
     const Mask on_axis = rho < undefined_rho;
@@ -316,7 +317,7 @@ void Revolved::shortest_gradients(const ToolPose& pose, ContactBuffer& contacts)
     Mask undefined = on_axis && simd::abs(vr) > sideways;
     if (round) {
       const Pack from_centre = simd::sqrt(q.distance2());
-      // A round tip that is closer replaces the closest point of the outline.
+      // If the round tip is closer than the profile, use the vector from the tip centre instead.
       const Pack to_ball = ball - from_centre;
       const Mask at_ball = q.s > zero && (to_ball <= zero || to_ball * to_ball <= nearest.distance2);
       x = select(at_ball, q.x, x);
@@ -365,8 +366,8 @@ void Revolved::surface_constraints(const ToolPose& pose, const Vec3& wanted, dou
     PackVector normal = combined(nearest.vs * scale, axis, nearest.vr * scale, out);
 
     const PackVector surface(&contacts.nx[i], &contacts.ny[i], &contacts.nz[i]);
-    // If the displacement `wanted` violates the constraint, a convex body uses the face that is flush with the surface
-    // instead.
+    // If the displacement `wanted` violates the constraint of a convex body, use instead the constraint of a face that
+    // is flush with the surface.
     const Mask bumps = normal.dot(move) > distance;
     if (m.convex && simd::any(bumps)) {
       Pack furthest = -in_reach;
@@ -396,8 +397,8 @@ void Revolved::support_points(const ToolPose& pose, const ContactBuffer& contact
   const Meridian& m = meridian_;
   const Pack zero(0.0), one(1.0), along_line(kAlongLine), ball(m.ball);
   const PackVector position(pose.position), axis(pose.axis);
-  // If the surface is perpendicular to the axis, every point of a rim is extreme. Use the rim's centre for a convex
-  // body, and any point of the rim otherwise.
+  // If the surface is perpendicular to the axis, every point of a rim (the circle of a profile's corner) is a support
+  // point. Use the centre of the rim for a convex body, and any point of the rim otherwise.
   const PackVector none(m.convex ? Vec3(Vec3::Zero()) : pose.axis.unitOrthogonal());
   for (std::size_t i = 0; i < contacts.padded_size(); i += simd::lanes) {
     const PackVector n(&contacts.nx[i], &contacts.ny[i], &contacts.nz[i]);
@@ -406,7 +407,7 @@ void Revolved::support_points(const ToolPose& pose, const ContactBuffer& contact
     const Pack outward = simd::sqrt(across.dot(across));
     const PackVector out = unit_or(outward > zero, across, outward, none);
 
-    // Find the extreme corner of the profile.
+    // Find the corner of the profile that is farthest ahead, in the direction -n.
     Pack best(-std::numeric_limits<double>::infinity()), s = zero, rho = zero;
     for (const ProfilePoint& p : m.profile) {
       const Pack ahead = forward * Pack(p.s) + outward * Pack(p.rho);
@@ -416,8 +417,8 @@ void Revolved::support_points(const ToolPose& pose, const ContactBuffer& contact
       rho = select(further, Pack(p.rho), rho);
     }
     const Pack enough = best - Pack(2.0 * kAlongLine * m.reach);
-    // If the surface is parallel to a segment, every point of the segment is extreme: use the point beside the
-    // contact.
+    // If the surface is parallel to a segment that is farthest ahead, every point of the segment is a support point:
+    // use the point closest to the contact.
     const AxialPack q(pose, &contacts.x[i], &contacts.y[i], &contacts.z[i]);
     const Pack beside = q.rho_x * out.x + q.rho_y * out.y + q.rho_z * out.z;
     Pack aside2(std::numeric_limits<double>::infinity());
@@ -433,7 +434,7 @@ void Revolved::support_points(const ToolPose& pose, const ContactBuffer& contact
       s = select(takes, there_s, s);
       rho = select(takes, there_rho, rho);
     }
-    // A round tip may be further ahead than every corner.
+    // A point of the round tip may be farther ahead than every corner.
     const Mask at_ball = m.tip == Tip::round ? forward > along_line && ball >= best : zero > one;
     simd::store(select(at_ball, -ball * n.x, s * axis.x + rho * out.x) + position.x, &surface_points.x[i]);
     simd::store(select(at_ball, -ball * n.y, s * axis.y + rho * out.y) + position.y, &surface_points.y[i]);
@@ -449,8 +450,8 @@ ToolShape::Grown Revolved::grown(double margin) const {
     if (!round) corners.push_back({s + margin, rho + margin});
   };
   for (const ProfilePoint& p : profile()) add_square(p.s, p.rho);
-  // Without front corners, the hull still covers a body that ends in a round tip. No part of the body is wider than the
-  // ball, so everything behind the ball's centre is below the rear corners and the corner added here.
+  // If the tip stays round, the front corners of the squares are omitted. No part of the body is then wider than the
+  // ball, so the rear corners and the corner added here still enclose everything behind the ball's centre.
   if (round) corners.push_back({0.0, meridian_.ball + margin});
   if (!round && tip() == Tip::round) add_square(meridian_.ball, meridian_.ball);
 
@@ -459,7 +460,7 @@ ToolShape::Grown Revolved::grown(double margin) const {
   // Compute the upper convex hull of the corners.
   std::vector<ProfilePoint> hull;
   for (const ProfilePoint& p : corners) {
-    // Keep the widest point at each s.
+    // Of several corners with the same s, keep the one with the largest rho.
     while (!hull.empty() && hull.back().s == p.s) hull.pop_back();
     while (hull.size() >= 2 && cross(hull[hull.size() - 2], hull.back(), p) >= 0.0) hull.pop_back();
     hull.push_back(p);

@@ -10,8 +10,8 @@
 namespace hapbench {
 
 /// Solid of revolution, such as a bur, a pin or a cone. Its profile is a polyline in the axial half plane from the
-/// shank's end to the tip. Where the profile ends off the axis, discs close the body, or a half ball for a round
-/// tip:
+/// shank's end to the tip. If an end of the profile is not on the axis, a disc closes the body at this end. If the tip
+/// is round, a half ball closes the body at the tip:
 ///
 ///       rho
 ///        |      [1]________[2]
@@ -21,14 +21,14 @@ namespace hapbench {
 ///     ---+----------------------+---> s
 ///     shank                     tip centre, s = 0
 ///
-/// The body is the closed set on and below the profile. Undercuts are allowed, also where s decreases, as long as
-/// the outline does not intersect itself. For a body that is not convex the proxy's guarantee does not hold: see
-/// surface_constraints.
+/// The body is the closed set on and below the profile. The profile may have undercuts, and s may decrease along it, as
+/// long as the outline does not intersect itself. For a body that is not convex the proxy's guarantee does not hold:
+/// see surface_constraints.
 ///
 /// The closest point of the surface lies in the same axial half plane as the query point, so depths and gradients
 /// are exact distances to line segments. With the profile [[-L, r], [0, r]] all results agree with Cylinder up to
-/// rounding, with two exceptions: the closest point of a body shorter than the radius of its round tip may be on
-/// its rear, and the exit of a point on the surface may differ.
+/// rounding, with two exceptions. If a body with a round tip is shorter than its radius, the closest point of the
+/// surface may be on the disc at the rear. The exit distance of a point on the surface may differ.
 class Revolved final : public ToolShape {
  public:
   /// `profile`: points (s, rho) [m] from the shank's end to the tip. Throws the same errors as Meridian.
@@ -58,13 +58,15 @@ class Revolved final : public ToolShape {
   void exit_distances(const ToolPose& pose, const ContactBuffer& contacts, double* exits) const noexcept override;
   /// For a body that is not convex, the constraints only describe the distance to the closest point. After a long
   /// displacement of the body, the contact's point may be inside another part of the body, such as the far side of an
-  /// undercut. In a body that is not convex, a flush face (kFlush) does not replace an edge.
+  /// undercut. In a body that is not convex, the constraint of a flush face (kFlush) does not replace the constraint of
+  /// an edge.
   void surface_constraints(const ToolPose& pose, const Vec3& wanted, double slack,
                            ContactBuffer& contacts) const noexcept override;
   void support_points(const ToolPose& pose, const ContactBuffer& contacts,
                       const MutablePointArrays& surface_points) const noexcept override;
-  /// Returns the convex hull of squares about the profile's points, whose corners are sqrt(2) margin away from the
-  /// points. A round tip stays round if no part of the body is wider than the tip.
+  /// Returns the convex hull of squares in the axial half plane. Each square is centred at a point of the profile, and
+  /// its corners are sqrt(2) margin away from this point. A round tip stays round if no part of the body is wider than
+  /// the tip.
   Grown grown(double margin) const override;
 
  private:

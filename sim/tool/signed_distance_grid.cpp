@@ -21,7 +21,8 @@ constexpr std::size_t kCells = 6 * kEdge * kEdge;
 /// Differences of distance below this fraction of the body's size are treated as rounding.
 constexpr double kTie = 1e-9;
 
-/// Returns the index of the direction cell (SupportTable) along one coordinate in [-1, 1] of a cube face.
+/// Returns the row or column, 0 to kEdge - 1, of the direction cell (SupportTable) that contains a point on the face of
+/// a cube. `coordinate`: coordinate of the point along the face, in [-1, 1].
 std::size_t cell_along(double coordinate) {
   return std::min(kEdge - 1, static_cast<std::size_t>(0.5 * (coordinate + 1.0) * static_cast<double>(kEdge)));
 }
@@ -49,7 +50,7 @@ Vec3 direction_in(std::size_t cell, double a, double b) {
   return u.normalized();
 }
 
-/// Returns the points that may be extreme along some direction in the cell (see SupportTable).
+/// Returns the indices of the points that may be extreme along some direction in the cell (see SupportTable).
 std::vector<std::uint32_t> support_candidates(const std::vector<Vec3>& points, std::size_t cell, double tie) {
   const Vec3 middle = direction_in(cell, 0.5, 0.5);
   // Great circles bound a cell, so its corners are farthest from its middle.
@@ -74,8 +75,8 @@ constexpr double kMaxBytes = 1024.0 * 1024.0 * 1024.0;
 constexpr double kBytesPerNode = sizeof(double) + sizeof(std::uint8_t);
 // Largest fraction of the surface that may be thinner than two spacings.
 constexpr double kMaxThinFraction = 0.1;
-/// Largest distance, in spacings, of a vertex in front of the plane of a triangle of a convex body. It is larger
-/// than the rounding of mesh files in single precision.
+/// A body counts as convex if no vertex lies farther than this, in spacings, in front of the plane of a triangle. This
+/// is more than the rounding of mesh files in single precision.
 constexpr double kConvexWithin = 0.01;
 /// Step to which the components of unit normals are rounded. Normals with the same rounded components count as equal.
 constexpr double kSameNormal = 1e-6;
@@ -98,7 +99,7 @@ Vec3 node_counts(const Vec3& extent, double spacing) {
   if (const double bytes = kBytesPerNode * wanted.prod(); !(bytes <= kMaxBytes)) {
     refuse("a grid of ", wanted.x(), " x ", wanted.y(), " x ", wanted.z(), " nodes, ", spacing, " m apart, would take ",
            bytes / kMaxBytes, " GiB, more than 1; the mesh is ", extent.x(), " x ", extent.y(), " x ", extent.z(),
-           " m large: is that its scale? If so, set the nodes ", suggested_for(extent), " m apart");
+           " m large: is its scale right? If so, set the nodes ", suggested_for(extent), " m apart");
   }
   return wanted;
 }
@@ -118,8 +119,8 @@ Vec3 area_vector(const ClosedSurface& surface, const TriangleCorners& t) {
   return 0.5 * (b - a).cross(c - a);
 }
 
-/// Returns the vertices whose adjacent triangles are not all coplanar. A vertex with only coplanar triangles is never
-/// the only extreme point along a direction.
+/// Returns the vertices whose adjacent triangles are not all coplanar. The other vertices are not needed to find
+/// extreme points: none of them is the only extreme point along a direction.
 std::vector<Vec3> corners_of(const ClosedSurface& surface) {
   // Sum the unit normals of the triangles at each vertex. The normals are parallel if the length of the sum equals the
   // number of the triangles.
@@ -147,9 +148,10 @@ void check_winding(const std::vector<std::int8_t>& numbers, const GridNodes& nod
   if (first == numbers.end()) return;
   const auto i = static_cast<std::size_t>(first - numbers.begin()), column = i / nodes.count[2];
   const Vec3 position = nodes.position(column / nodes.count[1], column % nodes.count[1], i % nodes.count[2]);
-  refuse("the mesh passes through itself: it encloses [", coordinates(position), "] m ", int{*first}, " times, and so ",
+  refuse("the mesh intersects itself: it encloses [", coordinates(position), "] m ", int{*first}, " times, and so ",
          std::count_if(first, numbers.end(), is_wrong), " of ", nodes.count[0], " x ", nodes.count[1], " x ",
-         nodes.count[2], " nodes; unite its parts, all counter-clockwise from outside");
+         nodes.count[2],
+         " nodes; unite its parts, with the corners of all triangles counter-clockwise, seen from outside");
 }
 
 /// Throws std::invalid_argument if more than a tenth of the surface is thinner than `thickness` [m]. The thickness
@@ -180,7 +182,7 @@ void check_thickness(const ClosedSurface& surface, const TriangleTree& tree, dou
   const auto [a, b, c] = surface.corners(surface.triangles()[where]);
   const Vec3 position = (a + b + c) / 3.0;
   refuse("the mesh is thinner than its grid: ", std::round(100.0 * too_thin / all),
-         " % of its surface is less than two spacings (", thickness, " m) thick, the thinnest place ", thinnest,
+         " % of its surface is less than two spacings (", thickness, " m) thick; the smallest thickness is ", thinnest,
          " m at [", coordinates(position), "] m; set the nodes at most ", 0.5 * thinnest,
          " m apart, or take a thicker mesh");
 }
@@ -213,8 +215,9 @@ Vec3 SupportTable::foremost(const Vec3& direction, const Vec3& near) const noexc
     }
   }
   if (nearest == nullptr) return points_.front();  // only if the direction is not finite
-  // Move towards the other extreme points as long as the point gets closer to `near`. Do this twice, for the points
-  // of a face. A convex combination of extreme points is extreme as well.
+  // Move the point towards each other extreme point until it is closest to `near`. The result is a convex combination
+  // of extreme points and therefore extreme as well. If the extreme points span a face, one pass is not enough; two
+  // passes come close to the closest point.
   Vec3 support = *nearest;
   for (int pass = 0; pass < 2; ++pass) {
     for (const std::uint32_t i : candidates) {
@@ -260,7 +263,7 @@ void SignedDistanceGrid::fill(const ClosedSurface& surface, const TriangleTree& 
     for (std::size_t k = 0; k < nodes_.count[2]; k += simd::lanes) {
       for (std::size_t n = 0; n < simd::lanes; ++n) {
         z[n] = nodes_.coordinate(2, k + n);
-        // Along the column, the distance grows by at most the distance between the nodes.
+        // From one node to another, the distance to the mesh grows by at most the distance between the two nodes.
         const double at_most = last + static_cast<double>(n + 1) * nodes_.spacing;
         distances2[n] = (1.0 + 1e-9) * at_most * at_most;
       }
@@ -275,7 +278,7 @@ void SignedDistanceGrid::fill(const ClosedSurface& surface, const TriangleTree& 
   });
   half_width_ = -*std::min_element(values_.begin(), values_.end());
   if (!(half_width_ > 0.0))
-    refuse("the mesh is so thin that none of its grid's nodes lies in it; set them less than ", nodes_.spacing,
+    refuse("the mesh is so thin that no node of its grid is inside; set the nodes less than ", nodes_.spacing,
            " m apart");
 }
 
@@ -303,7 +306,7 @@ void SignedDistanceGrid::classify() {
 /// Determines whether the body is convex. Finds the largest flat faces of a convex body.
 void SignedDistanceGrid::find_faces(const ClosedSurface& surface) {
   const double tolerance = kConvexWithin * nodes_.spacing;
-  // In a convex body, triangles with the same normal lie in the same plane.
+  // Sum the area vectors of the triangles with the same normal, which lie in the same plane if the body is convex.
   std::map<std::array<long, 3>, Vec3> areas;
   convex_ = true;
   for (const TriangleCorners& t : surface.triangles()) {
@@ -317,7 +320,7 @@ void SignedDistanceGrid::find_faces(const ClosedSurface& surface) {
     areas.try_emplace({std::lround(rounded.x()), std::lround(rounded.y()), std::lround(rounded.z())}, Vec3::Zero())
         .first->second += area;
   }
-  // Keep the faces larger than the square of the body's half width, the largest first.
+  // Keep the faces with at least the area half_width_^2, in order of decreasing area.
   std::vector<Vec3> largest;
   for (const auto& [normal, area] : areas) {
     if (area.norm() >= half_width_ * half_width_) largest.push_back(area);

@@ -15,9 +15,9 @@ namespace hapbench {
 /// Directions are sorted into 6 x 16 x 16 cells on the faces of a cube. Let c be the direction in the middle of a
 /// cell, r the largest distance |u - c| of a unit direction u in the cell, and p the extreme point along c. A point
 /// v is extreme along some direction u of the cell only if <c, p - v> <= r |v - p|; this follows from <u, v - p> >=
-/// 0 and |u - c| <= r. Each cell lists the points that satisfy this. A query evaluates the points of one cell, a
-/// fraction of about 4 r^2 of all points for a round body. Construction evaluates every point for each of the 1536
-/// cells, on oneTBB's threads.
+/// 0 and |u - c| <= r. Each cell lists the points that satisfy this condition. A query evaluates only the points that
+/// one cell lists. In a round body, a cell lists about a fraction 4 r^2 of all points. Construction evaluates every
+/// point for each of the 1536 cells, on oneTBB's threads.
 class SupportTable {
  public:
   /// Precondition: there is at least one point.
@@ -68,11 +68,11 @@ class SignedDistanceGrid {
   SignedDistanceGrid(const ClosedSurface& surface, double spacing);
 
   /// Returns the spacing [m] at which the grid around a mesh has about 128^3 nodes, including the nodes in the margins
-  /// around the mesh. Such a grid takes 20 MB and at most some seconds.
+  /// around the mesh. Such a grid takes 20 MB of memory and is computed in a few seconds at most.
   static double suggested_spacing(std::span<const Vec3> vertices);
 
   double spacing() const noexcept { return nodes_.spacing; }  ///< [m]
-  /// Returns the largest error of the field, sqrt(3)/2 times the spacing [m].
+  /// Returns an upper bound of |phi_h - phi| [m]: sqrt(3)/2 times the spacing.
   double error_bound() const noexcept { return 0.5 * std::numbers::sqrt3 * nodes_.spacing; }
   /// Box that contains the body, in the tool frame [m].
   const Box& box() const noexcept { return box_; }
@@ -98,7 +98,7 @@ class SignedDistanceGrid {
   // Raw arrays for the SIMD loops in sim/tool/mesh_tool.cpp.
 
   const GridNodes& nodes() const noexcept { return nodes_; }
-  const double* values() const noexcept { return values_.data(); }  ///< phi of each node [m], and one padding number
+  const double* values() const noexcept { return values_.data(); }  ///< phi at each node [m], then one padding number
   /// Class of all points whose nearest node is a given node: all outside or all inside the body. `mixed`: the 27 nodes
   /// around the given node do not determine the class, so each point must be evaluated.
   enum Kind : std::uint8_t { outside = 0, inside = 1, mixed = 2 };

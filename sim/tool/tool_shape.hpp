@@ -89,10 +89,10 @@ class ToolShape {
   /// Returns a box that contains every point of `bounds` within `margin` [m] of the body. Ideally the box encloses only
   /// the part of the body near `bounds`. The box is empty if no part of the body is near `bounds`.
   virtual Box box_near(const ToolPose& pose, double margin, const Box& bounds) const noexcept = 0;
-  /// Number and radius [m] of balls whose union contains the body and everything that `mark_near` marks with this
-  /// margin. Used to bound the number of points that the body can touch (max_points_in, grid_index.hpp); many small
-  /// balls give a tighter bound than one ball. The default is one ball, which is valid if `mark_near` marks no point
-  /// farther away from the body than twice the margin.
+  /// Number and radius [m] of balls. For the margin given to `cover`, the union of the balls contains the body and
+  /// every point that `mark_near` marks with this margin. Used to bound the number of points that the body can touch
+  /// (max_points_in, grid_index.hpp); many small balls give a tighter bound than one ball. The default is one ball,
+  /// which is valid if `mark_near` marks no point farther away from the body than twice the margin.
   struct Cover {
     std::size_t balls;
     double radius;
@@ -110,14 +110,15 @@ class ToolShape {
 
   // Depth models. Precondition: the contacts lie in the body or on its surface.
 
-  /// Writes the distance from each contact to the closest point of the body's surface as its depth [m]. This function
-  /// and the following functions may overwrite the whole last pack.
+  /// Writes the distance from each contact to the closest point of the body's surface as the depth of the contact [m].
+  /// This function and the following functions may overwrite the whole last pack of the contacts, including its
+  /// padding.
   virtual void shortest_depths(const ToolPose& pose, ContactBuffer& contacts) const noexcept = 0;
   /// Writes the unit vector from each contact to the closest point of the surface as its gradient. Writes the
   /// contact's negative normal if the closest point is not unique, for example on the axis of a cylinder.
   virtual void shortest_gradients(const ToolPose& pose, ContactBuffer& contacts) const noexcept = 0;
-  /// Writes to exits[i], for i < size(), the distance [m] from contact i along its gradient to the point where the
-  /// ray leaves the body. Finite and >= 0, also for points on the surface.
+  /// Writes the exit distance [m] of each contact i to exits[i]: the ray that starts at the contact in the direction of
+  /// its gradient leaves the body at this distance. The distance is finite and >= 0, also for points on the surface.
   virtual void exit_distances(const ToolPose& pose, const ContactBuffer& contacts, double* exits) const noexcept = 0;
 
   // Proxy (virtual tool that stays outside of the surface). The guarantee below holds for a convex body. A shape
@@ -125,7 +126,7 @@ class ToolShape {
 
   /// Writes linear constraints that keep nearby points out of the body. For each contact i, with g_i the signed
   /// distance from the point to the body's surface (negative inside): depth d_i = -g_i [m], and gradient m_i =
-  /// outward normal at the closest point of the surface. Pads the contacts.
+  /// outward normal at the closest point of the surface. Calls contacts.pad().
   ///
   /// The signed distance to a convex body is a convex function of the point, and m_i is one of its subgradients.
   /// After the body is moved by a displacement x, its distance from the point is at least g_i - <m_i, x>, hence
@@ -135,11 +136,12 @@ class ToolShape {
   /// for displacements of any length. If the closest point is not unique, this holds for the normal at any of the
   /// closest points.
   ///
-  /// A flat face that slides along a surface would be stopped by the points ahead: they lie in the plane of the face,
-  /// and their closest point on the body is the edge of the face. A point that lies beyond both faces of an edge, or at
-  /// most `slack` [m] inside one of the faces, is kept out by the constraint of either face. Therefore, if the
-  /// displacement `wanted` [m] violates the constraint at the closest point, the constraint of a face replaces it. This
-  /// face must be flush with the surface (kFlush), whose normal is the contact's normal.
+  /// With these constraints alone, a flat face that slides along a surface would be stopped by the points ahead of it:
+  /// the points lie in the plane of the face, and their closest point on the body is the edge of the face. A point that
+  /// lies beyond both faces of an edge, or at most `slack` [m] inside one of the faces, is kept out by the constraint
+  /// of either face. Therefore, if the displacement `wanted` [m] violates the constraint at the closest point, this
+  /// constraint is replaced by the constraint of a flat face, if the face is flush (kFlush) with the surface around the
+  /// contact. The normal of this surface is the contact's normal.
   virtual void surface_constraints(const ToolPose& pose, const Vec3& wanted, double slack,
                                    ContactBuffer& contacts) const noexcept = 0;
   /// Writes the support point of the body in the direction -n_i for each contact normal n_i: argmin <q, n_i> over

@@ -107,8 +107,8 @@ std::vector<Instance> instances() {
   return all;
 }
 
-/// Returns the springs of the thesis if `instance.springs` is true. Otherwise returns the 2-D peg in a hole of the
-/// thesis, with a peg wide enough to touch many points.
+/// Returns bilateral springs in three directions if `instance.springs` is true. Otherwise returns the 2-D peg in a hole
+/// of the thesis, with a peg wide enough to touch many points.
 test::Setting setting_of(const Instance& instance) {
   test::Setting setting;
   if (instance.springs) {

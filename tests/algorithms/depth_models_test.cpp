@@ -50,7 +50,8 @@ TEST(ShortestDistance, AnUndefinedDirectionFallsBackToTheInwardNormal) {
   const auto on_axis = evaluate(flat, kPose, at(-8, 0), normal);
   EXPECT_EQ(on_axis.depth, kUnit);
   EXPECT_EQ(on_axis.gradient, Vec3(-normal));
-  // The same case at the centre of the round tip: first in the cylinder (s = 0), then just inside the ball.
+  // At the centre of a round tip, the direction is also undefined. The first point (s = 0) belongs to the cylindrical
+  // part, the second point to the hemisphere.
   const Cylinder round{kUnit, 16 * kUnit, Tip::round};
   EXPECT_EQ(evaluate(round, kPose, at(0, 0), normal).gradient, Vec3(-normal));
   EXPECT_EQ(evaluate(round, kOrigin, 1e-13 * kUnit * kAxis, normal).gradient, Vec3(-normal));
@@ -113,7 +114,7 @@ TEST(EveryDepthModel, NeverGivesACollidingPointANegativeDepth) {
         on_surface += contacts.depth[k] < 1e-15;
       }
     });
-    // Check that there were points that the search and the model could round differently.
+    // Check that many points lay on the tool's surface, where the search and the model could round differently.
     EXPECT_GT(on_surface, test::cases(4000));
   }
 }
@@ -126,7 +127,7 @@ double depth_at(const ToolShape& tool, const ToolPose& pose, const Vec3& point, 
   return contacts.depth[0];
 }
 
-/// Returns true if the search reports the point. It reports every point that a depth model receives.
+/// Returns true if the contact search reports the point. A depth model receives only points that the search reports.
 bool collides(const ToolShape& tool, const ToolPose& pose, const Vec3& point) {
   const PointShell shell({{point, Vec3::UnitZ()}}, 0.0);
   const auto query = make_contact_query(shell, tool, Skips::off);
@@ -181,7 +182,7 @@ TEST_P(NormalProjectionDepthOf, ARayInwardsFromTheSurfaceCrossesTheTool) {
 }
 
 TEST_P(NormalProjectionDepthOf, HandlesRaysAlongAndAcrossTheAxis) {
-  // Checks rays for which the denominator of (F.7) or (F.12) is zero or nearly zero.
+  // Checks rays for which the denominator of equation (F.7) or (F.12) of the thesis is zero or nearly zero.
   Random random(3);
   for (std::size_t i = 0; i < test::cases(20000); ++i) {
     const test::DefinedTool tool = GetParam().make(random, 0.001);
@@ -198,18 +199,20 @@ TEST_P(NormalProjectionDepthOf, HandlesRaysAlongAndAcrossTheAxis) {
 }
 
 TEST(NormalProjectionDepth, OnlyPositiveExitsCount) {
-  // The thesis uses the minimal positive value (F.1). A ray that points outwards from a point exactly on a surface has
-  // already passed this surface. It meets the next surface of (F.7), (F.9), (F.12) beyond the body instead, or no
-  // surface.
+  // Equation (F.1) of the thesis takes the smallest positive distance at which the ray meets one of the infinite
+  // surfaces of (F.7), (F.9) and (F.12). A ray that points outwards from a point exactly on a surface has already
+  // passed this surface. The ray meets another of these surfaces beyond the body, or no surface.
   const Cylinder tool{4 * kUnit, 16 * kUnit, Tip::flat};
   EXPECT_EQ(depth_at(tool, kOrigin, {4 * kUnit, 0, 8 * kUnit}, {-1, 0, 0}), 0.0) << "side, straight out: none left";
   EXPECT_EQ(depth_at(tool, kOrigin, {kUnit, 0, 0}, {0, 0, 1}), 0.0) << "tip, straight out: none left";
-  // A ray from the tip plane downwards with slope 3 : 4 meets the infinite side wall after 5 units, 3 units sideways.
+  // A ray from the tip plane moves 3 units sideways for 4 units downwards. It meets the side wall, continued beyond the
+  // tip, after 5 units.
   EXPECT_NEAR(depth_at(tool, kOrigin, {kUnit, 0, 0}, {-0.6, 0, 0.8}), 5 * kUnit, 4e-16 * kUnit * 16);
 }
 
 TEST(NormalProjectionDepth, IsNeverLongerThanTheTool) {
-  // Rays from points in the tip plane almost along the axis meet the infinite side wall at the distance r / sin(angle).
+  // Rays at the angle `angle` to the axis meet the side wall, continued beyond the tool, at a distance proportional to
+  // 1 / sin(angle). This distance exceeds the length of the tool if the angle is small.
   for (const Tip tip : {Tip::flat, Tip::round}) {
     const Cylinder tool{4 * kUnit, 16 * kUnit, tip};
     const double longest = tool.length() + 3.0 * tool.radius();  // longer than the longest path through the body
@@ -230,10 +233,10 @@ TEST(NormalProjectionDepth, OfAZeroNormalIsZero) {
   EXPECT_EQ(depth_at(Cylinder{}, kOrigin, {0, 0, 0.001}, Vec3::Zero()), 0.0);
 }
 
-/// Rounding error of coordinates up to 1 m in a few operations [m].
+/// Rounding error of a few operations on coordinates of up to 1 m [m].
 constexpr double kRounding = 4e-15;
 
-/// Depths of a colliding point in one step [m].
+/// Depths [m] of a colliding point in one step, by three depth models.
 struct Depths {
   double continuous = 0.0;
   double shortest = 0.0;
@@ -253,7 +256,7 @@ class Stroke {
     model_->reset();
   }
 
-  /// Moves the tool to the pose and returns the depths of the colliding points by index.
+  /// Moves the tool to the pose and returns the depths of the colliding points. The key is the index of the point.
   std::map<std::uint32_t, Depths> to(const ToolPose& pose) {
     query_->contacts_at(pose, contacts_);
     std::map<std::uint32_t, Depths> depths;
@@ -333,13 +336,13 @@ TEST(ContinuousNormalProjectionDepth, FollowsItsFormulaFromStepToStep) {
       before = pose;
     }
   }
-  // Check that all cases of the formula have occurred.
+  // Check that the walks reached both limits of `expected` and values between the limits.
   for (const std::size_t count : {at_the_smallest, at_the_largest, between}) EXPECT_GT(count, test::cases(300));
 }
 
 TEST(ContinuousNormalProjectionDepth, AFlatTipPressedInIsAsDeepAsItsTip) {
-  // Press the tip in by up to twice the radius. The shortest distance does not exceed the radius. Each step rounds
-  // lengths below 2 mm.
+  // Press the tip in by up to twice the radius, where the shortest distance is at most the radius. The tolerance covers
+  // the rounding of 1000 steps with lengths below 2 mm.
   Stroke stroke(surface_points(Plane{0.002, 0.0001}));
   for (int step = 0; step <= 1000; ++step) {
     const double depth = 1e-6 * step;

@@ -27,8 +27,8 @@ namespace {
 
 using test::cases;
 
-// Tests every registered algorithm in every analytic scene. An entry in the registry adds an algorithm, and an entry in
-// setting.cpp adds a scene.
+// Tests every registered algorithm in every analytic scene. These tests include a new algorithm once it is in the
+// registry, and a new scene once it is in setting.cpp.
 
 struct AlgorithmOnScene {
   std::string_view algorithm;
@@ -72,7 +72,7 @@ class AlgorithmOnSceneTest : public testing::TestWithParam<AlgorithmOnScene> {
 
 /// Largest relative change of any law's force through rounding, if the same contacts are given in another order or
 /// frame. Coordinates and normals change by a few 1e-16 of their size, which is 1e-12 of a depth of 0.1 mm.
-/// exact_shaping has the worst condition number: it computes each weight to 2e-16 divided by its epsilon of 1e-6.
+/// exact_shaping amplifies rounding most: the error of its weights is 2e-16 divided by its epsilon of 1e-6.
 constexpr double kAnyLawsRounding = 1e-9;
 
 /// Instantiates a suite derived from AlgorithmOnSceneTest. Its tests have names such as `summation_on_single_spring`.
@@ -118,8 +118,8 @@ TEST_P(ExactAnswer, IsTheForceOfTheLaw) {
   const test::Answer answer = scene().answer();
   const Vec3 expected = config.stiffness * answer.spring_over_K.at(GetParam().algorithm) * answer.direction;
   const Vec3 force = test::Probe(setting, config).force_at(setting.pose).spring;
-  // The laws compute sums of, and solve equations with, a few numbers of the size of the depths. exact_shaping solves
-  // its equations to 1e-14.
+  // The laws add a few numbers of the size of the depths, or solve equations with a few such coefficients.
+  // exact_shaping solves its equations up to an error of 1e-14.
   EXPECT_LE((force - expected).norm(), 1e-13 * magnitude)
       << force.transpose() << " instead of " << expected.transpose();
 }
@@ -144,7 +144,7 @@ TEST_P(Answer, StiffnessTensorIsSymmetricAndPositiveSemidefinite) {
   const Mat3 S = test::Probe(setting, config).force_at(setting.pose).S;
   ASSERT_TRUE(S.allFinite());
   EXPECT_EQ(S, S.transpose());
-  // Sums of c u u^T with c >= 0 are positive semidefinite up to rounding.
+  // S is a sum of terms c u u^T with c >= 0. Up to rounding, such a sum is positive semidefinite.
   EXPECT_LE(lambda_max(-S), 1e-14 * (1.0 + S.norm()));
 }
 
@@ -154,7 +154,8 @@ TEST_P(Answer, DampingAndFrictionNeverDriveTheTool) {
   config.mu_f = 10.0;
   test::Probe probe(setting, config);
   const RenderedForce at_rest = probe.force_at(setting.pose);
-  // Friction acts on v - S v and dissipates energy if S <= 1, which laws that sum springs do not guarantee.
+  // Friction is proportional to v - S v. It dissipates energy if no eigenvalue of S exceeds 1. Laws that add the forces
+  // of all springs may exceed 1, so friction is switched off.
   if (lambda_max(at_rest.S) > 1.0 + 1e-12) config.mu_s = config.mu_f = 0.0;
   test::Probe braked(setting, config);
   for (int i = 0; i < 20; ++i) {
@@ -186,16 +187,16 @@ TEST_P(Answer, ATurnIsFeltWithAngularDampingOnly) {
   EXPECT_EQ(test::Probe(setting, config).force_at(setting.pose, velocity).rendered, without);
   test::Probe probe(setting, config);
   const Vec3 with = probe.force_at(setting.pose, velocity, turn).rendered;
-  // Springs are attached to the tip, which does not move when the tool rotates. tandpasta may give every contact weight
-  // zero.
+  // The rotation does not change the force in two cases: springs of a SpringSet are attached to the tip, which does not
+  // move, and tandpasta may give every contact the weight zero.
   const auto& c = probe.contacts().weight;
   const bool feels_nothing =
       setting.springs || std::all_of(c.begin(), c.end(), [](double weight) { return weight == 0; });
   EXPECT_EQ(with == without, feels_nothing);
 }
 
-/// Checks a single contact away from the tip. A rotating tool must get the same force as a tool that does not rotate
-/// and moves with the velocity that the rotating tool has at the contact.
+/// Checks the force of a single contact at the position `arm` relative to the tip centre. A rotating tool must get the
+/// same force as a tool that does not rotate and moves with the velocity that the rotating tool has at the contact.
 TEST(AngularDamping, InOneContactATurnIsTheVelocityOfTheToolThere) {
   const Vec3 arm(0.0003, 0.0002, 0.004), turn(0.5, -1.0, 2.0), velocity(0.02, -0.03, 0.01);
   test::Setting setting;
@@ -225,8 +226,8 @@ class Invariance : public AlgorithmOnSceneTest {
     config.mu_f = 10.0;
   }
   double rounding() const { return kAnyLawsRounding * magnitude; }
-  /// Returns the rounding error of a rendered force. B S v and friction are added to the springs, and S is as accurate
-  /// as an individual weight.
+  /// Returns the rounding error of a rendered force: the error of the spring force plus the error of the damping B S v
+  /// and of the friction. S has the relative error of a single weight.
   double rounding_in_motion(const RenderedForce& force) const {
     return 4 * rounding() + kAnyLawsRounding * (force.rendered - force.spring).norm();
   }
@@ -251,8 +252,8 @@ class RigidMotion : public Invariance {
   }
 };
 /// Excludes scenes in which a point lies exactly on the tool's surface, and merged_shaping, which has preferred
-/// directions and its own test. Also excludes a proxy whose peg is too wide for the hole of a planar scene, because
-/// rounding decides to which side the proxy slips out of the plane.
+/// directions and its own test. Also excludes the proxy in the planar scenes whose peg is too wide for the hole,
+/// because rounding decides to which side the proxy slips out of the plane.
 HAPBENCH_FOR_EVERY_ALGORITHM(RigidMotion, [](const AlgorithmOnScene& instance) {
   const bool slips = instance.algorithm == "proxy" && instance.scene->name.starts_with("tilted_peg");
   return !instance.scene->touches && !slips && instance.algorithm != "merged_shaping";
@@ -350,7 +351,8 @@ TEST_P(Run, StaysFinite) {
     ASSERT_TRUE(row.force.rendered.allFinite());
     ASSERT_TRUE(row.force.S.allFinite());
     ASSERT_TRUE(std::isfinite(row.ratio.min) && std::isfinite(row.ratio.max));
-    // No law adds contacts. The proxy is an exception: points that the tool does not touch may hold the proxy.
+    // No law renders more contacts than the colliding points. The proxy is an exception: points that the tool does not
+    // touch may hold the proxy.
     if (GetParam().algorithm != "proxy") {
       ASSERT_LE(recorder.rendered[row.step], row.colliding);
     }
@@ -394,7 +396,7 @@ TEST_P(Run, WithEveryStageIsTheSameToTheBitAfterReset) {
 
 constexpr double kSpacing = 0.0001;
 
-/// Returns a drill with 32 sides, a sphere, a box and a concave cup, each 1 mm wide.
+/// Returns a drill with 32 sides, a sphere, a box and a concave cup. The largest width of each is 1 mm.
 const std::vector<std::shared_ptr<const MeshTool>>& tools() {
   static const auto all = [] {
     std::vector<std::shared_ptr<const MeshTool>> made;
@@ -436,8 +438,9 @@ TEST_P(MeshToolInEveryAlgorithm, IsPushedOutOfAPlaneWithoutAllocating) {
         ASSERT_TRUE(force.spring.allFinite());
       }
       EXPECT_EQ(allocations.value(), 0u);
-      // The tools lean by 3 degrees and edges are near, so some springs push sideways, but their sum points up. For a
-      // point half-way through the bottom of the cup, which is 75 um deep, the shortest exit would lead into the cup.
+      // The tools lean by 3 degrees and edges are near, so some springs push sideways, but their sum points up. The
+      // depths stay below 75 um, half the thickness of the bottom of the cup: from deeper points, the shortest exit
+      // would lead into the cup.
       EXPECT_GT(force.spring.z(), 0.0) << model.info->name;
     }
   }
@@ -459,7 +462,7 @@ TEST(Proxy, KeepsEveryPointOutOfConvexMeshes) {
     const auto proxy = make_algorithm(config);
     proxy->prepare({source.capacity(), tool.get(), &shell});
     for (std::size_t run = 0; run < cases(20); ++run) {
-      // Lower the tool by 50 um in each step, with an axis that leans by at most half a radian.
+      // Lower the tool by 50 um in each step, with an axis that leans by at most 30 degrees.
       const Vec3 axis = (Vec3(0, 0, -1) + 0.5 * random.direction()).normalized();
       ToolPose pose{{0.0, 0.0, 0.001}, axis, random.uniform(-3.0, 3.0)};
       proxy->reset();

@@ -49,7 +49,8 @@ TEST(PenaltyRendering, SpringsBringTheirOwnDepths) {
     config.algorithm = "summation";
     config.depth_model = model.info->name;
     test::Probe probe(three_springs(), config);
-    // The force is -K (2 x + y): the pair along x counts twice, the spring along -y is 2 mm deep.
+    // With x = 1 mm and y = -2 mm, the force is K (-2 x, -y): both springs along +-x push by -K x, and the spring along
+    // -y pushes by -K y.
     const Vec3 force = probe.force_at(three_springs().pose).spring;
     EXPECT_LE((force - Vec3(-40.0, 40.0, 0.0)).norm(), 1e-13);
     EXPECT_EQ(probe.contacts().depth[1], -0.001);

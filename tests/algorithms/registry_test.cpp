@@ -18,7 +18,8 @@
 namespace hapbench::registry_test {
 namespace {
 
-/// Checks that each algorithm is found by its name, so that no two algorithms have the same name.
+/// Checks that each algorithm is found by its name, which implies that no two algorithms have the same name. Also
+/// checks that each algorithm can be built and that its fixed depth model exists.
 TEST(Registry, EveryListedNameIsFoundAndBuilds) {
   for (const AlgorithmEntry& entry : algorithms()) {
     EXPECT_EQ(find_algorithm(entry.info->name), &entry);
@@ -106,7 +107,8 @@ WedgeStiffness of_plane(double, double) {
   return {1.0, 1.0};
 }
 
-/// Closed forms for the algorithms' defaults in a wedge with n equally deep points on each face.
+/// Closed form of each algorithm's stiffness, with the algorithm's default parameters, in a wedge with n equally deep
+/// points on each face.
 const std::map<std::string, WedgeStiffness (*)(double w, double n)> kWedges = {
     {"original_averaging", of_averaged_direction},
     {"summation", of_weight},
@@ -135,9 +137,9 @@ TEST(Registry, EveryWedgeHasTheTensorOfItsClosedForm) {
         setting.springs->gradients.resize(2 * points, Vec3(-std::cos(w), -std::sin(w), 0.0));
         const Mat3 S = test::Probe(setting, config).force_at({{0.0, -1e-3, 0.0}, -Vec3::UnitY()}).S;
         const WedgeStiffness expected = wedge(w, static_cast<double>(points));
-        // The error of the weights is an error of their equations divided by the smallest eigenvalue of these
-        // equations, sin^2 2w. The error of the equations is the regularisation (1e-6) for exact_shaping and
-        // merged_shaping, and rounding for other laws.
+        // The weights solve linear equations with the smallest eigenvalue sin^2 2w. The error of the weights is the
+        // error of the equations divided by this eigenvalue. The error of the equations is the regularisation (1e-6)
+        // for exact_shaping and merged_shaping, and rounding for the other laws.
         const bool exact = config.algorithm == "exact_shaping" || config.algorithm == "merged_shaping";
         const double tolerance = (exact ? 2.0 * kExactShapingEpsilon : 1e-12) / std::pow(std::sin(2.0 * w), 2);
         EXPECT_LE((S - Mat3(Vec3(expected.across, expected.along, 0.0).asDiagonal())).norm(), tolerance)

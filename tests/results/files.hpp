@@ -46,7 +46,7 @@ std::vector<std::string> cells_of(const std::string& line);
 /// Returns the number in a cell. Fails the test if the cell is not exactly one number.
 double number_in(const std::string& cell);
 
-/// While an object exists, no file of this process may grow beyond `bytes`: writing fails as on a full disk.
+/// While a FileSizeLimit exists, no file of this process can grow beyond `bytes`: writing fails as on a full disk.
 class FileSizeLimit {
  public:
   explicit FileSizeLimit(unsigned long bytes);
@@ -59,8 +59,8 @@ class FileSizeLimit {
   void (*handler_before_)(int);
 };
 
-/// While an object exists, an environment variable of this process and of programs that it starts has the value
-/// `value`. If `value` is empty, the variable is unset. The destructor restores the previous value.
+/// While an EnvironmentVariable exists, the environment variable `name` of this process and of programs that it starts
+/// has the value `value`, or is unset if `value` is std::nullopt. The destructor restores the previous value.
 class EnvironmentVariable {
  public:
   EnvironmentVariable(std::string name, const std::optional<std::string>& value);

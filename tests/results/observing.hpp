@@ -20,8 +20,8 @@ inline StepRecord row(std::uint64_t step, double time, const ContactBuffer& cont
   return r;
 }
 
-/// Returns padded contacts with these gradients, shell indices 10, 11, …, depth 1 mm and weight 1, all at (0.5, 0.25,
-/// 0).
+/// Returns padded contacts with these gradients. Their shell indices are 10, 11, …, their depths 1 mm, their weights 1,
+/// and their positions (0.5, 0.25, 0) m.
 inline ContactBuffer contacts_along(const std::vector<Vec3>& gradients) {
   ContactBuffer contacts(gradients.size());
   for (std::size_t i = 0; i < gradients.size(); ++i) {
@@ -38,7 +38,7 @@ inline ContactBuffer contacts_along(const std::vector<Vec3>& gradients) {
 
 namespace hapbench {
 
-/// Returns the metrics of an observer. Their names have no section.
+/// Returns the metrics of an observer. Their names have no section prefix.
 inline MetricList reported(const MetricObserver& observer) {
   MetricList list;
   Section section(list, "");
@@ -46,7 +46,7 @@ inline MetricList reported(const MetricObserver& observer) {
   return list;
 }
 
-/// Returns the value of a metric; empty if the metric has no value.
+/// Returns the value of the observer's metric with this name; empty if the metric has no value.
 inline std::optional<double> reported(const MetricObserver& observer, std::string_view name) {
   return number_of(reported(observer), name);
 }

@@ -11,8 +11,8 @@
 /// Devices that replace the device of a scene: built-in devices, presets, and devices from files.
 namespace hapbench {
 
-/// Returns a note for the user on a delay given in samples: its duration depends on the scene's time step. Empty for
-/// devices without a delay in samples.
+/// Returns a note for the user if the device has a delay given in samples: the duration of this delay depends on the
+/// scene's time step. Returns an empty text for all other devices.
 std::string delay_note(const Scenario& scenario);
 
 /// A device that replaces the scene's device.
@@ -40,7 +40,7 @@ std::vector<ComparedDevice> with_unpublished_numbers(const ComparedDevice& devic
 
 /// Returns the overrides that replace the scene's device, followed by the given overrides. If the device has no place
 /// for the hand's mass (!has_place_for_mass), also replaces the hand by the same hand without a mass: the virtual mass
-/// of the scene represents the hand's mass. Overrides of the hand's mass are then dropped.
+/// of the scene represents the hand's mass. In this case, overrides of the hand's mass are dropped.
 std::vector<std::string> overrides_on(const ComparedDevice& device, const ScenarioText& scene,
                                       const std::vector<std::string>& overrides);
 

@@ -25,14 +25,16 @@ class TransitionSearch {
   TransitionSearch(const IntervalSearchOptions& options, EvaluatedParameters& evaluated, const IsStable& stable)
       : options_(options), evaluated_(evaluated), stable_(stable) {}
 
-  /// Returns the first transition, without evaluating samples beside it. Sets only `stable` and `beyond` of the result.
+  /// Returns the first stable-to-unstable transition, without evaluating samples beside the transition. Sets only
+  /// `stable` and `beyond` of the result.
   StableInterval first() {
     start();
     const std::optional<Transition> transition = next_transition();
     return transition ? bisected_transition(*transition) : StableInterval{};
   }
 
-  /// Returns the first transition that is confirmed by samples on both sides of it, and the other end of its interval.
+  /// Returns the first stable-to-unstable transition that samples on both sides confirm, and the other end of the
+  /// stable interval below the transition.
   StableInterval confirmed() {
     // Maximum number of bisected transitions. The samples beside a transition may reveal an earlier transition.
     constexpr int kMaxRounds = 6;
@@ -219,7 +221,7 @@ StableInterval find_verified_interval(const IntervalSearchOptions& options, Eval
     if (!failing) return interval;
     if (*failing > first) continue;
     // The unstable sample lies below the interval: the interval is shorter than kNearLimit times the limit. Search
-    // above the interval, except if the interval contains the current value.
+    // above the interval. If the interval contains the current value, stop instead.
     scattered = true;
     const std::optional<double> current = options.current_parameter();
     if (current && first <= *current && *current <= *interval.stable) return {.scattered = true};

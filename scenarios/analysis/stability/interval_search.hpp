@@ -33,8 +33,8 @@ struct IntervalSearchOptions {
   double value_at(double t) const;
   /// Returns the parameter of the current value; empty if `current` is empty.
   std::optional<double> current_parameter() const;
-  /// Returns true if the values at two parameters differ by more than the resolution. If `whole` is
-  /// true, returns true if they differ by more than 1.
+  /// If `whole` is true, returns true if the values at two parameters differ by more than 1. Otherwise returns true if
+  /// they differ by more than the resolution.
   bool needs_bisection(double a, double b) const;
 };
 
@@ -42,11 +42,11 @@ struct IntervalSearchOptions {
 struct StableInterval {
   std::optional<double> stable = {};  ///< largest stable parameter of the interval; empty if no interval was found
   std::optional<double> beyond = {};  ///< unstable parameter just above `stable`; empty if t = 1 is stable
-  std::optional<double> first = {};   ///< smallest stable parameter of the interval; empty if the other end was not
-                                      ///< searched
+  /// Smallest stable parameter of the interval; empty if this end was not searched.
+  std::optional<double> first = {};
   std::optional<double> before = {};  ///< unstable parameter just below `first`; empty if t = 0 is stable
-  bool scattered = false;  ///< true if stable parameters exist, but no contiguous stable interval is as long as
-                           ///< kNearLimit times the limit
+  /// True if stable parameters exist, but no contiguous stable interval is as long as kNearLimit times the limit.
+  bool scattered = false;
 };
 
 /// Evaluated parameters. The value of an entry is true if the parameter is stable.
@@ -61,9 +61,9 @@ EvaluatedParameters evaluate_scan(int intervals, const IsStable& stable);
 /// current value is unstable. Returns an empty interval if no parameter is stable. On input `evaluated` has at least
 /// both ends of the range; the search adds all parameters that it evaluates.
 ///
-/// Without `beside`, only `stable` and `beyond` are found. With `beside`, also evaluates three parameters on each
-/// side of the transition. If they show an earlier transition, bisects the earlier transition instead, up to five
-/// times. Finally bisects the other end of the interval.
+/// If `beside` is false, finds only `stable` and `beyond`. If `beside` is true, also evaluates three parameters on each
+/// side of the transition. If these parameters show an earlier transition, bisects the earlier transition instead, up
+/// to five times. Finally bisects the other end of the interval.
 StableInterval find_stable_interval(const IntervalSearchOptions& options, EvaluatedParameters& evaluated,
                                     const IsStable& stable, bool beside);
 
@@ -82,11 +82,12 @@ double may_fail_share(std::size_t samples);
 /// interval evenly for every n.
 std::vector<double> parameters_between(double from, double to, std::size_t count);
 
-/// Returns kSamplesNearLimit parameters below `t`. Their values are within kNearLimit of the value at `t`.
+/// Returns kSamplesNearLimit parameters below `t`. Their values differ from the value v at `t` by at most kNearLimit
+/// |v|; in a linear range, by at most the larger of kNearLimit |v| and kNearLimit * resolution * (to - from).
 std::vector<double> parameters_below(const IntervalSearchOptions& options, double t);
 
 /// Finds an interval as find_stable_interval does with `beside`, and verifies it: by kVerificationSamples samples
-/// between its ends and, with `near`, by kSamplesNearLimit samples just below the limit. If a sample is unstable,
+/// between its ends and, if `near` is true, by kSamplesNearLimit samples just below the limit. If a sample is unstable,
 /// searches again with this sample as an unstable parameter. Calls `ahead` with parameters before it evaluates them, so
 /// that the caller can evaluate them in parallel.
 StableInterval find_verified_interval(const IntervalSearchOptions& options, EvaluatedParameters& evaluated,

@@ -25,7 +25,8 @@ using IsTrueOf = std::function<bool(const Scenario&)>;
 // bisection continues down to rounding.
 constexpr int kTheoryIntervals = 256;
 constexpr double kTheoryResolution = 1e-12;
-constexpr double kContactResolution = 1e-9;  // relative; the derivatives of a rendered force are accurate to 1e-7
+// Relative resolution for contact_limit(): finer than the relative error of the derivatives of a rendered force, 1e-7.
+constexpr double kContactResolution = 1e-9;
 
 /// Returns true if the springs are in permanent contact with the tool, and the loop of tool, hand and device is linear.
 bool has_eigenvalues(const Scenario& scenario) {
@@ -37,8 +38,8 @@ bool has_eigenvalues(const Scenario& scenario) {
 /// Returns true if, for each principal stiffness of the springs, all eigenvalues of the linear map of one time step lie
 /// inside the unit circle.
 bool step_is_stable(const Scenario& scenario) {
-  constexpr double kNoWall = 1e-12;  // smallest stiffness in units of K; below it, a direction has no springs, and
-                                     // the handle moves freely along it
+  // A direction with a stiffness below kNoWall, in units of K, has no springs: the handle moves freely along it.
+  constexpr double kNoWall = 1e-12;
   const Vec3 lambdas = stiffness_eigenvalues(scenario);
   return std::all_of(lambdas.begin(), lambdas.end(), [&](double lambda) {
     if (!has_device(scenario) && is_without_hand(scenario)) return tool_on_spring(scenario, lambda).is_stable();

@@ -34,24 +34,25 @@ TheoreticalLimit frictionless_limit(const LimitQuestion& question);
 /// without hand and device.
 TheoreticalLimit inequality_limit(const LimitQuestion& question);
 
-/// Returns the limit by the eigenvalues of the loop of hand, device and a permanent contact. At each value of the
-/// field, the contact has the derivatives of the rendered force at the equilibrium of the tool (linear_contact). `near`
-/// is the state of a run at the field's value `stable`; the search for the equilibrium starts from `near`, and the
-/// search for the limit starts at `stable`. Returns infinity if the whole range above `stable` is stable, zero if no
-/// value is stable. Returns nothing if the tool has no equilibrium in contact at `stable`, or if has_linear_loop() is
-/// false.
+/// Returns the limit of the question's field by the eigenvalues of the loop of hand, device and a permanent contact. At
+/// each value of the field, the contact has the derivatives of the rendered force at the equilibrium of the tool
+/// (linear_contact). `near` is the state of a run in which the field has the value `stable`; the search for the
+/// equilibrium starts from `near`, and the search for the limit starts at `stable`. Returns infinity if the loop is
+/// stable at all values of the range above `stable`, zero if it is stable at no value. Returns nothing if the tool has
+/// no equilibrium in contact at `stable`, or if has_linear_loop() is false.
 std::optional<double> contact_limit(const LimitQuestion& question, double stable, const ContactState& near);
 
-/// Limits of the stiffness K [N/m] on a two-sided wall that holds the handle of an impedance device.
+/// Limits of the stiffness K [N/m] for an impedance device at a two-sided wall, that is, with springs in permanent
+/// contact (has_permanent_springs).
 struct WallLimits {
   /// Limits by the closed forms of stiffness_limits(), in their order; an entry is empty if its form does not apply.
-  /// The list is empty if the question does not vary K on a two-sided wall with an impedance device.
+  /// The list is empty if wall_limits() does not apply.
   std::vector<std::optional<double>> closed_forms = {};
   std::optional<double> worst_hand = {};  ///< smallest limit over the hands of typical_hands()
   std::string no_theory = {};             ///< why the eigenvalues of the loop give no limit; empty if they give a limit
 };
-/// Returns the limits of K if the question varies K on a two-sided wall with an impedance device; otherwise empty
-/// limits.
+/// Returns the limits of K. Applies if the question asks for the largest stable K of an impedance device at a two-sided
+/// wall and the damping does not depend on K. Otherwise returns empty limits.
 WallLimits wall_limits(const LimitQuestion& question);
 
 }  // namespace hapbench

@@ -6,10 +6,11 @@
 namespace hapbench {
 namespace {
 
-// Ratios of the amplitudes of two quarters of the run. kGrowth: a motion grows if the ratio of each quarter to the
-// quarter before is larger. kLeft: a motion has decayed if the ratio of the last to the first quarter is smaller.
-// kSustained: a motion is decaying if the ratios of both the third and the last quarter to the quarter before are
-// smaller. kRest: the tool is at rest if the ratio of its speed to the largest speed of the run is at most kRest.
+// The amplitude of a quarter of the run is the largest speed in this quarter. kGrowth: a motion grows if the amplitude
+// of each quarter is more than kGrowth times the amplitude of the quarter before. kLeft: a motion has decayed if the
+// amplitude of the last quarter is less than kLeft times the amplitude of the first quarter. kSustained: a motion is
+// decaying if the amplitudes of the third and of the last quarter are each less than kSustained times the amplitude of
+// the quarter before. kRest: the tool is at rest if its speed is at most kRest times the largest speed of the run.
 constexpr double kGrowth = 1.01, kLeft = 0.01, kSustained = 0.9, kRest = 1e-12;
 constexpr double kFelt = 1e-3;  // smallest speed that a hand can feel [m/s]
 

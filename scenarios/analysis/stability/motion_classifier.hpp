@@ -28,7 +28,7 @@ class MotionClassifier final : public Observer {
   explicit MotionClassifier(std::uint64_t steps) : steps_(steps) {}
   /// Returns a classifier for a tool that a script moves. Such a tool need not come to rest. `time_step` [s].
   ///
-  /// Classifies the part of the velocity above 30 Hz (the whole velocity if steps are longer than 1/60 s). The run is
+  /// Classifies the part of the velocity above 30 Hz (the whole velocity if a step is 1/60 s or longer). The run is
   /// stable if this part stays below 1 mm/s in the last quarter, which is about the smallest speed that a hand feels.
   /// If the script ends at step `still` in the first half of the run, also classifies the unfiltered velocity over
   /// quarters of the remaining steps.
@@ -36,13 +36,14 @@ class MotionClassifier final : public Observer {
 
   void on_step(const StepRecord& record) noexcept override;
 
-  /// Returns true if the speed was below 1e-12 of its largest value for the last 200 steps. The remaining motion is
-  /// rounding, and the run may be stopped.
+  /// Returns true if the speed was at most 1e-12 of its largest value for the last 200 steps. The remaining motion is
+  /// rounding, and the run may be stopped. Always false for a tool that a script moves.
   bool at_rest() const noexcept { return !is_moved_ && rows_at_rest_ >= kRowsAtRest; }
   /// Called after a complete run. Returns true if the run is too short to judge: the amplitude of the last quarter is
-  /// at least 1 % of the amplitude of the first quarter, but the last quarter does not oscillate.
+  /// at least 1 % of the amplitude of the first quarter, but the last quarter does not oscillate. Always false for a
+  /// tool that a script moves.
   bool is_undecided() const noexcept;
-  /// Called after the run. Returns the class of its motion. Precondition: the run is complete, diverged, or at_rest().
+  /// Called after the run. Returns the class of the motion. Precondition: the run is complete, diverged, or at_rest().
   MotionClass motion_class(Ending ending) const noexcept;
 
  private:
@@ -59,8 +60,8 @@ class MotionClassifier final : public Observer {
     Vec3 last_velocity = Vec3::Zero();  ///< last nonzero value of each component [m/s]
 
     void add(std::uint64_t quarter, const Vec3& velocity) noexcept;
-    /// Returns the class of motion in the interval. It is stable if the speed stays below `felt` [m/s] in the last
-    /// quarter.
+    /// Returns the class of the motion in the interval. The class is `stable` if the speed stays below `felt` [m/s] in
+    /// the last quarter.
     MotionClass motion_class(double felt) const noexcept;
     /// Returns true if the amplitude grows by more than 1 % from each quarter to the next.
     bool grows() const noexcept;

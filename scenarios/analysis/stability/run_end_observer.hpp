@@ -27,8 +27,9 @@ struct SettledState {
   std::optional<ContactState> last_contact;  ///< state at the last step in contact; empty without contact
   double share_away = 1.0;                   ///< share of the steps in which the tool is not in contact
   bool contacts_change = false;  ///< true if the set of touching points differs between two consecutive steps
-  bool directions_change =
-      false;             ///< true if S differs from the first S of the quarter by more than 1 %: the stiff axes turn
+  /// True if the stiffness tensor S of a step in contact differs by more than 1 % from S in the quarter's first step in
+  /// contact: the stiff directions turn.
+  bool directions_change = false;
   bool rests = false;    ///< true if the run was stopped because the tool came to rest
   bool is_held = false;  ///< true if dry friction of device or surface acts on the tool that rests
 };
@@ -39,8 +40,8 @@ struct SettledState {
 bool contact_lasts(const SettledState& settled, const Scenario& scenario);
 
 /// Records the end position of the tool, whether the tool was in contact, and the vibration and bounces over the
-/// judged steps (EvaluationWindow). Accumulates contacts and stiffness tensors over the current quarter of the run.
-/// At the end this is the last quarter, or the quarter in which the tool came to rest.
+/// judged steps (EvaluationWindow). Accumulates contacts and stiffness tensors over the current quarter of the run. At
+/// the end of the run, the current quarter is the last quarter, or the quarter in which the tool came to rest.
 class RunEndObserver final : public Observer {
  public:
   /// `alone`: true if there is no environment; then all steps after the first quarter are judged.
@@ -70,7 +71,8 @@ class RunEndObserver final : public Observer {
   EvaluationWindow judged_;
   Vibration vibration_;
   SlowBounces bounces_;
-  std::uint64_t quarter_ = 0;  ///< current quarter of the run, from 0; the members below are over this quarter
+  std::uint64_t quarter_ = 0;  ///< number of the current quarter of the run, from 0
+  // Counts and sums over the current quarter, up to directions_change_.
   std::uint64_t steps_in_quarter_ = 0, steps_in_contact_ = 0, contacts_ = 0;
   Mat3 S_sum_ = Mat3::Zero();
   Mat3 S_first_ = Mat3::Zero();               ///< S of the first step in contact

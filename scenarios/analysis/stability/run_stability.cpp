@@ -49,7 +49,7 @@ std::optional<RunVerdict> verdict_of(Outcome outcome) {
   return static_cast<RunVerdict>(found - texts.begin());
 }
 
-/// Returns true for the verdicts on a tool that does not follow its hand.
+/// Returns true for the two verdicts on a tool that does not follow the hand that drags it.
 bool is_left_behind(RunVerdict verdict) {
   return verdict == RunVerdict::stuck || verdict == RunVerdict::not_dragged;
 }
@@ -69,7 +69,8 @@ RunStability judged_once(const Scenario& scenario, const NamedFiles& files,
   const MotionClass motion = classify(simulation, classifier);
   const SettledState settled = run_end.state(classifier.at_rest());
   const Outcome outcome = outcome_seen->outcome(simulation.result().ending);
-  // Decide in this order: divergence, outcome, bounces, vibration or motion.
+  // Decide in this order: divergence, outcome, slow bounces. Then decide by the vibration if the rule limits it,
+  // otherwise by the class of the motion.
   const auto verdict = [&] {
     if (motion == MotionClass::diverged) return RunVerdict::diverged;
     if (outcome == Outcome::went_through) return RunVerdict::went_through;
@@ -101,8 +102,8 @@ RunStability stability_of(const CheckedScenario& checked, std::shared_ptr<const 
     longer.time.steps *= kExtensionFactor;
     const std::uint64_t motion_hash = run.motion_hash;
     run = judged_once(longer, checked.files(), shell, rule);
-    run.motion_hash = motion_hash;  // keep the hash of the unextended run, which can be compared with the hashes of
-                                    // other runs
+    // Keep the hash of the unextended run, which can be compared with the hashes of other runs.
+    run.motion_hash = motion_hash;
   }
   // Check the bounds on metrics in a complete run.
   if (!is_stable(run.verdict) || rule.bounds.empty()) return run;

@@ -18,17 +18,17 @@ std::span<const RunVerdictText> run_verdict_texts() noexcept {
   static const RunVerdictText kTexts[] = {
       {"stable", "at rest, decayed to rest, or creeping slowly",
        "none of the other classes: at rest, decayed to rest, or creeping slowly"},
-      {"decaying", "decaying: still oscillates at the end, but comes to rest if the run goes on",
-       "decaying: oscillates like \"vibrating\", but the amplitude falls by at least a tenth from the second quarter "
-       "to the third and again to the last"},
+      {"decaying", "still oscillates at the end, but comes to rest if the run goes on",
+       "oscillates like \"vibrating\", but the amplitude falls by more than a tenth from the second quarter to the "
+       "third, and again from the third to the last"},
       {"vibrating", "oscillates without decay",
        "oscillates without decay: the amplitude in the last quarter is at least 1 % of the amplitude in the first "
        "quarter"},
       {"diverged", "left its bounds, or oscillates with growing amplitude",
-       "left its bounds, or oscillates with an amplitude that grows by at least 1 % from each quarter to the next"},
+       "left its bounds, or oscillates with an amplitude that grows by more than 1 % from each quarter to the next"},
       {"thrown_out",
-       "the tool left the hole, or ended without contact further outside the environment's bounding box than its own "
-       "extent"},
+       "the tool left the hole, or ended without contact, further outside the environment's bounding box than the "
+       "tool's extent"},
       {"no_contact", "the tool never touched the environment"},
       of_outcome(Outcome::lost_contact),
       of_outcome(Outcome::went_through),

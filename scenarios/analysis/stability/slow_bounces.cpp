@@ -42,8 +42,8 @@ void SlowBounces::land(std::uint64_t step, const EvaluationWindow& judged) noexc
 
 bool SlowBounces::persist() const noexcept {
   constexpr int kMinBounces = 2;
-  constexpr double kLowered = 0.99;  // smallest ratio of the highest bounce of the second half to the highest bounce of
-                                     // the first half
+  // Smallest ratio of two heights: highest bounce of the second half, divided by highest bounce of the first half.
+  constexpr double kLowered = 0.99;
   return counts_[0] >= kMinBounces && counts_[1] >= kMinBounces && highest_[1] > kLowered * highest_[0];
 }
 

@@ -16,14 +16,14 @@
 namespace hapbench {
 namespace {
 
-/// Allowed relative rounding error of sums over at most kMaxContacts contacts, and of the weights of exact_shaping.
-/// These weights are sensitive to rounding because of the small weight kExactShapingEpsilon (1e-6) of the
-/// regularisation.
+/// Allowed relative rounding error of sums over at most kMaxContacts contacts, and of the contact weights of the law
+/// exact_shaping. The contact weights are sensitive to rounding because their regularisation is weak: its factor
+/// kExactShapingEpsilon is 1e-6.
 constexpr double kForceRounding = 1e-6;
 constexpr std::uint64_t kSetsPerJob = 1000;
 
-/// Returns true if |f_render| <= |f_spring| + B lambda_max(S) |v|, which holds for a damping force B S v without
-/// friction.
+/// Returns true if |f_render| <= |f_spring| + B lambda_max(S) |v|. Every rendered force of spring force and damping
+/// force B S v, without friction, satisfies this bound.
 bool damping_in_bound(const ContactSet& set, const RenderedForce& force) {
   const double B = 2.0 * set.rendering.damping_ratio * std::sqrt(set.rendering.stiffness * set.rendering.mass);
   const double bound = force.spring.norm() + B * lambda_max(force.S) * set.velocity.norm();
@@ -72,7 +72,8 @@ bool all_in_bound(const ContactSet& set, const StressedForce& stressed) {
   return damping_in_bound(set, force);
 }
 
-/// Computes the force of one set and adds it to the counts of an algorithm. `number`: index of the set.
+/// Computes the force of the algorithm `counts.algorithm` for one contact set, and adds the result to `counts`.
+/// `number`: index of the set.
 void count_set(const ContactSet& set, std::uint64_t number, const PointShell& shell, StressCounts& counts) {
   RenderingConfig config = set.rendering;
   config.algorithm = counts.algorithm;
@@ -103,7 +104,7 @@ std::vector<StressCounts> no_counts() {
   return counts;
 }
 
-/// Adds the counts of other sets. The result does not depend on the order of the additions.
+/// Adds the counts `other` of other contact sets to `all`. The result does not depend on the order of the additions.
 void add(const StressCounts& other, StressCounts& all) {
   if (other.first_bad) all.first_bad = std::min(*other.first_bad, all.first_bad.value_or(*other.first_bad));
   all.sets += other.sets;

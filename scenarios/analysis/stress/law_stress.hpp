@@ -25,9 +25,9 @@ struct StressCounts {
   std::optional<std::uint64_t> first_bad;  ///< index of the first set that is not finite or out of bound
 };
 
-/// Computes the forces of sets 0 to count - 1 of `seed` with every algorithm. Returns the counts of each algorithm, in
-/// the order of the registry. The counts do not depend on the number of threads. Takes about 2.5 us for each set and
-/// algorithm.
+/// Computes the forces for the contact sets stress_set(seed, 0) … stress_set(seed, count - 1) with every algorithm.
+/// Returns the counts of each algorithm, in the order of the registry. The counts do not depend on the number of
+/// threads. Takes about 2.5 us for each set and algorithm.
 std::vector<StressCounts> stress_laws(std::uint64_t count, std::uint64_t seed, const JobOptions& options);
 
 }  // namespace hapbench

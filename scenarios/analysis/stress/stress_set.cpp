@@ -39,8 +39,8 @@ Vec3 sign_of(Random& random, const Vec3& u) {
   return chance(random, 0.5) ? u : Vec3(-u);
 }
 
-/// Returns a point at the distance `radius` from the tool's axis and at `height` along the axis [m], in a random
-/// direction around the axis.
+/// Returns a point at the distance `radius` [m] from the tool's axis, in a random direction around the axis. `height`:
+/// distance from the tip along the axis [m]; points in the tool have a negative height.
 Vec3 at(Random& random, const ContactSet& set, double radius, double height) {
   const Vec3 e = set.pose.axis.unitOrthogonal(), d = random.direction_in_plane();
   return set.pose.position + height * set.pose.axis + radius * (d.x() * e + d.y() * set.pose.axis.cross(e));
@@ -101,8 +101,8 @@ Draw normals(Random& random, const ContactSet& set) {
 
 /// Draws the tool's size, pose and velocity.
 void draw_tool(Random& random, ContactSet& set) {
-  // The scale of lengths is the smallest for a fifth of the sets, the largest for another fifth, and log-uniform in
-  // between for the other sets.
+  // The scale of lengths is 1e-12 m for a fifth of the sets, 1e3 m for another fifth, and log-uniform between these
+  // values for the other sets.
   const double which = random.uniform();
   const double scale = which < 0.2 ? 1e-12 : which < 0.4 ? 1e3 : log_uniform(random, 1e-12, 1e3);
   set.tool = {scale * random.uniform(0.05, 1.0), scale * random.uniform(0.1, 3.0),
@@ -129,8 +129,8 @@ ContactSet stress_set(std::uint64_t seed, std::uint64_t i) {
   draw_tool(random, set);
   draw_rendering(random, set.rendering);
   const Draw position = positions(random, set), normal = normals(random, set);
-  // A fifth of the sets has one point. Other sizes are log-uniform, so that small sets, which are degenerate most
-  // often, are common.
+  // A fifth of the sets has one point. In the other sets, the number of points is log-uniform. This makes sets with few
+  // points common, which is intended: they are degenerate more often than larger sets.
   const double n = chance(random, 0.2) ? 1.0 : log_uniform(random, 1.0, static_cast<double>(kMaxContacts));
   set.points.resize(static_cast<std::size_t>(n));
   for (SurfacePoint& point : set.points) {

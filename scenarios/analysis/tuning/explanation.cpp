@@ -31,8 +31,9 @@ double printed_beyond(double value, bool up) {
   return std::stod(fmt::format("{:.3g}", value + (up ? kRounding : -kRounding) * std::abs(value)));
 }
 
-/// Relaxes one limit to the worst value of the trial with its error, times `factor` (a lower limit: divided by
-/// `factor`). For a low-vibration rule, drops all low-vibration rules. Returns false if the metric has no value.
+/// Relaxes the limit `name`, which a trial violates. A maximum becomes (worst value + error) * factor, a minimum
+/// becomes (worst value - error) / factor; worst value and error of the metric come from the trial. If `name` is a
+/// low-vibration rule, drops all low-vibration rules instead. Returns false if the metric has no value.
 bool relax(const Trials& trials, const TuneTrial& trial, const std::string& name, double factor,
            Relaxation& relaxation) {
   const auto append = [&](const std::string& text) { relaxation.text += (relaxation.text.empty() ? "" : "; ") + text; };
@@ -57,8 +58,9 @@ bool relax(const Trials& trials, const TuneTrial& trial, const std::string& name
   return true;
 }
 
-/// Relaxes all limits that a trial violates, in up to three steps, until a search finds a verified choice that keeps
-/// the relaxed limits. Returns the text of this relaxation; empty if no relaxation is confirmed.
+/// Relaxes all limits that a trial violates, by relax() with the factors 1, 1.1 and 1.5 in turn, until a search finds a
+/// verified choice that keeps the relaxed limits. Returns the text of this relaxation; empty if no factor leads to a
+/// verified choice.
 std::optional<std::string> confirmed(Trials& trials, const TuneLimits& limits, const TuneTrial& trial,
                                      const MetricValues& violated, const IsFeasible& is_feasible) {
   for (const double factor : {1.0, 1.1, 1.5}) {
@@ -107,13 +109,15 @@ bool violates_only(const Trials& trials, const TuneTrial& trial, const std::stri
   });
 }
 
-/// Returns a text with the smallest confirmed relaxation of each single limit. If none is confirmed, the text has the
-/// confirmed relaxation of all limits that the trial `nearest` violates, or states that none was found.
+/// Returns a text that names limits to relax. Some trials violate a single limit: for each such limit, the text has the
+/// relaxation that confirmed() finds for the trial with the smallest excess(). If confirmed() finds no relaxation of a
+/// single limit, the text has the relaxation of all limits that the trial `nearest` violates. If confirmed() does not
+/// find this relaxation either, the text states that no relaxation was found.
 std::string relaxations(Trials& trials, const TuneTrial& nearest, const IsFeasible& is_feasible) {
   constexpr std::size_t kMaxCompleted = 8;  // maximum number of trials that are evaluated further for each limit
   const TuneLimits limits = trials.limits();
-  // For each limit, find the nearest trial that still violates only this limit after a complete evaluation. Do so
-  // before the searches with other limits begin.
+  // For each limit, find the trial with the smallest excess() that violates only this limit after a complete
+  // evaluation. This must precede the calls of confirmed(), whose searches change the limits of `trials`.
   std::vector<std::pair<const TuneTrial*, MetricValues>> chosen;
   for (const auto& [name, found] : candidates(trials, kMaxCompleted)) {
     for (const TuneTrial* candidate : found) {
@@ -136,8 +140,10 @@ std::string relaxations(Trials& trials, const TuneTrial& nearest, const IsFeasib
 
 // ---- Trials whose motion fails
 
-/// Returns the most frequent failure among the trials whose failing variant has the highest index. In such a trial, the
-/// scene itself and the variants with lower indices are settled with the margin.
+/// Returns the failure that tune reports if relaxing limits does not help. Variants are judged in the order of their
+/// indices, and a trial keeps only the failure of its first failing variant. Among all trials, finds the highest index
+/// of a failing variant, and returns the most frequent failure with this index. All variants with lower indices are
+/// settled with the margin in these trials.
 const TuneFailure* binding_failure(const Trials& trials) {
   const auto key_of = [](const TuneFailure& f) {
     return std::tuple(f.variant_index, f.binding == "margin", f.variant, f.verdict);
@@ -202,7 +208,8 @@ void explain(Trials& trials, const IsFeasible& is_feasible, TunedLaw& law) {
     law.relax = relaxations(trials, trial, is_feasible);
     return;
   }
-  // No limit is responsible. Find the failures of all trials near the limits.
+  // Relaxing limits does not help. Evaluate all trials that violate only limits so far, so that a failure in another
+  // variant is found.
   for (const auto& [key, trial] : trials.all())
     if (trial.limits_alone) trials.evaluated(trial, Need::excess);
   if (const TuneFailure* failure = binding_failure(trials)) {

@@ -19,8 +19,9 @@
 namespace hapbench {
 namespace {
 
-/// Returns the parameters between 0 and `last` that verify an interval: kVerificationSamples parameters in a
-/// logarithmic range, every integer in a range of integers, and for delays also every quarter of a sample.
+/// Returns the parameters between 0 and `last` at which an interval is verified. Logarithmic range:
+/// kVerificationSamples parameters. Range of integers: every integer. Other ranges, whose values are delays:
+/// kVerificationSamples parameters, and every quarter of a time step.
 std::vector<double> parameters_up_to(const IntervalSearchOptions& options, double last) {
   std::vector<double> parameters;
   if (!options.whole) parameters = parameters_between(0.0, last, kVerificationSamples);
@@ -32,7 +33,8 @@ std::vector<double> parameters_up_to(const IntervalSearchOptions& options, doubl
 }
 
 /// Returns the largest value of a range up to which all variants of the trial are settled. `override_of`: returns the
-/// override that sets a value. Verifies the interval by samples; a sample that fails shortens the interval.
+/// override that sets a value. Verifies the interval at the parameters of parameters_up_to(); a parameter that fails
+/// shortens the interval.
 double last_settled(Trials& trials, const TuneTrial& trial, const IntervalSearchOptions& options,
                     const std::function<std::string(double value)>& override_of) {
   const auto holds = [&](double t) {
@@ -44,7 +46,8 @@ double last_settled(Trials& trials, const TuneTrial& trial, const IntervalSearch
     so_far = so_far && holds(t);
     return so_far;
   };
-  // Search the limit and verify the values below it. If a sample fails, search again below this sample.
+  // Search for the largest settled value, and verify the values below it. If one of these values fails, search again
+  // below the failed value.
   EvaluatedParameters evaluated = evaluate_scan(kScanIntervals, holds_so_far);
   while (true) {
     const double last = find_stable_interval(options, evaluated, holds, false).stable.value_or(0.0);
@@ -59,8 +62,8 @@ double last_settled(Trials& trials, const TuneTrial& trial, const IntervalSearch
 /// Returns the damping ratio of the mode with the eigenvalue z of the linear map of one time step. Empty if the mode is
 /// a state of a delay line, or the free motion of a tool in some direction.
 std::optional<double> damping_ratio(const std::complex<double>& z) {
-  constexpr double kDelayLine = 1e-9, kFree = 1e-5;  // largest |z| of a delay-line state; largest |z - 1| of a freely
-                                                     // moving tool, as in is_stable_loop()
+  // Largest |z| of a delay-line state; largest |z - 1| of a freely moving tool, as in is_stable_loop().
+  constexpr double kDelayLine = 1e-9, kFree = 1e-5;
   const double magnitude = math::hypot(z.real(), z.imag()), decay = -math::log(std::max(magnitude, kDelayLine));
   if (magnitude < kDelayLine || std::norm(z - 1.0) < kFree * kFree || decay == 0.0) return std::nullopt;
   return decay / math::hypot(decay, math::atan2(z.imag(), z.real()));
@@ -76,8 +79,8 @@ std::optional<double> smallest_damping_ratio(const std::vector<NamedLoop>& loops
   return smallest;
 }
 
-/// Returns the largest factor on K up to which all variants of the choice are settled; empty if the range of K ends at
-/// the required margin.
+/// Returns the largest factor on K up to which all variants of the choice are settled. Returns the required margin G if
+/// a K just above G K is known to be unstable. Otherwise, if the range of K ends at G K, returns an empty value.
 std::optional<double> gain_margin(Trials& trials, const TuneTrial& choice) {
   const double G = trials.question().margin, largest = trials.ranges().stiffness.to;
   const double largest_gain = std::min(largest, trials.smallest_unstable()) / choice.stiffness;

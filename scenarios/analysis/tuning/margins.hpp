@@ -7,7 +7,8 @@ namespace hapbench {
 
 /// Robustness margins of a choice. All scene variants are settled up to the gain margin and up to the delay margin.
 /// These margins are searched up to kMaxGainMargin and kMaxDelayMargin. A margin is empty if it does not apply, such as
-/// the delay of an ideal device. The gain margin is also empty if the range of K ends at the required margin.
+/// the delay of an ideal device. The gain margin is also empty if the range of K ends at G K, where G is the required
+/// gain margin.
 struct TuneMargins {
   std::optional<double> gain;           ///< largest factor on the stiffness K
   std::optional<double> delay_samples;  ///< largest additional delay of the device's force or servo [samples]

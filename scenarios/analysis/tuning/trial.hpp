@@ -50,8 +50,8 @@ struct TuneFailure {
 };
 
 /// The contact of a run, linearised at the equilibrium of the tool. `linear` is empty if the contact did not last until
-/// the end of the run, if no equilibrium was found, if the scene has no linear loop, or for springs in permanent
-/// contact (Trials::contact_of).
+/// the end of the run, if no equilibrium was found, or if the scene has no linear loop. It is also empty if the scene
+/// renders springs in permanent contact: Trials then uses their stiffness tensor instead (Trials::loops_in_contact).
 struct ContactOfTrial {
   std::optional<LinearContact> linear = {};
   RenderingConfig rendering = {};  ///< rendering settings with which `linear` was computed
@@ -64,8 +64,8 @@ struct TuneTrial {
   double stiffness = 0.0;  ///< K [N/m]
   /// Violated constraint; empty if the trial is feasible. "settled": not settled at K. "margin": not settled at G K.
   /// "no_force": no force is rendered. "friction": explicit integration of friction is unstable in the run. "runs": the
-  /// maximum number of runs is reached. "range": K is at the end of the range. Otherwise the name of the metric whose
-  /// limit is violated.
+  /// maximum number of runs is reached. "range": K would be above the upper end of the searched range. Otherwise the
+  /// name of the metric whose limit is violated.
   std::string binding = {};
   std::string why = {};       ///< reason of the violation, for the user
   bool too_soft = false;      ///< true if a larger K may keep the constraint
@@ -75,8 +75,8 @@ struct TuneTrial {
   /// Worst value of each limited metric over the evaluated variants, and the low-vibration numbers of the scene itself.
   MetricValues worst = {};
   std::map<std::string, std::string> worst_text = {};  ///< the values in `worst` as text for the user
-  /// Error estimates of `metrics` by the refinements that were made. Empty if the metrics, without errors, are far from
-  /// keeping the limits.
+  /// Error estimate of each metric in `metrics`: its largest change by the refinements that were made so far. Empty if
+  /// no refinement was made, for example because the metrics exceed their limits by far.
   MetricValues error = {};
 
   // How far the trial was evaluated. Trials evaluates a trial only as far as a caller needs it (Need).

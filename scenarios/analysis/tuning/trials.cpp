@@ -29,8 +29,8 @@ std::string verdict_with(const RunStability& run, const SceneVariant& variant) {
   return std::string(run_verdict_name(run.verdict)) + with(variant);
 }
 
-/// Returns the rule for a run of a variant. The variants with other hands only test the stability of the loop. A tool
-/// at rest is stable even if a softer hand cannot pull it on.
+/// Returns the rule for a run of a variant. The variants "hands" only test the stability of the loop: in these
+/// variants a tool at rest is stable, even if it rests because a softer hand is too weak to move it along.
 StabilityRule rule_for(const Scenario& scenario, const SceneVariant& variant) {
   StabilityRule rule = rule_of(scenario);
   rule.judges_progress = variant.family != "hands";
@@ -56,7 +56,8 @@ void note_worst(TuneTrial& trial, const std::string& name, const MetricBound& bo
   }
 }
 
-/// Returns far / near, at least slightly above 1; infinite if `far` or `near` is not above 0.
+/// Returns the factor > 1 by which a value is beyond a limit: far / near, or the next number above 1 if rounding gives
+/// a smaller quotient. Infinite if `far` or `near` is not above 0. Precondition: far > near.
 double ratio_beyond(double far, double near) {
   if (!(far > 0.0 && near > 0.0)) return kInfinite;
   return std::max(far / near, std::nextafter(1.0, 2.0));
@@ -218,8 +219,8 @@ std::vector<const TuneTrial*> Trials::smallest_excess(std::vector<const TuneTria
   const auto before = [](const Ranked& a, const Ranked& b) {
     return std::pair(a.excess, a.order) < std::pair(b.excess, b.order);
   };
-  // Without further evaluation, excess() is a lower bound. Evaluate trials in the order of their bounds, until no other
-  // trial can be among the first.
+  // Before a trial is evaluated further, its excess() is only a lower bound. Evaluate the trials in the order of their
+  // bounds, until no other trial can be among the `count` trials with the smallest excess().
   std::vector<Ranked> bounds, exact;
   for (const TuneTrial* trial : trials) bounds.push_back({excess(*trial), bounds.size(), trial});
   std::ranges::sort(bounds, before);
@@ -354,15 +355,17 @@ bool Trials::needs_depth(const TuneTrial& trial, Need need) const {
     double factor = 1.0;  // largest possible factor by which the depth is beyond its limit
     if (bound.max && largest > *bound.max) factor = ratio_beyond(largest, *bound.max);
     if (bound.min && smallest < *bound.min) factor = std::max(factor, ratio_beyond(*bound.min, smallest));
-    // This factor counts only if no other limit is violated by a larger factor.
+    // For Need::excess, the factor of a limit that is already violated matters only if it exceeds the factors of all
+    // violated limits.
     const bool counts = need != Need::excess || !violated.contains(name) || factor > excess(trial);
     if (factor > 1.0 && counts) return true;
   }
   return false;
 }
 
-/// Returns the first hand with which the loop in contact is unstable at a stiffness between K and `highest` [N/m];
-/// empty if all loops are stable. Samples the stiffness downwards from `highest` in steps of 10 %, and at K itself.
+/// Returns the name of the first hand with which the loop in contact is unstable at a stiffness between K and `highest`
+/// [N/m]; the scene's own loop has an empty name. Returns no value if all loops are stable. Samples the stiffness
+/// downwards from `highest` in steps of 10 %, and at K itself.
 std::optional<std::string> Trials::unstable_loop(Scenario scenario, const ContactOfTrial& contact, double K,
                                                  double highest, bool over_hands) const {
   constexpr double kStiffnessStep = 1.1;
@@ -416,7 +419,8 @@ std::optional<TuneFailure> Trials::loop_failure(const TuneTrial& trial, std::siz
   return failure;
 }
 
-/// Runs the variants [first, last) at K and at G K. Records the first run that is not settled.
+/// Runs the variants [first, last) at K and at G K. Records the first failure: a run that is not settled, or an
+/// unstable loop in contact.
 void Trials::judge_motion(TuneTrial& trial, std::size_t first, std::size_t last) {
   std::vector<RunStability> judged(2 * (last - first));  // verdicts on each variant at K, then at G K
   std::vector<ContactOfTrial> contacts(last - first);    // contact of each variant at K
@@ -479,7 +483,8 @@ void Trials::measure_scene(TuneTrial& trial) {
     if (const double steps = number_of(run.metrics, "explicit_friction_rows_beyond").value_or(0.0); steps > 0.0)
       trial.failure = TuneFailure{
           "friction",
-          fmt::format("explicit integration of friction is unstable in the run (number of such steps: {:g})", steps)};
+          fmt::format("explicit integration of friction is unstable in the run (number of unstable steps: {:g})",
+                      steps)};
   });
   for (const auto& [name, bound] : question_.limits) note_worst(trial, name, bound, {&trial.metrics, 1}, variants_);
 }
@@ -524,13 +529,12 @@ void Trials::refine(TuneTrial& trial, Refinement refinement) {
   report_runs();
 }
 
-/// Fails the trial at the first violated limit; limits of the user come before rules of the diagnosis. Precondition:
-/// the metrics of the scene were measured.
+/// If the trial violates limits, marks it as infeasible because of the first violated limit. The limits of the user
+/// come before the rules of the diagnosis. Precondition: the metrics of the scene were measured.
 void Trials::judge_limits(TuneTrial& trial) const {
   const MetricValues violated = violated_limits(trial);
   trial.limits_alone = !violated.empty();
   if (violated.empty()) return;
-  // Limits of the user come first.
   auto first = std::ranges::find_if(violated, [this](const auto& entry) { return !is_rule(entry.first); });
   if (first == violated.end()) first = violated.begin();
   const std::string& name = first->first;

@@ -36,7 +36,7 @@ enum class Need {
   feasibility,  ///< whether the trial keeps all constraints
   softness,     ///< also whether a larger K may help (TuneTrial::too_soft)
   excess,       ///< also the factor by which limits are violated, with the errors of the limited metrics
-  all           ///< all variants and these errors, even for a trial that is far from the limits
+  all           ///< the same as `excess`, but also for a trial that is far from the limits
 };
 
 /// The limits of a search.
@@ -49,9 +49,9 @@ struct TuneLimits {
 ///
 /// Invariants:
 /// - each run of a setting and stiffness is made once, when a search first needs it;
-/// - whether a trial is feasible depends only on the trial, on the limits and on its verification, not on other trials.
-///   A trial that keeps some limits therefore keeps all looser limits. The metrics of a feasible trial keep the limits
-///   even with their errors added;
+/// - whether a trial is feasible depends only on the trial, on the limits and on the refutations of this search
+///   (refute()). A trial that keeps some limits therefore keeps all looser limits. The metrics of a feasible trial keep
+///   the limits even with their errors added;
 /// - a search uses only trials that it requested itself. Its result and its number of runs do not depend on earlier
 ///   searches;
 /// - a trial is evaluated only as far as a caller needs it (Need). The results equal the results of a complete
@@ -119,7 +119,8 @@ class Trials {
   /// Returns true if a trial violates only limits, and its excess() is smaller than the excess() of `other`.
   bool is_nearer(const TuneTrial& trial, const TuneTrial& other);
   /// Returns the linear loops of a scenario in a contact (contact_loops()), with the scenario's stiffness and damping.
-  /// For springs in permanent contact, returns the loops along their stiffest direction. Empty without contact.
+  /// For springs in permanent contact, returns the loops along the stiffest direction of the springs. Returns no loops
+  /// without contact. `over_hands`: true to include the loops with the hands of typical_hands().
   std::vector<NamedLoop> loops_in_contact(const Scenario& scenario, const ContactOfTrial& contact,
                                           bool over_hands) const;
   /// Makes `count` runs of a trial; the runs cycle through the variants. `more`: additional override of a run, such as

@@ -10,8 +10,9 @@
 #include "scenarios/analysis/tuning/trial.hpp"
 #include "scenarios/analysis/tuning/tune_question.hpp"
 
-/// Tunes a force law in a scene. Finds the largest K, over damping ratio, velocity filter and virtual mass, at which
-/// all variants of the scene are settled with a gain margin and keep the limits on their metrics.
+/// Tunes a force law in a scene. Varies damping ratio, velocity filter and virtual mass, and finds the setting that
+/// allows the largest K. At this K, all variants of the scene keep the limits on their metrics and are settled with a
+/// gain margin.
 namespace hapbench {
 
 /// The result for one law.

@@ -26,9 +26,9 @@ struct TuneQuestion {
   /// False: the run of the scene itself must have low vibration by the rules of the diagnosis.
   bool allow_vibration = false;
   std::vector<std::string> families = {"hands"};  ///< variant sets, from kFamilies
-  /// Damping ratio zeta, defined with the mass rendering.mass_kg, also on impedance devices.
+  /// Searched range of the damping ratio zeta. On every device, zeta refers to the mass rendering.mass_kg.
   Range damping_ratio = {0.01, 10.0, true};
-  /// Virtual mass of an admittance device [kg]; empty: half to twice the scene's virtual mass.
+  /// Searched range of the virtual mass of an admittance device [kg]; empty: half to twice the scene's virtual mass.
   std::optional<Range> mass = {};
   bool filters = false;  ///< true: velocity filters of impedance devices are searched too
   unsigned threads = 1;  ///< number of parallel runs; does not change the result

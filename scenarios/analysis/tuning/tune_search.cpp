@@ -89,8 +89,9 @@ void TuneSearch::search_settings() {
       if (!best_) approach(*start);
 }
 
-/// Evaluates K of a setting in steps of a third of the scan's steps, next to values at which the run of the scene
-/// itself is settled. Stops at the first feasible trial, and improves it.
+/// Searches for a feasible K of a setting between the stiffnesses of the scan, from the largest stiffness downwards. If
+/// the run of the scene itself is settled at one end of an interval of the scan, evaluates the two stiffnesses that
+/// divide this interval into thirds. Stops at the first feasible trial, and improves it.
 void TuneSearch::scan_finely(const TuneSetting& setting) {
   constexpr int kParts = 3;
   if (best_) return;
@@ -112,8 +113,8 @@ Range TuneSearch::stiffnesses() const {
   return {whole.from, whole.to / trials_.question().margin, true};
 }
 
-/// Searches a feasible K of a setting above the best K so far. If there is a feasible K, makes the trial at the largest
-/// feasible K the best trial and returns true.
+/// Searches for a feasible K of a setting above the best K so far. If there is a feasible K, makes the trial at the
+/// largest feasible K the best trial and returns true.
 bool TuneSearch::improve(const TuneSetting& setting) {
   // Search only above the best K.
   IntervalSearchOptions options{.range = stiffnesses(), .resolution = kTuneResolution};
@@ -132,8 +133,8 @@ bool TuneSearch::improve(const TuneSetting& setting) {
   const StableInterval interval = find_stable_interval(options, scan, holds, false);
   if (!interval.stable) return false;
   best_ = trials_.trial_at(setting, options.value_at(*interval.stable));
-  // The scan may have started from a known feasible stiffness, which rounding has changed slightly. If the stiffness
-  // found is infeasible, use the largest stiffness that is known to be feasible.
+  // The interval may end at a known feasible stiffness (add_known()) that rounding has changed slightly. If the changed
+  // stiffness is infeasible, use the largest stiffness that is known to be feasible.
   if (!best_->feasible()) best_ = trials_.trial_at(setting, trials_.feasible_stiffnesses(setting).back());
   trials_.begin_purpose(fmt::format("search above K = {:.3g} N/m", best_->stiffness));
   if (interval.beyond) {
@@ -193,8 +194,8 @@ void TuneSearch::refine() {
     }
 }
 
-/// Called if no trial is feasible. Descends by a pattern search from a trial that violates only limits, until a trial
-/// is feasible.
+/// Called if no trial is feasible. Starts from a trial that violates only limits, and reduces its excess() by a pattern
+/// search until a trial is feasible.
 void TuneSearch::approach(const TuneTrial& start) {
   const TuneTrial* at = &start;
   const auto is_better = [&](const TuneTrial& neighbour) {

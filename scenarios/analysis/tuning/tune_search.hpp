@@ -16,10 +16,10 @@ namespace hapbench {
 /// The initial settings combine damping ratios zeta, spaced by factors of about 10^(1/4), with up to three virtual
 /// masses: the scene's mass and both ends of the mass range. The search has four stages:
 /// - For each initial setting, it first evaluates a K that is 0.5 % above the best K so far. If the setting is feasible
-///   there, it searches the largest feasible K of the setting.
-/// - Only if no trial is feasible, it evaluates K in steps of a third of the scan's steps, next to values at which the
-///   run of the scene itself is settled. It then evaluates the velocity filters. Finally, it descends towards the
-///   limits from the trials with the smallest excess().
+///   there, it searches for the largest feasible K of the setting, beginning with a scan of kScanIntervals intervals.
+/// - Only if no trial is feasible, it divides intervals of the scan into thirds if the run of the scene itself is
+///   settled at one of their ends. It then evaluates the velocity filters. Finally, it reduces excess() by pattern
+///   searches from the trials with the smallest excess().
 /// - It evaluates the velocity filters with the best mass.
 /// - It refines zeta and mass until a change by 0.4 % no longer raises K.
 class TuneSearch {
@@ -31,7 +31,8 @@ class TuneSearch {
   std::optional<TuneTrial> best();
   /// Returns any feasible trial; empty under the same condition as best(). Cheaper.
   std::optional<TuneTrial> first_feasible();
-  /// Returns the infeasible trial just above the best trial's K. Precondition: best() returned a trial.
+  /// Returns the infeasible trial just above the best trial's K. If the best trial is at the end of the search range,
+  /// returns a trial that has only the binding "range". Precondition: best() returned a trial.
   const TuneTrial& beyond() const { return beyond_; }
 
  private:

@@ -26,7 +26,8 @@ bool refute(Trials& trials, const TuneTrial& choice, double K, const std::string
   return true;
 }
 
-/// Returns true if a run at a gain between 1 and G, or just below G, is not settled.
+/// Returns true if a run is not settled with the recommended stiffness multiplied by a gain. Tries gains between 1 and
+/// the margin of the question, and gains just below the margin.
 bool fails_between(Trials& trials, const TuneTrial& choice, TunedLaw& law) {
   const IntervalSearchOptions gains{.range = {1.0, trials.question().margin, true}};
   std::vector<double> parameters = parameters_between(0.0, 1.0, kVerificationSamples);

@@ -13,13 +13,14 @@ struct CostAndError {
   double cost = 0.0, error = 0.0;
 };
 
-/// Returns the indices of the points that no other point beats in both cost and error, ordered by increasing cost.
+/// Returns the indices of the points on the Pareto front, ordered by increasing cost. A point is on the front if every
+/// other point has a larger cost or a larger error. Of equal points, only the first is on the front.
 std::vector<std::size_t> pareto_front(std::span<const CostAndError> points);
 
-/// Returns the index of the knee: the interior point of the front that is farthest below the chord between the ends of
-/// the front, in the logarithms of cost and error, each scaled to [0, 1] (Satopää et al. 2011). Returns nothing for
-/// fewer than four points, and for a front that is straight or bends upwards: no point is more than kMinKnee below the
-/// chord.
+/// Returns the index of the knee of a front in `points` (Satopää et al. 2011). The coordinates are the logarithms of
+/// cost and error, each scaled to [0, 1]. The knee is the interior point of the front that is farthest below the chord
+/// between the ends of the front. Returns nothing if the front has fewer than four points. Also returns nothing if no
+/// point is more than kMinKnee below the chord: such a front is straight or bends upwards.
 std::optional<std::size_t> knee(std::span<const CostAndError> points, std::span<const std::size_t> front);
 
 /// Smallest distance of a knee from the chord, as a fraction of the scaled axes. A timing that is wrong by 10 % shifts

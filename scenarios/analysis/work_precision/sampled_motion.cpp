@@ -32,7 +32,7 @@ class MotionSampler final : public Observer {
   SampledMotion motion_;
 };
 
-/// Returns the root mean square of the distances between two lists of vectors.
+/// Returns the root mean square of the distances |a[i] - b[i]|.
 double rms_distance(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
   double sum = 0.0;
   for (std::size_t i = 0; i < a.size(); ++i) sum += (a[i] - b[i]).squaredNorm();

@@ -22,11 +22,12 @@ struct SampledMotion {
   Outcome outcome = Outcome::completes;
 };
 
-/// Runs the first trial of a scenario and samples every TimeFields::stride-th step. `shift` [m] moves the start of a
-/// free tool. Throws InputError and Stopped.
+/// Runs the first trial of a scenario and samples every TimeFields::stride-th step. `shift`: displacement [m] of the
+/// starting position of a tool whose position is free. Throws InputError and Stopped.
 SampledMotion sampled_motion(const CheckedScenario& checked, const Vec3& shift = Vec3::Zero());
 
-/// Difference of two motions: root mean square, over all samples, of the distance between the two vectors of a sample.
+/// Difference of two motions: root mean square, over all samples, of the distance between the vectors that both motions
+/// have in a sample.
 struct MotionDifference {
   double position = 0.0;  ///< [m]
   double force = 0.0;     ///< [N]

@@ -37,7 +37,9 @@ std::string reference_integrator(const std::string& of_curve) {
 struct StudyRun {
   std::size_t problem = 0;
   std::string integrator;
-  std::size_t level = 0;  ///< 0: the time step of the scenario
+  /// Index of the time step. Level 0 is the time step of the scenario; each level divides it by
+  /// WorkPrecisionQuestion::ratio once more.
+  std::size_t level = 0;
   auto operator<=>(const StudyRun&) const = default;
 };
 

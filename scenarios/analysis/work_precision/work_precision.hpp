@@ -47,13 +47,15 @@ struct WorkPrecisionSetting {
   /// True if the scenario expects the outcome. The error of a run with another outcome has no meaning: a tool that does
   /// not move has a small error.
   bool is_expected = true;
-  std::optional<MotionDifference> error = {};  ///< empty if the problem is not predictable, if the reference solutions
-                                               ///< ended differently, or if the run ended otherwise than its reference
-  MotionDifference reference_error = {};       ///< error of the reference solution
+  /// Difference from the reference solution. Empty if the problem is not predictable, if the reference solutions ended
+  /// differently, or if the run ended otherwise than its reference.
+  std::optional<MotionDifference> error = {};
+  MotionDifference reference_error = {};  ///< error of the reference solution
   RunCost cost = {};
-  bool on_front = false;  ///< true if no other setting of the problem has a smaller position error at a smaller cost.
-                          ///< Only settings with an expected outcome and a resolved error are compared
-  bool is_knee = false;   ///< true for the knee of the front (pareto_front.hpp)
+  /// True if the setting is on the Pareto front of the problem: every other setting has a larger position error or a
+  /// larger cost. Only settings with an expected outcome and a resolved error are compared.
+  bool on_front = false;
+  bool is_knee = false;  ///< true for the knee of the front (pareto_front.hpp)
 
   /// Returns true if the position error is known and resolved. The outcome does not matter.
   bool is_resolved() const { return error && error->position >= kResolvedError * reference_error.position; }
@@ -63,8 +65,8 @@ struct WorkPrecisionSetting {
 struct WorkPrecisionProblem {
   std::string name;
   std::string reference = {};  ///< description of the reference solutions
-  double grown_shift = 0.0;    ///< rms distance [m] of two runs of the smallest time step that start kInitialShift
-                               ///< apart
+  /// Rms distance [m] between two runs with the smallest time step whose starting positions are kInitialShift apart.
+  double grown_shift = 0.0;
   bool is_predictable = true;  ///< true if grown_shift is at most the requested error
   std::vector<WorkPrecisionSetting> settings = {};
 

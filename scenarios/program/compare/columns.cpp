@@ -28,9 +28,9 @@ constexpr std::string_view kComparedMetrics =
     "inside_settled_m centre_inside_share vibration_last_quarter_m_per_s fidelity.force_error_relative "
     "fidelity.force_direction_error_rad fidelity.force_artefact_share";
 
-/// Returns the error of the mean: the largest of the tolerance of the entry, the standard error over seeds, and a tenth
-/// of the difference up to which two means share a rank. If the entry has no spread over seeds, returns the tolerance
-/// of the entry.
+/// Returns the error of the mean. If the entry has no spread over seeds, the error is the tolerance of the entry.
+/// Otherwise it is the largest of three values: the tolerance of the entry, the standard error over seeds, and a tenth
+/// of the difference up to which two means share a rank.
 std::optional<double> error_of_mean(const RankingEntry& entry) {
   if (!entry.spread) return entry.tolerance;
   const double of_seeds = *entry.spread / std::sqrt(static_cast<double>(entry.common_seeds));
@@ -85,12 +85,12 @@ Columns<RankingEntry> ranking_columns(bool seeds) {
        "than the mean, or if all algorithms would have the same rank",
        &Row::rank, under("rank")},
       {"common_seeds", "1",
-       "number of seeds over which mean and spread are taken: seeds with which every algorithm succeeded that "
-       "succeeds at all in the scenario; if there are none, all seeds of the algorithms that never failed",
+       "number of seeds over which mean and spread are taken: seeds in which no algorithm failed, not counting "
+       "algorithms that failed in every seed; if there is no such seed, all seeds, without the failed runs",
        &Row::common_seeds},
       {"better", "",
-       "direction in which the metric improves: less or more; empty if neither is better, and then the metric is not "
-       "ranked",
+       "less if smaller values of the metric are better, more if larger values are better; empty if neither is better; "
+       "the metric then has no ranks",
        better}};
 }
 

@@ -16,7 +16,7 @@ struct ComparedRun {
   const Result& run;
 };
 
-/// Returns the columns of comparison.csv, without times, so that equal comparisons give identical files.
+/// Returns the columns of comparison.csv. No column has a run time, so that equal comparisons give identical files.
 /// `seeds`: true if there are several seeds; the first column then has the seed.
 Columns<ComparedRun> comparison_columns(bool seeds);
 /// Returns the columns of ranking.csv, which has a row for each scenario, algorithm and metric. `seeds`: true if

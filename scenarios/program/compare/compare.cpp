@@ -49,7 +49,7 @@ struct CompareOptions : CommonOptions {
 /// The name with which --by selects the run time.
 constexpr const char* kTimeMetric = "time";
 
-/// Checks the options and plans the comparison. Throws InputError.
+/// Checks the options and plans the comparison. Throws InputError for invalid options or scenarios.
 Comparison planned(const CompareOptions& options) {
   require_names("--by", options.metrics, names_of(all_metrics(), &Metric::name), "hapbench describe metrics");
   constexpr double kMaxJitter = 1.0;
@@ -82,7 +82,8 @@ Json summaries_json(const Comparison& comparison, const std::vector<Result>& rep
   return summaries;
 }
 
-/// Reports runs that diverge unexpectedly. Other expectations of a scenario need not hold for every algorithm.
+/// Reports runs that diverge although their scenario does not expect this. Does not check the other expectations of a
+/// scenario, because they need not hold for every algorithm.
 void judge(const Comparison& comparison, const std::vector<Result>& reports, Report& report) {
   constexpr std::size_t kMaxShown = 15;
   std::vector<std::string> texts;
@@ -171,8 +172,8 @@ int compare(const CompareOptions& given, ProgramContext& context) {
     require_writable_directory(context, out / comparison.folder(run));
   const JobOptions jobs = job_options(options, "compare", context);
   JobOptions timed = jobs;
-  // The wide table of a single scene shows times, and concurrent runs would be slower. Therefore make one run at a
-  // time unless --jobs is given.
+  // With --wide, the table of a single scene shows run times, and concurrent runs would slow each other down. Therefore
+  // make one run at a time if --jobs is not given.
   if (options.jobs == 0 && !ranks && layout.in_full()) timed.threads = 1;
   const std::vector<Result> reports = run_all(
       comparison.scenes, timed, [&](std::size_t run) { return out / comparison.folder(run); }, comparison.length);
@@ -240,18 +241,19 @@ void add_compare(CommandLine& line) {
   command.flag("--full", options.full,
                "make all steps of runs that otherwise end early and have empty metrics (see Failed run)");
   command.footer(
-      "Ranking: printed for several scenarios, for several seeds, or with --by. The rank of a law is 1 + the number "
-      "of better laws. A law is better if its mean is better by more than 0.1 % and by more than the errors of both "
-      "means together. The errors follow from the metrics' definitions. The spread over seeds does not count. Laws "
-      "with a failed run rank last.\n\n"
+      "Ranking: printed for several scenarios, for several seeds, or with --by. The rank of a law is 1 + the number of "
+      "better laws. A law is better if its mean is better by more than 0.1 % and by more than the errors of both means "
+      "together. The errors follow from the metrics' definitions. The spread over seeds does not count. Laws with a "
+      "failed run rank last.\n\n"
       "Other comparisons: compare varies only the law. \"hapbench sweep\" runs a scenario with several values of any "
       "field, such as two stiffnesses.\n\n"
-      "Failed run: it diverges, passes through the surface, loses contact or never touches, sticks, is not dragged "
-      "along, or does not end as its scenario expects. A run that diverges, passes through the surface or leaves it "
-      "for good ends early, at this moment, and its metrics are empty (hapbench describe \"early end\").\n\n"
+      "Failed run: it diverges, passes through the surface, loses contact or never touches, sticks, does not follow "
+      "the drag of its hand, or does not end as its scenario expects. A run that diverges, passes through the surface "
+      "or leaves it permanently ends early, at this moment, and its metrics are empty (hapbench describe \"early "
+      "end\").\n\n"
       "Files: comparison.csv (one row per run), ranking.csv (one row per scenario, law and metric), and each run in "
-      "OUT/[SCENARIO/]ALGORITHM[/seed_K], with SCENARIO for several scenarios and seed_K for several seeds. An "
-      "earlier comparison of the same scenarios in the folder is removed, other files stay.\n\n"
+      "OUT/[SCENARIO/]ALGORITHM[/seed_K], with SCENARIO for several scenarios and seed_K for several seeds. An earlier "
+      "comparison of the same scenarios in the folder is removed, other files stay.\n\n"
       "Exit status: 3 if a run diverges and its scenario does not expect that; otherwise 0, also if laws fail in "
       "another way; 2 bad input.");
 }

@@ -14,7 +14,8 @@
 namespace hapbench {
 namespace {
 
-/// Returns the mean of an algorithm's errors over the common seeds, which bounds the error of the mean value.
+/// Returns the mean of an algorithm's errors over the common seeds (Ranking::common). This mean bounds the error of the
+/// mean value.
 KnownError mean_error(const Ranking& ranking, const FinerRuns& finer, std::size_t scenario, std::size_t algorithm,
                       const std::string& metric) {
   const std::vector<std::size_t>& seeds = ranking.common[scenario];
@@ -32,8 +33,8 @@ KnownError mean_error(const Ranking& ranking, const FinerRuns& finer, std::size_
   return mean;
 }
 
-/// Returns the mean of a metric in a scenario for each algorithm, empty for algorithms with failures. Adds the
-/// means and the significant order of the algorithms to `json`.
+/// Returns, for each algorithm, the mean of a metric in a scenario and the error of this mean. The mean is empty for an
+/// algorithm with failed runs. Adds the means and the significant order of the algorithms to `json`.
 std::vector<NumberWithError> numbers_of(const Ranking& ranking, const FinerRuns& finer, std::size_t scenario,
                                         std::size_t metric, Json& json) {
   std::vector<NumberWithError> numbers;
@@ -138,7 +139,10 @@ std::string vibration_text(const Ranking& ranking, const Layout& layout) {
   const bool has_order = failing.size() + 1 < ranking.algorithms.size();
   return "\n" +
          layout.wrapped(
-             says + (has_order ? "; --errors adds the errors of these numbers, from finer time steps and points" : ""),
+             says + (has_order
+                         ? "; --errors also prints the error of each number, estimated by runs with smaller time steps "
+                           "and point spacings"
+                         : ""),
              0);
 }
 

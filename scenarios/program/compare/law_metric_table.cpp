@@ -14,8 +14,8 @@
 namespace hapbench {
 namespace {
 
-/// Returns the heading of a metric in the table of runs. If this table lacks the metric, returns a heading with the
-/// name of the metric and the unit of the metric (factor 1).
+/// Returns the heading of a metric in the table of runs. If this table lacks the metric, the heading is the name of the
+/// metric, and the metric's values are printed in the metric's unit (factor 1).
 RunHeading heading_of(const std::string& metric) {
   const auto* known = std::ranges::find(kRunHeadings, metric, &RunHeading::metric);
   return known == std::end(kRunHeadings) ? RunHeading{metric.c_str(), metric.c_str()} : *known;
@@ -26,8 +26,8 @@ std::string metric_text(const RankingEntry& entry, double factor) {
   const auto scaled = [factor](const std::optional<double>& number) {
     return number ? std::optional(factor * *number) : std::nullopt;
   };
-  // If the spread over the seeds is smaller than the resolution of the ranks, print the number without the spread and
-  // with this resolution as its smallest error.
+  // If the spread over the seeds is smaller than the resolution of the ranks, print the mean without the spread. The
+  // error that determines the digits of the mean is then at least this resolution.
   const double resolution = kRankResolution * std::abs(*entry.mean);
   if (entry.spread && *entry.spread < resolution)
     return deserved(factor * *entry.mean, factor * std::max(entry.tolerance.value_or(0.0), resolution));

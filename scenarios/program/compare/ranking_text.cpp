@@ -63,7 +63,8 @@ const char* no_ranks_reason(const Ranking& ranking) {
   if (std::ranges::count(ranking.failed, false) == 0) return "every run failed";
   if (ranking.algorithms.size() == 1) return "there is only one law";
   const auto has_direction = [](Better better) { return better != Better::none; };
-  if (std::ranges::none_of(ranking.better, has_direction)) return "none of these metrics has a better direction";
+  if (std::ranges::none_of(ranking.better, has_direction))
+    return "neither smaller nor larger values of these metrics are better";
   const auto has_mean = [](const RankingEntry& entry) { return entry.mean.has_value(); };
   if (std::ranges::none_of(ranking.entries, has_mean)) return "no successful run has a value of these metrics";
   return "each difference is below 0.1 %, or within the tolerance or the error of its metric";
@@ -80,7 +81,8 @@ std::string first_ranks_text(const Ranking& ranking) {
     if (count > 0) firsts.push_back(fmt::format("{} in {}", law.algorithm, count));
     is_everywhere = is_everywhere && (count == 0 || count == rankings);
   }
-  if (firsts.empty()) return "no algorithm has rank 1, because its metric is only known to be smaller than its error";
+  if (firsts.empty())
+    return "no algorithm has rank 1, because the error of the best mean is unknown or not smaller than the mean";
   const std::string where =
       rankings == 1 ? "" : fmt::format(" in each of the {} rankings (one per scenario and metric)", rankings);
   if (firsts.size() == 1 && is_everywhere)
@@ -115,9 +117,10 @@ std::string verdict(const Ranking& ranking, const std::string& folder, const Lay
   }
   if (!agreeing.empty())
     text += layout.wrapped(
-        fmt::format("the seeds of {} agree within 0.1 %, because the runs forget their start: the spread says nothing "
-                    "about the error of the numbers, and --errors estimates it",
-                    fmt::join(agreeing, ", ")),
+        fmt::format(
+            "the results of all seeds of {} agree within 0.1 %: the spread does not estimate the error of the numbers; "
+            "--errors estimates this error",
+            fmt::join(agreeing, ", ")),
         0);
   if (alike.empty() && !is_ranked(ranking)) return text;
   if (alike.empty())
@@ -141,7 +144,7 @@ std::string unranked_text(const Ranking& ranking, const Layout& layout) {
   if (!has_unranked) return "";
   return layout.wrapped(
       fmt::format(
-          "{} is not ranked by fidelity: it renders by the same constraints as the reference force, rigid contact",
+          "{} is not ranked by fidelity: it renders by the same constraints as the reference force (rigid contact)",
           kSharesReference),
       0);
 }
@@ -159,11 +162,12 @@ void report_ranking_text(const Ranking& ranking, const Layout& layout, Report& r
   report.add_text("\n");
   if (is_ranked(ranking))
     report.add_text(layout.wrapped(
-        fmt::format("rank: 1 is best; algorithms share a rank if their means differ by at most 0.1 % or by at most the "
-                    "sum of their errors{}; no rank (-): the error is not smaller than the number (<=) or unknown, or "
-                    "all ranks would be equal{}",
-                    ranking.estimated_error ? ", which are estimated below" : "",
-                    ranking.seeds > 1 ? "; the spread over the seeds does not count" : ""),
+        fmt::format(
+            "rank: 1 is best. Algorithms share a rank if their means differ by at most 0.1 % or by at most the "
+            "sum of their errors{}{}. No rank (-): the error is unknown or not smaller than the number (<=), or "
+            "all ranks would be equal",
+            ranking.estimated_error ? ", which are estimated below" : "",
+            ranking.seeds > 1 ? "; the spread over the seeds does not count" : ""),
         0));
   if (ranking.seeds > 1) report.add_text("spread: standard deviation over the seeds\n");
   report.add_text(unranked_text(ranking, layout));

@@ -31,22 +31,24 @@ Columns<LawTime> time_columns(bool several_scenes) {
   const auto spread_us = [](const Row& r) { return significant(1e6 * r.cost.spread_s, 1); };
   const auto milliseconds = [](const Row& r) { return significant(1e3 * r.cost.per_simulated_second(), 3); };
   const auto percent = [](const Row& r) { return significant(100.0 * r.cost.deadline_share(), 2); };
-  return {{"scenario", "", "name of the scenario", &Row::scenario, several_scenes ? under("scenario") : Shown{}},
-          {"algorithm", "", "force law", &Row::algorithm, under("algorithm")},
-          {"seconds_per_step", "s", "processor time of a step in a run without observers: smallest of five repetitions",
-           step},
-          {"us per step", "1", "seconds_per_step in microseconds", microseconds, only_printed()},
-          {"spread_s", "s", "median of the repetitions minus the smallest repetition, of one step", spread},
-          {"spread us", "1", "spread_s in microseconds", spread_us, only_printed()},
-          {"seconds_per_simulated_second", "s/s", "processor time per simulated second", simulated},
-          {"ms per s", "1", "processor time per simulated second [ms]", milliseconds, only_printed()},
-          {"contacts_per_step", "1", "mean number of contacts over all steps of the run", &Row::contacts,
-           under("contacts per\nstep", 3)},
-          {"deadline_share", "1", "processor time of a step divided by 0.5 ms", share},
-          {"% of 0.5 ms", "1", "deadline_share as a percentage", percent, only_printed()},
-          {"steps", "1", "steps of the measured run; fewer than the scenario's if it diverges or its task ends", steps},
-          {"rank", "1", "1 + the number of laws that are faster by more than the sum of both spreads", &Row::rank,
-           under("rank")}};
+  return {
+      {"scenario", "", "name of the scenario", &Row::scenario, several_scenes ? under("scenario") : Shown{}},
+      {"algorithm", "", "force law", &Row::algorithm, under("algorithm")},
+      {"seconds_per_step", "s", "processor time of a step in a run without observers: smallest of five repetitions",
+       step},
+      {"us per step", "1", "seconds_per_step in microseconds", microseconds, only_printed()},
+      {"spread_s", "s", "median of the repetitions minus the smallest repetition, of one step", spread},
+      {"spread us", "1", "spread_s in microseconds", spread_us, only_printed()},
+      {"seconds_per_simulated_second", "s/s", "processor time per simulated second", simulated},
+      {"ms per s", "1", "processor time per simulated second [ms]", milliseconds, only_printed()},
+      {"contacts_per_step", "1", "mean number of contacts over all steps of the run", &Row::contacts,
+       under("contacts per\nstep", 3)},
+      {"deadline_share", "1", "processor time of a step divided by 0.5 ms", share},
+      {"% of 0.5 ms", "1", "deadline_share as a percentage", percent, only_printed()},
+      {"steps", "1",
+       "steps of the measured run; fewer than the steps of the scenario if the run diverges or its task ends", steps},
+      {"rank", "1", "1 + the number of laws that are faster by more than the sum of both spreads", &Row::rank,
+       under("rank")}};
 }
 
 std::optional<double> mean_contacts(const Result& result) {

@@ -20,6 +20,7 @@
 #include "scenarios/program/describe/glossary.hpp"
 #include "scenarios/program/describe/index.hpp"
 #include "scenarios/program/describe/lists.hpp"
+#include "scenarios/program/describe/result_names.hpp"
 #include "scenarios/program/describe/thesis_locations.hpp"
 #include "scenarios/program/exit_status.hpp"
 #include "scenarios/program/output.hpp"
@@ -34,7 +35,7 @@ std::string plain(std::string_view text) {
   return plain;
 }
 
-/// Returns true if `name` is the entry's heading, such as ">30Hz rms N", or the first line of it, ">30Hz".
+/// Returns true if `name` is the entry's heading, such as ">30Hz rms N", or the first line of this heading, ">30Hz".
 /// Ignores case and spaces.
 bool is_heading(const IndexEntry& item, std::string_view name) {
   const std::string_view title = item.name;
@@ -50,7 +51,9 @@ std::vector<Description> described(const Index& index, const std::function<bool(
 }
 
 std::vector<Description> described_by_name(const Index& index, std::string_view name) {
-  return described(index, [name](const IndexEntry& item) { return item.kind != "heading" && item.name == name; });
+  return described(index, [name](const IndexEntry& item) {
+    return item.kind != "heading" && item.kind != kJsonKey && item.name == name;
+  });
 }
 
 /// Returns the meanings of the headings with this name, each meaning once.
@@ -78,13 +81,14 @@ std::vector<Description> described_headings(const Index& index, const std::strin
                   name, nearest_name_hint(name, names)));
 }
 
-/// Returns the meanings of a name that the program itself does not define. Throws InputError if the name has no
-/// meaning.
+/// Returns the meanings of a name that is not in `index`, the index of the program. Throws InputError if the name has
+/// no meaning.
 std::vector<Description> other_meanings(const Index& index, const std::string& name, const Layout& layout) {
   if (const std::optional<Description> location = describe_thesis_location(name, layout)) return {*location};
-  // Find fields with this name in any object: "torque" finds record.torque.
-  std::vector<Description> found =
-      described(index, [&](const IndexEntry& item) { return item.kind == "field" && item.name.ends_with("." + name); });
+  // Find fields with this name in any object ("torque" finds record.torque), and keys that only the JSON has.
+  std::vector<Description> found = described(index, [&](const IndexEntry& item) {
+    return item.kind == "field" ? item.name.ends_with("." + name) : item.kind == kJsonKey && item.name == name;
+  });
   if (!found.empty()) return found;
   // Find scenarios, studies, claims and assumptions of this name.
   const Index in_folders = folder_index(layout);
@@ -121,9 +125,10 @@ int describe(const DescribeOptions& options, ProgramContext& context) {
   const bool is_group = std::ranges::find(kScenarioGroups, options.name) != std::end(kScenarioGroups);
   if (meanings.empty() && is_group) return list(options, context);
   if (!options.output.table.empty())
-    fail_in_option("--table",
-                   fmt::format("got it with \"{}\"; allowed: with a list, such as claims or algorithms", options.name));
-  if (!options.grep.empty()) throw InputError("--grep: allowed: without a name, or with that of a list");
+    fail_in_option(
+        "--table",
+        fmt::format("got the name \"{}\"; allowed: the name of a list, such as claims or algorithms", options.name));
+  if (!options.grep.empty()) throw InputError("--grep: allowed: no name, or the name of a list");
   const bool is_known = !meanings.empty();
   if (!is_known) meanings = other_meanings(index, options.name, layout);
   Description d = joined(meanings);

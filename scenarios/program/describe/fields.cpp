@@ -14,8 +14,8 @@
 namespace hapbench {
 namespace {
 
-/// Returns true for an object whose fields are described one by one. The bounds on metrics are excluded: they
-/// have more fields than all other objects together.
+/// Returns true for an object whose fields are described one by one. An object with more than kMaxShown fields is not:
+/// the object with the bounds on metrics has more fields than all other objects together.
 bool shows_fields(const ValueGuide& value) {
   constexpr std::size_t kMaxShown = 50;
   return value.choices.empty() && !value.fields.empty() && value.fields.size() <= kMaxShown;

@@ -129,6 +129,7 @@ IndexEntry recorded_assumption(const Json& assumption, const Json& claims, const
     decided += (decided.empty() ? "" : ", ") + claim.at("id").get<std::string>();
   }
   const auto titled = [decided](Json named) {
+    named["chosen"] = fmt::format("{} the results were known", named.at("chosen").get<std::string>());
     named["decides"] = decided.empty() ? "no verdict" : decided;
     return named;
   };

@@ -13,7 +13,7 @@ namespace {
 
 constexpr const char* kTerm = "term";
 
-/// Returns the name in lower case, without spaces at its ends and with spaces for "_".
+/// Returns the name in lower case, without spaces at its ends and with a space in place of each "_".
 std::string normalized(std::string_view name) {
   std::string normal = lower_case(trimmed(name));
   std::ranges::replace(normal, '_', ' ');

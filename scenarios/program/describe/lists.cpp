@@ -51,8 +51,8 @@ std::string list_text(const Index& all, bool only_names, const Layout& layout) {
     // Begin a new list if the kind or group changes.
     if (lists.empty() || lists.back().first != title) lists.emplace_back(title, "");
     std::string& entries = lists.back().second;
-    const std::string verdict = item.more.value("verdict", "");  // only a claim has a verdict; its statement is
-                                                                 // listed in full
+    // Only a claim has a verdict. The statement of a claim is listed in full.
+    const std::string verdict = item.more.value("verdict", "");
     if (only_names)
       entries += (entries.empty() ? "" : ", ") + item.name;
     else if (verdict.empty())

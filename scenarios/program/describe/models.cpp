@@ -28,7 +28,7 @@ Json model_json(const char* kind, const ModelInfo& info, std::span<const Algorit
     const std::string given = initial.is_number_float() ? fmt::format("{:g}", initial.get<double>()) : initial.dump();
     parameters.push_back({{"name", path},
                           {"unit", unit},
-                          {"default", field.presence == Presence::has_default ? given : "by scene"},
+                          {"default", field.presence == Presence::has_default ? given : "see meaning"},
                           {"range", field.value.allowed},
                           {"meaning", meaning}});
   };
@@ -110,21 +110,22 @@ Description describe_stability(const Layout& layout) {
   d.text +=
       "\n" +
       layout.wrapped(
-          "`limit` counts the classes stable and dying_out (decaying) as stable: the tool comes to rest if the run "
-          "goes on. A run that passes through the surface, loses contact, gets stuck or never touches (describe "
-          "outcome) is reported as its own class. It is never stable, even if it does not vibrate.\n\nThe theoretical "
-          "limit exists for a tool without device on springs that stay in contact, with the force -K S p. With "
-          "leapfrog it satisfies 4 - 2 lambda B dt / M - lambda K dt^2 / M = 0 with lambda = lambda_max(S). With "
-          "velocity_verlet and rk4 it follows from the eigenvalues of one step; the implicit integrators have no "
-          "limit. With a device, the theoretical limit (bilateral springs) and the linear limit (surfaces that only "
-          "push) are the value at which the first eigenvalue of the loop of hand, handle and wall leaves the unit "
-          "circle; it holds while nothing saturates and the contact lasts. With --stable bounded, the simulated limit "
-          "is the limit to the class \"diverged\".");
+          "`limit` counts the classes stable and decaying as stable: the tool is at rest, or comes to rest if the run "
+          "goes on. With --stable bounded, it also counts the class vibrating. A run that passes through the surface, "
+          "loses contact, gets stuck or never touches has a class of its own, with the name of its outcome (describe "
+          "outcome). It is never stable, even if it does not vibrate.\n\n`limit` prints the simulated limit, found by "
+          "bisection on runs, beside the linear limit, which follows from eigenvalues. For contact that cannot be lost "
+          "(bilateral springs), the linear limit is also called theoretical limit.\n\nA tool without a device on "
+          "bilateral springs has the force -K S p. With leapfrog, its theoretical limit satisfies 4 - 2 lambda B dt / "
+          "M - lambda K dt^2 / M = 0 with lambda = lambda_max(S). With velocity_verlet and rk4, the theoretical limit "
+          "follows from the eigenvalues of one step. The implicit integrators have no limit.\n\nWith a device or a "
+          "surface, the linear limit is the value at which the first eigenvalue of the loop of hand, device and "
+          "contact leaves the unit circle. It holds while nothing saturates and the contact lasts.");
   d.text += "\nformulas for the largest stiffness K of a wall on an impedance device\n";
   d.text += layout.wrapped(
-      "Symbols: b damping of the handle, c its Coulomb friction, q encoder step, m moving mass, T time step, t_d = d "
-      "T delay, B damping of the wall. limit.csv has a column for each formula, with a value where the formula "
-      "applies.");
+      "Symbols: b damping of the handle, c its Coulomb friction, q encoder step, m moving mass, T time step, d delay "
+      "in time steps, t_d = d T delay in seconds, B damping of the wall. limit.csv has a column for each formula, with "
+      "a value where the formula applies.");
   for (const Json& limit : d.json["limits"]) d.text += entry_text(limit, layout, 2);
   return d;
 }
@@ -136,7 +137,7 @@ Description describe_diagnosis(const Layout& layout) {
       Json::array()};
   for (const Diagnosed& rule : diagnosis_rules()) {
     const std::string unit = rule.unit == "1" ? "" : " " + rule.unit;
-    d.text += layout.entry(rule.rule, fmt::format("{} > {:g}{}", rule.number, rule.threshold, unit), 2, 14);
+    d.text += layout.entry(rule.rule, fmt::format("{}; threshold {:g}{}", rule.number, rule.threshold, unit), 2, 14);
     d.json.push_back({{"rule", rule.rule},
                       {"number", rule.number},
                       {"unit", rule.unit},

@@ -29,6 +29,9 @@ constexpr const char* kResultFile = "file of the results";
 constexpr PrintedName kPrintedNames[] = {
     {"step_p50_s", kTime, "median wall time of one step, without observers and recorders [s]"},
     {"step_p99_s", kTime, "99th percentile of the wall time of one step, without observers and recorders [s]"},
+    {"tolerances", "object of summary.json",
+     "errors of metrics: for each metric whose method has an error bound, the largest error, in the unit of the "
+     "metric"},
     {"scenario.effective.json", kResultFile,
      "the scenario with the value of every field, defaults included; running this file gives the same result files"},
     {"timing.json", kResultFile,
@@ -42,7 +45,7 @@ constexpr PrintedName kPrintedNames[] = {
     {"plot.svg", kResultFile, "picture written by plot"},
     {"figures.json", kResultFile, "figures drawn by scripts/figures, with their captions and source files"},
     {"claims.json", kResultFile, "ledger written by reproduce: claims, measured values, verdicts, robustness"},
-    {"claims.md", kResultFile, "ledger written by reproduce, to read"},
+    {"claims.md", kResultFile, "ledger written by reproduce, as Markdown for readers"},
     {"claim_pages.md", kResultFile, "written by reproduce: a section for each claim, with rule, cases and sensitivity"},
     {"assumptions.json", kResultFile,
      "assumptions: what the thesis leaves open, and the value that the reproduction uses; \"describe "
@@ -61,8 +64,9 @@ Json printed_names() {
   };
   for (const auto& [name, kind, meaning] : kPrintedNames) add(name, kind, meaning);
   for (const OutcomeInfo& outcome : outcome_infos()) {
-    const std::string early =
-        outcome.ends_early == nullptr ? "" : fmt::format("; compare and sweep end such a run {}", outcome.ends_early);
+    const std::string early = outcome.ends_early == nullptr
+                                  ? ""
+                                  : fmt::format(". `compare` and `sweep` end such a run {}", outcome.ends_early);
     add(outcome.name, "outcome of a run", outcome.meaning + early);
   }
   for (const RunVerdictText& verdict : run_verdict_texts())
@@ -124,18 +128,23 @@ void add_metric_terms(Index& index, const std::vector<DescribedTable>& tables, c
 
 void add_columns(Index& index, const std::vector<DescribedTable>& tables, const Layout& layout) {
   std::vector<Json> all;
+  const auto add = [&all](const char* kind, const DescribedTable::Entry& entry, const char* files,
+                          const std::string& file) {
+    Json named = {{"kind", kind}, {"name", entry.name}, {"unit", entry.unit}, {"meaning", entry.meaning}};
+    const auto same = std::ranges::find_if(all, [&named](const Json& known) {
+      return known["kind"] == named["kind"] && known["name"] == named["name"] && known["meaning"] == named["meaning"];
+    });
+    (same != all.end() ? *same : all.emplace_back(std::move(named)))[files].push_back(file);
+  };
   for (const DescribedTable& table : tables) {
     if (table.file.empty()) continue;
     for (const auto& [name, unit, meaning] : table.columns) {
       // Skip the column of a metric: add_metric_terms() adds an entry that names the files with this column.
       const Metric* metric = find_metric(all_metrics(), name);
       if (metric != nullptr && metric->meaning == meaning) continue;
-      Json column = {{"kind", "column"}, {"name", name}, {"unit", unit}, {"meaning", meaning}};
-      const auto same = std::ranges::find_if(all, [&column](const Json& known) {
-        return known["name"] == column["name"] && known["meaning"] == column["meaning"];
-      });
-      (same != all.end() ? *same : all.emplace_back(std::move(column)))["files"].push_back(table.file);
+      add("column", {name, unit, meaning}, "files", table.file);
     }
+    for (const DescribedTable::Entry& entry : table.json_only) add(kJsonKey, entry, "rows_as_in", table.file);
   }
   for (const Json& column : all) add_term(index, column, layout);
 }

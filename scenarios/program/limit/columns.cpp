@@ -23,7 +23,7 @@ Columns<Row> case_columns(const LimitTable* table) {
   Columns<Row> columns = {
       {"device", "",
        "device of the row: ideal, admittance, a preset of an impedance device, or a device file; * marks a preset "
-       "changed by --set, [soft] and [stiff] a preset at the ends of its unpublished parameters",
+       "changed by --set; [soft] and [stiff] mark a preset with all unpublished parameters at one end of their ranges",
        [](const LimitRow& r) { return r.device->name; }, when(devices, under("device"))},
       {"scenario", "", "name of the scenario", [](const LimitRow& r) { return r.scene(); },
        when(devices || table->cases.scenes().size() > 1, under("scenario"))}};
@@ -64,7 +64,7 @@ std::string linear_limit_text(const LimitRow& row) {
   return std::isinf(*linear) || *linear == 0.0 ? "none" : rounded_text(*linear, 6);
 }
 
-/// Returns a function of a row that applies `get` to a part of the row.
+/// Returns a function that computes the cell of a row: it applies `part` to the row, and `get` to the result.
 template <class Part, class Get>
 auto of(Part part, Get get) {
   return [part, get](const LimitRow& row) { return cell_of(std::invoke(get, std::invoke(part, row))); };
@@ -86,15 +86,15 @@ Columns<LimitRow> limit_value_columns(const LimitTable* table) {
       {"side", "", "largest or smallest: which stable value was searched", of(&Row::question, &LimitQuestion::side),
        kOnlyCsv},
       {"quoted_limit", unit,
-       "limit to quote, which a user may render: the linear or the simulated limit, whichever is reached first; empty "
-       "if no limit was found within the range",
+       "limit to quote: the smaller of the linear and the simulated limit (with --smallest the larger); empty if no "
+       "limit was found within the range",
        [](const Row& r) { return r.limit.quoted.value; }, under("quote", 6),
        [](const Row& r) { return r.limit.quoted_tolerance(); }},
       {"quoted_reason", "", "reason why quoted_limit has this value or none",
        [](const Row& r) { return r.limit.quoted.reason; }},
       {"linear\nlimit", unit,
-       "of limit: theoretical limit, or, if there is none, the linear limit; \"none\" if no value of the range or "
-       "every value is stable, \"-\" if neither limit applies",
+       "of limit: theoretical limit; if there is no theoretical limit, the linear limit. \"none\": no value or every "
+       "value of the range is stable; \"-\": neither limit applies",
        linear_limit_text, only_printed()},
       {"limit", unit,
        "simulated limit: last stable value before the first unstable one, by bisection on simulated runs; empty if no "
@@ -159,7 +159,7 @@ Columns<LimitRow> search_columns(bool devices, bool grid) {
   };
   return {
       {"limit_tolerance", "unit of the field",
-       "uncertainty of the limit: distance from the limit to the first unstable value (columns beyond - limit)",
+       "uncertainty of the limit: distance from the limit to the first unstable value (field first_unstable)",
        [](const Row& r) { return r.limit.end.tolerance(); }, kOnlyJson},
       {"low_tolerance", "unit of the field",
        "uncertainty of the low end of the stable interval: distance to the first unstable value below",
@@ -179,8 +179,8 @@ Columns<LimitRow> search_columns(bool devices, bool grid) {
        "true if stable and unstable values alternate, so that there is no contiguous stable interval and no limit",
        of(&Row::limit, &FieldLimit::scattered), kOnlyJson},
       {"tried_between", "1",
-       "number of verification samples: extra values between the ends of the stable interval, all found stable; 0 in "
-       "a table of devices or values, which has no verification",
+       "number of verification samples: extra values between the ends of the stable interval, all found stable; 0 with "
+       "--device or --over, whose searches have no verification",
        of(&Row::limit, &FieldLimit::tried_between)},
       {"may_fail_share", "1",
        "largest fraction of the stable interval that may still be unstable, with 95 % confidence, given the "
@@ -197,11 +197,12 @@ Columns<LimitRow> search_columns(bool devices, bool grid) {
       {"lambda_max", "1", "largest eigenvalue of the mean stiffness tensor S in the run at the limit, in units of K",
        settled(&SettledState::lambda_max), when(grid)},
       {"stiffness_ratio", "1",
-       "limit divided by the limit of the first scene with the first algorithm, everything else equal",
+       "limit divided by the limit of the first scene with the first algorithm, for the same device and the same "
+       "values of --over",
        &Row::stiffness_ratio, when(grid)},
       {"rendered_ratio", "1",
        "rendered stiffness K lambda_max at the limit, divided by its value for the first scene with the first "
-       "algorithm, everything else equal",
+       "algorithm, for the same device and the same values of --over",
        &Row::rendered_ratio, when(grid)}};
 }
 
@@ -229,8 +230,8 @@ Columns<LimitRow> limit_columns(const LimitTable* table) {
       {{"no_theory_reason", "", "reason why the linear theory does not apply to the contact loop; empty if it applies",
         of(&Row::limit, &FieldLimit::no_theory), when(forms)},
        {"worst_hand_limit", "N/m",
-        "smallest linear limit over passive hands of 100 to 1000 N/m and 0.1 to 0.5 kg, and no hand; empty if the "
-        "linear theory does not apply",
+        "smallest linear limit over nine passive hands (100 to 1000 N/m, 0.1 to 0.5 kg) and the case without a hand; "
+        "empty if the linear theory does not apply",
         of(&Row::limit, &FieldLimit::worst_hand), when(forms)},
        {"runs", "1", "number of simulated runs of the search", [](const Row& r) { return r.limit.runs.size(); }},
        {kNonMonotonic, "1",

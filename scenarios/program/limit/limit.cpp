@@ -108,10 +108,11 @@ void add_limit(CommandLine& line) {
               "repeat the search for each value of another field, written like sweep --vary, such as "
               "rendering.damping_N_s_per_m=1:100:5:log (Z-width); repeatable",
               {.several = true});
-  command.add("--stable <rule>", options.stable,
-              "stable runs: settled (come to rest or decay), bounded (may also vibrate) or still (the handle hardly "
-              "vibrates); default: settled; if a script moves the tool, still",
-              {.one_of = {"settled", "bounded", "still"}});
+  command.add(
+      "--stable <rule>", options.stable,
+      "which runs are stable: settled (they come to rest or their oscillation decays), bounded (they may also vibrate) "
+      "or still (the handle hardly vibrates); default: settled, or still if a script moves the tool",
+      {.one_of = {"settled", "bounded", "still"}});
   command.add(
       "--vibration <m/s>", options.vibration,
       fmt::format("for the rule still: largest vibration of the handle, rms above 30 Hz (default: {})", kMaxVibration));
@@ -125,18 +126,17 @@ void add_limit(CommandLine& line) {
   add_table(command, options.output);
   command.footer(fmt::format(
       "Stable: the run comes to rest or its oscillation decays; if a script moves the tool, the handle hardly "
-      "vibrates. A run that diverges, passes through the surface, loses contact, sticks or never touches is "
-      "unstable. \"hapbench describe stability\" defines all classes.\n\n"
-      "Result: the simulated limit, the linear limit, and which of both to quote, with the reason. The simulated "
-      "limit is found by bisection on runs. The linear limit (- if there is none) follows from the eigenvalues of "
-      "the loop of hand, device and contact.\n\n"
-      "Limit to quote: the smaller of the two, or with --smallest the larger. There is none if no value is "
-      "stable, or if all runs are stable and the range has no linear limit: then try a wider --between.\n\n"
-      "Files: limit.csv has one row per search, limit_runs.csv one row per run with its class. They replace the "
-      "files of an earlier search in the same folder.\n\n"
-      "Time: 100 to 400 runs for one search, {} of them verify that other values on the stable side "
-      "are stable too (verification samples). With --device or --over, a search skips these runs and "
-      "needs only 30 to 50.\n\n"
+      "vibrates. A run that diverges, passes through the surface, loses contact, sticks or never touches is unstable. "
+      "\"hapbench describe stability\" defines all classes.\n\n"
+      "Result: the simulated limit, the linear limit, and which of the two to quote, with the reason. The simulated "
+      "limit is found by bisection on runs. The linear limit follows from the eigenvalues of the loop of hand, device "
+      "and contact.\n\n"
+      "Limit to quote: the smaller of the two, or with --smallest the larger. There is none if no value is stable, or "
+      "if all runs are stable and the range has no linear limit: then try a wider --between.\n\n"
+      "Files: limit.csv has one row per search, limit_runs.csv one row per run with its class. They replace the files "
+      "of an earlier search in the same folder.\n\n"
+      "Time: 100 to 400 runs for one search; {} of them verify that other values on the stable side are stable too "
+      "(verification samples). With --device or --over, a search skips these runs and needs only 30 to 50.\n\n"
       "Exit status: 0 also if no value or every value is stable; 2 bad input; 130 stopped by Ctrl-C.",
       kVerificationSamples + kSamplesNearLimit));
 }

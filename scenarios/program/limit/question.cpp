@@ -48,10 +48,10 @@ bool are_devices_changed(const LimitOptions& options) {
   return is_changed;
 }
 
-/// Returns the selected devices, each followed by its variants. With --friction none, there are no variants. With other
-/// values of --friction, the variants are the device with each factor on its friction. Without --friction, they are the
-/// device at both ends of the range of its unpublished parameters. If --set changes a preset, "*" is appended to its
-/// name.
+/// Returns the selected devices, each followed by its variants. With --friction none, there are no variants. Otherwise,
+/// the values of --friction are factors, and each variant is the device with its friction multiplied by one factor.
+/// Without --friction, the variants are the device at both ends of the range of its unpublished parameters. If --set
+/// changes a preset, "*" is appended to the name of the preset.
 std::vector<ComparedDevice> device_variants(const LimitOptions& options) {
   const bool none_other = options.friction == std::vector<std::string>{kNoFriction};
   const bool is_changed = are_devices_changed(options);
@@ -85,12 +85,13 @@ InputError on_device(const ComparedDevice& device, const InputError& error) {
     location.option = fmt::format("--device {}", device.name);
     location.about_options.emplace_back("--device");
     faults.emplace_back(fault.kind(), location,
-                        fault.problem() + (is_of_type ? "; \"--device impedance\" leaves this one out" : ""));
+                        fault.problem() + (is_of_type ? "; \"--device impedance\" leaves this device out" : ""));
   }
   return InputError::all(faults);
 }
 
-/// Returns the question for a scene. By default, a run is stable by the rule of `tune`. Throws InputError.
+/// Returns the question for a scene. By default, a run is stable by the rule of the command `tune`. Throws InputError
+/// if an option is invalid.
 LimitQuestion question_of(const LimitOptions& options, const ScenarioText& scene, const Scenario& scenario,
                           const std::vector<std::string>& overrides) {
   if (options.field.find('=') != std::string::npos)

@@ -58,11 +58,11 @@ struct LimitTable {
   bool is_grid() const { return !devices.empty() || over() > 0; }
 };
 
-/// Returns a table with all cases but without rows. The device axis has no field, so that --over may vary
-/// fields of the device. Throws InputError.
+/// Returns a table with all cases but without rows. The device axis replaces the whole device and has no path of a
+/// field, so that --over may vary fields of the device. Throws InputError for an invalid option or scenario file.
 LimitTable make_limit_table(const LimitOptions& options);
-/// Returns the row of case i, without its answer. Adds the warnings about this case to `warnings`, each text once.
-/// Throws InputError.
+/// Returns the row of case i, in which LimitRow::limit is still empty. Adds the warnings about this case to `warnings`,
+/// each text once. Throws InputError if the scenario of the case or an option is invalid.
 LimitRow make_limit_row(const LimitOptions& options, const LimitTable& table, std::size_t i,
                         std::vector<std::string>& warnings);
 

@@ -71,8 +71,8 @@ std::string remarks_text(const LimitRow& row, const Layout& layout) {
   const auto say = [&](const std::string& what) { text += layout.wrapped(row.algorithm() + ": " + what, 0); };
   if (limit.end.value && limit.own && !question.rule.holds(limit.own->verdict)) {
     say(fmt::format(
-        "the run at the scenario's value {} is not stable ({}): the limit belongs to the first stable values from the "
-        "{} end of the range",
+        "the run at the scenario's value {} is not stable ({}): the limit is the end of the first stable interval, "
+        "counted from the {} end of the range",
         significant(limit.own->value), run_verdict_name(limit.own->verdict),
         question.search.smallest ? "high" : "low"));
   }
@@ -83,17 +83,18 @@ std::string remarks_text(const LimitRow& row, const Layout& layout) {
     say(fmt::format("{} runs were too short to distinguish slow motion from rest, even when extended up to 64 times",
                     limit.undecided));
   for (const auto& [metric, error] : limit.metric_errors)
-    say(
-        fmt::format("{} has an error of {} at the limit (half the step, half the point spacing); its bound holds with "
-                    "this error added",
-                    metric, significant(error, 2)));
+    say(fmt::format(
+        "{} has an error of {} at the limit, estimated with half the time step and half the point spacing; {}", metric,
+        significant(error, 2),
+        limit.violates_with_errors ? "a bound is violated with such an error added"
+                                   : "its bound holds with this error added"));
   if (!limit.has_effect)
     say(fmt::format("{} has no effect here: the handle moves identically in all {} runs", question.path,
                     limit.runs.size()));
   if (limit.unstable_alone)
-    say(fmt::format("at {} {} would be unstable even without contact: no contact and no stiffness is the cause",
-                    significant((limit.end.beyond ? *limit.end.beyond : limit.runs.front()).value),
-                    limit.unstable_part));
+    say(fmt::format(
+        "at {}, {} would be unstable even without contact: neither the contact nor its stiffness is the cause",
+        significant((limit.end.beyond ? *limit.end.beyond : limit.runs.front()).value), limit.unstable_part));
   return text;
 }
 
@@ -130,16 +131,17 @@ std::string notes_text(const LimitTable& table, const Layout& layout) {
   const auto is_marked = [&names](const char* mark) { return names.find(mark) != std::string::npos; };
   const std::pair<bool, std::string> notes[] = {
       {table.is_grid(),
-       "quote: the value that a user may render, the linear or the simulated limit, whichever is reached first; -: "
-       "there is none, because no value is stable or the values are stable to the end of the range. Column "
-       "quoted_reason of limit.csv has the reason"},
+       "quote: the smaller of the linear and the simulated limit (with --smallest the larger); -: no limit, because no "
+       "value is stable or the values are stable to the end of the range. Column quoted_reason of limit.csv has the "
+       "reason"},
       {table.is_grid() && table.first().question.path == kStiffnessPath,
        "a quote has no margin: \"hapbench tune\" recommends a stiffness with a margin"},
       {!table.is_grid(), fmt::format("stable {}: other end of the interval of stable values that contains the limit",
                                      table.first().question.search.smallest ? "to" : "from")},
       {table.is_grid(),
        "linear limit: limit by the eigenvalues of the loop of device, hand and contact, without dry friction and "
-       "encoder; -: this loop has no limit within the range"},
+       "encoder; none: no value or every value of the range is stable; -: the eigenvalues give no limit (column "
+       "no_linear_reason of limit.csv)"},
       {true,
        "first unstable: class of motion (\"hapbench describe stability\") of the first unstable run beyond the "
        "simulated limit; if no value is stable, of the run at the low end of the range"},
@@ -147,8 +149,7 @@ std::string notes_text(const LimitTable& table, const Layout& layout) {
        "non-monotonic: number of unstable runs on the stable side of the limit and of stable runs beyond it; "
        "limit_runs.csv has the class of each run"},
       {table.is_grid(),
-       "verification samples inside the stable intervals: none here; run limit with one scene, device and algorithm to "
-       "get them"},
+       "this table has no verification samples; run limit with one scene, device and algorithm to get them"},
       {std::ranges::any_of(table.devices, is_published),
        "published: largest stable stiffness of a wall [N/m] that was published (\"hapbench describe DEVICE\" names the "
        "source)"},
@@ -185,18 +186,18 @@ std::string rule_text(const StabilityRule& rule, const Scenario& scenario) {
       rule.max_vibration
           ? fmt::format(
                 "criterion: a run is stable if the handle vibrates by at most {} m/s rms above {:.0f} Hz after the "
-                "first quarter of the contact time, and slower bounces do not persist",
-                *rule.max_vibration, kVibrationCutoff)
+                "first quarter of the contact time, and bounces with a period above 1/{:.0f} s stop or become lower",
+                *rule.max_vibration, kVibrationCutoff, kVibrationCutoff)
           : fmt::format("criterion: a run is stable if it comes to rest or its oscillation decays{}",
                         rule.bounded ? ", or if it vibrates without growing" : "");
-  if (!rule.max_vibration && has_scripted_motion(scenario))
-    text +=
-        "; because a script moves the tool, only motion above 30 Hz and above 1 mm/s counts, and if the script ends "
-        "in the first half of the run, all motion above 1 mm/s from then on";
   for (const auto& [metric, bound] : rule.bounds) {
     if (bound.min) text += fmt::format(", and {} >= {}", metric, *bound.min);
     if (bound.max) text += fmt::format(", and {} <= {}", metric, *bound.max);
   }
+  if (!rule.max_vibration && has_scripted_motion(scenario))
+    text +=
+        ". Because a script moves the tool, only motion above 30 Hz and faster than 1 mm/s counts. If the script ends "
+        "in the first half of the run, all motion faster than 1 mm/s after the end of the script counts too";
   return text;
 }
 

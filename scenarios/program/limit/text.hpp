@@ -15,7 +15,7 @@ namespace hapbench {
 std::string limit_answer(const FieldLimit& found);
 /// Returns the condition under which a run counts as stable.
 std::string rule_text(const StabilityRule& rule, const Scenario& scenario);
-/// Reports the questions, the answers, the table of the rows and the notes on it.
+/// Reports the questions, the answers, the table of the rows and the notes on this table.
 void report_limits_text(const LimitTable& table, const Columns<LimitRow>& columns, const Layout& layout,
                         Report& report);
 

@@ -27,8 +27,8 @@ struct DragStart {
 /// Chooses the start position and direction of a drag. Evaluates the directions +x, +y, -x and -y from each position.
 /// Does so with the smoothing radius `smoothing` [m], then with twice and four times this radius, until a path is at
 /// least `min_length` [m] long. If no path is that long, returns the longest path. A later path is preferred only if it
-/// is 10 % longer, so that rounding does not decide. Cost: about 10 ms for each combination. Precondition: the shell
-/// has points and `positions` is not empty.
+/// is 10 % longer, so that rounding does not decide. Cost: about 10 ms for each combination of position, direction and
+/// smoothing radius. Precondition: the shell has points and `positions` is not empty.
 DragStart choose_drag(const PointShell& shell, std::span<const Vec3> positions, double smoothing, double min_length);
 
 }  // namespace hapbench

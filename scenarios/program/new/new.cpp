@@ -118,8 +118,8 @@ void add_new(CommandLine& line) {
               "true length of the longest edge of the mesh's bounding box, with a unit: 12mm, 1.2cm, 0.012m or 0.5in");
   command.add(
       "--unit <unit>", options.unit,
-      "unit of the mesh file, instead of --extent: mm, cm, m or in. Without both, the file is read in m, and refused "
-      "if its longest edge is then below 1 mm or above 1 m",
+      "unit of the mesh file, instead of --extent: mm, cm, m or in. Without both options, the file is read in m; it is "
+      "rejected if the longest edge of its bounding box is then below 1 mm or above 1 m",
       {.one_of = {"mm", "cm", "m", "in"}});
   command.add(
       "--side <axis>", options.side,

@@ -25,12 +25,14 @@ struct LengthUnit {
 };
 inline constexpr LengthUnit kLengthUnits[] = {{"mm", 0.001}, {"cm", 0.01}, {"m", 1.0}, {"in", 0.0254}};
 
-/// Converts the value of an option, such as "0.01,0,0", to a point [m]. Throws InputError with the option's name.
+/// Converts the value of an option, such as "0.01,0,0", to a point [m]. Throws InputError with the option's name if the
+/// value is not a point.
 Vec3 parse_position(const char* option, const std::string& text);
-/// Converts the value of an option, such as "12mm", to a length [m]. Throws InputError with the option's name.
+/// Converts the value of an option, such as "12mm", to a length [m]. Throws InputError with the option's name if the
+/// value is not a length.
 double parse_length(const char* option, const std::string& text);
 /// Throws InputError if the kind requires an option that is missing, if an option does not apply to the kind,
-/// and if a file does not exist.
+/// or if a file does not exist.
 void check_options(const NewOptions& options, const StartKind& kind);
 
 }  // namespace hapbench

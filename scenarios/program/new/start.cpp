@@ -153,20 +153,22 @@ class Start {
                        shell_file(mesh_file()), option);
   }
 
-  /// Returns the length of the file's unit [m]: the unit of --unit, the length that gives the object the size of
-  /// --extent, or 1 without both options. `box`: the object's bounds, read as millimetres. Throws InputError if neither
-  /// option is given and the object, read in metres, is shorter than 1 mm or longer than 1 m.
+  /// Returns the length of the file's unit [m]. With --unit, this is the given unit. With --extent, it is the length
+  /// for which the object's longest edge has the given length. With neither option, it is 1 m. `box`: the object's
+  /// bounds, read as millimetres. Throws InputError if neither option is given and the object, read in metres, is
+  /// shorter than 1 mm or longer than 1 m.
   double choose_scale(const Box& box, const char* object) {
     const double longest = box.size().maxCoeff() / 0.001;
     if (!extent_ && !unit_ && (longest < kShortestObject || longest > kLongestObject)) {
       throw InputError(fmt::format(
-          "{}: the {} is {} long in metres, {} in millimetres; allowed: {} ... {}, or to state its unit: {} or {}",
+          "{}: the {} is {} long if its numbers are metres, {} if they are millimetres; allowed: {} ... {}, or to "
+          "state its unit: {} or {}",
           mesh_file(), object, length_text(longest), length_text(0.001 * longest), length_text(kShortestObject),
           length_text(kLongestObject), command_with("--unit mm"), command_with("--unit m")));
     }
     const double scale = unit_ ? *unit_ : extent_ ? rounded_to_digits(*extent_ / longest, 6) : 1.0;
-    notes_.push_back(fmt::format("longest edge of the {}'s box: {:.6g} in the file, {} with scale {}{}", object,
-                                 longest, length_text(longest * scale), scale, scale_note(scale)));
+    notes_.push_back(fmt::format("longest edge of the {}'s bounding box: {:.6g} in the file, {} with scale {}{}",
+                                 object, longest, length_text(longest * scale), scale, scale_note(scale)));
     return scale;
   }
 
@@ -187,8 +189,8 @@ class Start {
     const bool has_size = longest > 0.0;  // unlike a single point
     if (unit_ || !has_size || (longest >= kShortestObject && longest <= kLongestObject)) return;
     throw InputError(fmt::format(
-        "{}: the shell is {} long in metres, {} if its numbers are millimetres; allowed: {} ... {} (convert the "
-        "coordinates of the file to metres), or to confirm its size: {}",
+        "{}: the shell is {} long if its numbers are metres, {} if they are millimetres; allowed: {} ... {} (convert "
+        "the coordinates of the file to metres), or to confirm its size: {}",
         mesh_file(), length_text(longest), length_text(0.001 * longest), length_text(kShortestObject),
         length_text(kLongestObject), command_with("--unit m")));
   }
@@ -249,8 +251,8 @@ class Start {
       if (scene_.contains("tool") && scene_["tool"].contains(field)) scene_["tool"][field] = size;
   }
 
-  /// Returns the points of the surface. If, around the highest point, the normals of an open mesh point away from the
-  /// side, flips all its normals. Throws InputError for a point shell with such normals.
+  /// Returns the points of the surface. If the normals around the highest point of an open mesh point away from the
+  /// side of --side, flips all normals of the mesh. If the normals of a point shell do so, throws InputError.
   std::vector<SurfacePoint> points_facing_side() {
     std::vector<SurfacePoint> shell = points();
     const Box box = bounds_of(shell);
@@ -307,8 +309,8 @@ class Start {
 
   double side_sign() const { return options_.side.front() == '-' ? -1.0 : 1.0; }
 
-  /// Returns the surface point above which the tool starts. With requested points, this is the point that faces
-  /// the side and is nearest to the first of them. Otherwise it is the middle of the top.
+  /// Returns the surface point above which the tool starts. With requested points, it is the surface point that is
+  /// nearest to the first requested point and whose normal points to the side. Otherwise it is the middle of the top.
   Vec3 top_of(const std::vector<SurfacePoint>& shell, const Box& box) const {
     if (requested_points_.empty()) return top_center(shell, box.max.z(), 0.1 * diameter_);
     const Vec3 named = to_world_.transpose() * requested_points_.front();
@@ -337,7 +339,7 @@ class Start {
              {"interpolation", "cosine"}};
   }
 
-  /// Drags the tool along the requested points.
+  /// Drags the tool along the requested points. `first`: surface point above which the tool starts.
   void follow_path(const Vec3& first) {
     double length = 0.0;
     Json& hand = scene_["hand"];
@@ -486,14 +488,14 @@ class Start {
   std::vector<std::string> notes_, warnings_;
   const NewOptions& options_;
   std::filesystem::path directory_;
-  bool is_over_largest_ = false;             ///< the tool starts over the largest of several components of a mesh
-  std::optional<double> unit_;               ///< stated unit of the mesh file [m]
-  std::optional<double> extent_;             ///< stated longest edge of the mesh's box [m]
-  std::vector<Vec3> requested_points_;       ///< points of --path, or the point of --at [m]
-  Mat3 to_world_ = Mat3::Identity();         ///< rotates vectors of the side's frame into the world frame
-  double diameter_ = 0.001;                  ///< diameter of the tool [m]
-  mutable std::optional<MeshFile> largest_;  ///< largest component of the mesh; valid if the environment is equal to
-                                             ///< largest_environment_
+  bool is_over_largest_ = false;        ///< the tool starts over the largest of several components of a mesh
+  std::optional<double> unit_;          ///< stated unit of the mesh file [m]
+  std::optional<double> extent_;        ///< stated longest edge of the mesh's box [m]
+  std::vector<Vec3> requested_points_;  ///< points of --path, or the point of --at [m]
+  Mat3 to_world_ = Mat3::Identity();    ///< rotates vectors of the side's frame into the world frame
+  double diameter_ = 0.001;             ///< diameter of the tool [m]
+  /// Largest component of the mesh. Valid if the environment of the scene is equal to largest_environment_.
+  mutable std::optional<MeshFile> largest_;
   mutable Json largest_environment_;
   double press_target_ = 0.0;  ///< final target of a pressing hand along the side's axis [m]
 };

@@ -24,8 +24,8 @@ struct Tuning {
   std::vector<Diagnosed> findings;
 };
 
-/// Returns the laws with a choice, best first. The best law has the smallest settled depth (inside_settled_m);
-/// in scenes without this metric it has the largest rendered stiffness K lambda_max.
+/// Returns the laws with a feasible choice, best first. The best law has the smallest settled depth (metric
+/// inside_settled_m). In scenes without this metric, the best law has the largest rendered stiffness K lambda_max.
 std::vector<const TunedLaw*> ranking_of(const std::vector<TunedLaw>& laws);
 
 /// A stability margin of a choice: its column in tune.csv, its heading, its JSON key, and its printed text. If the

@@ -10,7 +10,8 @@
 namespace hapbench {
 namespace {
 
-/// Endings of the names of scaled fields: the hand feels their value times the scale of the mount.
+/// Endings of the names of scaled fields. The hand feels the value of a scaled field multiplied by the scale of the
+/// mount.
 constexpr std::array<std::string_view, 4> kScaledUnits = {"_N_per_m", "_N_s_per_m", "_s_per_m", "_kg"};
 
 /// Adds an override for each scaled field within `value`, which divides the field by the scale. `path`: dotted path of
@@ -43,8 +44,9 @@ std::string loop_lines(const Json& scenario, const std::filesystem::path& file, 
   const std::vector<std::string> overrides = overrides_for_scale(scenario, scale);
   if (overrides.empty()) return "in your own loop (scenarios/LOOP.md): " + opened;
   std::string text = fmt::format(
-      "in your own loop (scenarios/LOOP.md), where the hand feels {0:g} times the coefficients of the scenario and a "
-      "force presses the tool {0:g} times as deep:\n  setup.mount.scale = {0};\n  {1}"
+      "in your own loop (scenarios/LOOP.md). With this scale the hand feels {0:g} times the coefficients of the "
+      "scenario, so these lines divide the coefficients by {0:g}; a force then "
+      "presses the tool {0:g} times as deep:\n  setup.mount.scale = {0};\n  {1}"
       "  static const char* const overrides[] = {{\n",
       scale, opened);
   for (const std::string& override : overrides) text += fmt::format("      {},\n", Json(override).dump());

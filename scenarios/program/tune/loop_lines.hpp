@@ -15,7 +15,8 @@ namespace hapbench {
 /// scale. Returns no overrides if the scale is 1.
 std::vector<std::string> overrides_for_scale(const Json& scenario, double scale);
 
-/// Returns the lines that open the scenario in `file` with overrides_for_scale(). `scenario`: the content of the file.
+/// Returns the lines of C that open the scenario in `file` with the overrides of overrides_for_scale(). `scenario`: the
+/// content of the file.
 std::string loop_lines(const Json& scenario, const std::filesystem::path& file, double scale);
 
 }  // namespace hapbench

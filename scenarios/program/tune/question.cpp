@@ -15,7 +15,8 @@
 namespace hapbench {
 namespace {
 
-/// Returns a range of numbers above 0, which is searched in equal ratios; empty for an empty text. Throws InputError.
+/// Parses a range of numbers above 0. Successive values of the search in this range have equal ratios. Returns empty
+/// for an empty text. Throws InputError.
 std::optional<Range> parse_ratio_range(const char* option, const std::string& text) {
   std::optional<Range> range = parse_range(option, text);
   if (!range) return range;

@@ -15,8 +15,8 @@ struct TuneOptions : CommonOptions {
   std::string scenario, device, damping_ratio, mass;
   std::string scale = "1";  ///< scale of the mount in the user's loop: virtual metres per metre of the device
   std::vector<std::string> algorithms, bounds, family;
-  TuneQuestion question;  ///< holds the members of TuneQuestion that options set directly; tune_question() fills the
-                          ///< others
+  /// Question with the members that options set directly. tune_question() sets its other members.
+  TuneQuestion question;
 };
 
 /// Returns the question for the scene in a file. Throws InputError.

@@ -21,6 +21,13 @@ std::string low_vibration_rules() {
 
 namespace {
 
+/// Returns the advice `attempt` of a diagnosis with the option of tune in place of the field that tune chooses.
+std::string as_options_of_tune(std::string attempt) {
+  const std::string field = "rendering.damping_ratio (zeta)";
+  const std::size_t at = attempt.find(field);
+  return at == std::string::npos ? attempt : attempt.replace(at, field.size(), "zeta (--damping-ratio)");
+}
+
 std::string limits_text(const Tuning& tuning) {
   std::string text = fmt::format(
       "largest K for which all runs settle (are stable by \"hapbench describe stability\") at every stiffness "
@@ -75,9 +82,10 @@ std::string recommendation_text(const Tuning& tuning, const Layout& layout) {
                    best->verified, tuning.question.margin, 100.0 * may_fail_share(kVerificationSamples), tuning.runs));
   line("diagnosis", tuning.findings.empty()
                         ? "\"hapbench run\" reports no problem at K"
-                        : "at K, \"hapbench run\" also reports what tune does not require to avoid:");
+                        : "at K, \"hapbench run\" reports problems that do not violate a constraint of tune:");
   for (const Diagnosed& found : tuning.findings)
-    line("", fmt::format("{} (rule {}); try: {}, then tune again", found.says, finding_text(found), found.attempt));
+    line("", fmt::format("{} (rule {}: {}); try: {}, then tune again", found.says, found.rule,
+                         value_and_threshold_text(found), as_options_of_tune(found.attempt)));
   line("metrics at K",
        "+-: largest change with half the time step, half the point spacing, or the depth evaluated at every step; "
        "0: no change");

@@ -84,7 +84,8 @@ int tune(const TuneOptions& options, ProgramContext& context) {
   std::vector<TuneTrial> trials;
   for (const TunedLaw& law : tuning.laws) trials.insert(trials.end(), law.trials.begin(), law.trials.end());
   report.write("tune_trials.csv", trial_columns(), trials);
-  // Write the scenario with the best choice. Remove the scenario of an earlier tune if nothing is feasible.
+  // Write the scenario with the best choice. If no law has a feasible choice, remove the tuned scenario that an earlier
+  // command may have written.
   const std::filesystem::path tuned_file = out / (file.stem().string() + "_tuned.json");
   std::filesystem::path tuned;
   Json tuned_json;
@@ -135,8 +136,8 @@ void add_tune(CommandLine& line) {
               "range of the virtual mass on an admittance device [kg] (default: half to twice the scenario's)");
   command.add(
       "--scale <number>", options.scale,
-      "scale of motion of your own loop, setup.mount.scale in scenarios/LOOP.md; tune divides the coefficients in "
-      "the lines of code that it prints for this loop by it (default: 1)");
+      "scale of motion of your own loop, setup.mount.scale in scenarios/LOOP.md (default: 1); tune prints lines of "
+      "code for this loop, with all coefficients divided by the scale");
   command.flag("--filters", options.question.filters, "on an impedance device, choose the velocity filter too");
   add_common(command, options, "tune_NAME");
   add_table(command, options.output);
@@ -146,15 +147,16 @@ void add_tune(CommandLine& line) {
       "Requirements: the scenario's run and the runs of each family are stable at K and at margin x K, the linear "
       "limit is at least margin x K, every --bound holds at K, and a force is rendered. Unless --allow-vibration is "
       "given, the scenario's run has low vibration: none of the rules {} applies (\"hapbench describe diagnosis\").\n\n"
-      "Result: K, zeta and law, the binding constraint, the margins that are left, and the expected metrics with "
-      "their errors. {} verification samples between K and margin x K must be stable; otherwise the search goes on "
-      "with another K. If nothing is feasible, tune names the bound to relax, with a value that a second search "
-      "confirms, or the failing run and the option that can help. Of several laws, the law with the smallest depth "
-      "of the tool in settled contact (inside_settled_m) is recommended; without such a depth, the law that renders "
-      "the largest stiffness.\n\n"
+      "Result: K, zeta and law, the binding constraint, the margins that are left, and the expected metrics with their "
+      "errors. {} verification samples between K and margin x K must be stable; otherwise the search continues with "
+      "another K.\n\n"
+      "Several laws: tune recommends the law with the smallest depth of the tool in settled contact "
+      "(inside_settled_m). If this depth is not known, tune recommends the law that renders the largest stiffness.\n\n"
+      "Nothing feasible: tune names the bound to relax, with a value that a second search confirms, or the failing run "
+      "and the option that can help.\n\n"
       "Files: NAME_tuned.json is the tuned scenario, for \"hapbench run\". tune.csv has one row per law, "
-      "tune_trials.csv one row per trial. They replace the files of an earlier tune in the same folder; if nothing "
-      "is feasible, an earlier NAME_tuned.json is removed.\n\n"
+      "tune_trials.csv one row per trial. They replace the files of an earlier tune in the same folder; if nothing is "
+      "feasible, an earlier NAME_tuned.json is removed.\n\n"
       "Time: seconds to minutes; a search for a law ends after {} runs.\n\n"
       "Exit status: 0 also if nothing is feasible; 2 bad input; 130 stopped by Ctrl-C.",
       low_vibration_rules(), kVerificationSamples + kSamplesNearLimit, kMaxTuneRuns));

@@ -45,7 +45,7 @@ void velocity_verlet(ToolState& tool, const Vec3& force, double mass, double dt,
 
 /// Advances position and velocity by an interval of `h` [s] with the classical Runge-Kutta method of order 4. The
 /// interval starts at the fraction `from` of the step of `dt` [s]. `force` is the force at the start of the interval.
-/// Calls `stage` after each further force. Returns position and velocity at the end of the interval.
+/// Calls `stage` after each further evaluation of the force. Returns position and velocity at the end of the interval.
 template <class Stage>
 std::pair<Vec3, Vec3> runge_kutta(const Vec3& p, const Vec3& v1, const Vec3& force, double mass, double from, double h,
                                   double dt, ForceField& field, const Stage& stage) noexcept {
@@ -62,9 +62,9 @@ std::pair<Vec3, Vec3> runge_kutta(const Vec3& p, const Vec3& v1, const Vec3& for
   return {p + (v1 + 2.0 * v2 + 2.0 * v3 + v4) * (h / 6.0), v1 + (a1 + 2.0 * a2 + 2.0 * a3 + a4) * (h / 6.0)};
 }
 
-/// The classical Runge-Kutta method of order 4, which evaluates the force at t, t + dt/2 and t + dt with the tool axis
-/// of that time. Reference for smooth forces. Contacts that begin or end within a step reduce its order to 1, and so
-/// does the held force f_in.
+/// The classical Runge-Kutta method of order 4, which evaluates the force at t, t + dt/2 and t + dt, each with the tool
+/// axis at this time. Reference for smooth forces. Two effects reduce its order to 1: contacts that begin or end within
+/// a step, and the input force f_in, which is held over each step.
 ///
 /// Stable on an undamped spring while K dt^2 / M < 8. Each step then loses the fraction (K dt^2 / M)^3 / 72 of
 /// the energy.
@@ -194,12 +194,14 @@ Eigen::Vector2d stepped(const SpringDamper& s, double x, double v, double held) 
 }  // namespace
 
 const IntegratorEntry kLeapfrog = {
-    .info = {.name = "leapfrog",
-             .summary = "semi-implicit Euler, the thesis's integrator: order 1, one force a step",
-             .formula = "v += f/M dt; p += v dt",
-             .source = "thesis Eq. A.1",
-             .known_failure = "blows up where 4 - 2 B dt / M - K dt^2 / M < 0; the energy of an undamped spring swings "
-                              "but does not drift"},
+    .info =
+        {.name = "leapfrog",
+         .summary = "semi-implicit Euler, the thesis's integrator: order 1, one force evaluation per step",
+         .formula = "v += f/M dt; p += v dt",
+         .source = "thesis Eq. A.1",
+         .known_failure =
+             "unstable if 4 - 2 B dt / M - K dt^2 / M < 0; the energy of an undamped spring oscillates but does not "
+             "drift"},
     .step = leapfrog,
     .holds_force = true,
     .step_matrix = step_matrix,
@@ -209,22 +211,24 @@ const IntegratorEntry kLeapfrog = {
 
 const IntegratorEntry kVelocityVerlet = {
     .info = {.name = "velocity_verlet",
-             .summary = "half a kick, drift, half a kick: order 2 without damping, two forces a step",
+             .summary = "half a kick, drift, half a kick: order 2 without damping, two force evaluations per step",
              .formula = "v' = v + f/M dt/2; p += v' dt; v = v' + f(p, v')/M dt/2",
              .source = "L. Verlet 1967, W. C. Swope et al. 1982",
-             .known_failure = "no stiffer springs than leapfrog without damping, K < 4 M / dt^2; order 1 with damping"},
+             .known_failure = "without damping, stable only for K < 4 M / dt^2, like leapfrog; order 1 with damping"},
     .step = velocity_verlet,
     .order = 2,
     .damper_limit = 4.0,
 };
 
 const IntegratorEntry kRk4 = {
-    .info = {.name = "rk4",
-             .summary = "classical Runge-Kutta method, the reference on smooth forces: order 4, four forces a step",
-             .formula = "v, p += dt/6 (k1 + 2 k2 + 2 k3 + k4)",
-             .source = "W. Kutta 1901",
-             .known_failure =
-                 "blows up at K > 8 M / dt^2; order 1 where contacts come and go within a step; dissipates a little"},
+    .info =
+        {.name = "rk4",
+         .summary =
+             "classical Runge-Kutta method, the reference on smooth forces: order 4, four force evaluations per step",
+         .formula = "v, p += dt/6 (k1 + 2 k2 + 2 k3 + k4)",
+         .source = "W. Kutta 1901",
+         .known_failure =
+             "unstable if K > 8 M / dt^2; order 1 if contacts begin or end within a step; dissipates a little energy"},
     .step = rk4,
     .order = 4,
     .damped_order = 4,
@@ -232,12 +236,14 @@ const IntegratorEntry kRk4 = {
 };
 
 const IntegratorEntry kEvent = {
-    .info = {.name = "event",
-             .summary = "rk4 in pieces between contacts on and off, which it finds inside a step: a reference",
-             .formula = "rk4 from event to event; events to tolerance_s by halving",
-             .source = "ours; event location as in L. F. Shampine, S. Thompson 2000",
-             .known_failure = "slow where many points touch and leave: some hundred forces for each of them; "
-                              "blows up at K > 8 M / dt^2"},
+    .info =
+        {.name = "event",
+         .summary = "rk4 between the times within a step at which contacts begin or end: a reference",
+         .formula = "rk4 from event to event; the time of an event is found by bisection to tolerance_s",
+         .source = "ours; event location as in L. F. Shampine, S. Thompson 2000",
+         .known_failure =
+             "slow if many contacts begin and end: some hundred force evaluations for each event; unstable if K > 8 M "
+             "/ dt^2"},
     .step = event,
     .order = 4,
     .damped_order = 4,
@@ -245,25 +251,31 @@ const IntegratorEntry kEvent = {
 };
 
 const IntegratorEntry kImplicitEuler = {
-    .info = {.name = "implicit_euler",
-             .summary = "linearly implicit Euler: order 1, never unstable on springs, one force and one 3x3 solve a "
-                        "step",
-             .formula = "(M I + dt D + dt^2 K S) dv = dt (f - dt K S v); v += dv; p += v dt",
-             .source = "J. C. Butcher, Numerical Methods for Ordinary Differential Equations; D. Baraff and A. Witkin "
-                       "1998",
-             .known_failure = "takes energy out of every oscillation, all of it where K dt^2 / M is large; sees no "
-                              "contact before it is there"},
+    .info =
+        {.name = "implicit_euler",
+         .summary =
+             "linearly implicit Euler: order 1, never unstable on springs, one force evaluation and one 3x3 solve per "
+             "step",
+         .formula = "(M I + dt D + dt^2 K S) dv = dt (f - dt K S v); v += dv; p += v dt",
+         .source = "J. C. Butcher, Numerical Methods for Ordinary Differential Equations; D. Baraff and A. Witkin "
+                   "1998",
+         .known_failure =
+             "dissipates energy of every oscillation, nearly all of it if K dt^2 / M is large; does not anticipate a "
+             "contact that begins within the step"},
     .step = implicit_euler,
 };
 
 const IntegratorEntry kImplicitMidpoint = {
-    .info = {.name = "implicit_midpoint",
-             .summary = "linearly implicit midpoint rule: order 2, never unstable on springs, one force and one 3x3 "
-                        "solve a step",
-             .formula = "(M I + dt/2 D + dt^2/4 K S) dv = dt (f - dt/2 K S v); p += dt (v + dv/2); v += dv",
-             .source = "J. C. Butcher, Numerical Methods for Ordinary Differential Equations",
-             .known_failure = "keeps the energy of undamped springs, so springs much stiffer than M / dt^2 swing from "
-                              "step to step; sees no contact before it is there"},
+    .info =
+        {.name = "implicit_midpoint",
+         .summary =
+             "linearly implicit midpoint rule: order 2, never unstable on springs, one force evaluation and one 3x3 "
+             "solve per step",
+         .formula = "(M I + dt/2 D + dt^2/4 K S) dv = dt (f - dt/2 K S v); p += dt (v + dv/2); v += dv",
+         .source = "J. C. Butcher, Numerical Methods for Ordinary Differential Equations",
+         .known_failure =
+             "keeps the energy of undamped springs, so springs much stiffer than M / dt^2 oscillate from step to step; "
+             "does not anticipate a contact that begins within the step"},
     .step = implicit_midpoint,
     .order = 2,
     .damped_order = 2,

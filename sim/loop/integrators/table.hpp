@@ -32,7 +32,8 @@ inline constexpr double kEventTolerance = 1e-9;
 
 struct SpringDamper;
 
-/// An integrator: moves the tool under the forces of a step. The functions in table.cpp document stability and energy.
+/// An integrator: moves the tool under the forces of a step. Its stability and its energy error are documented at its
+/// function in table.cpp.
 /// The pointers step_matrix and stability_margin describe a step for one spring-damper (SpringDamper). They are null if
 /// the integrator has no closed form; callers then evaluate steps of the integrator instead.
 struct IntegratorEntry {
@@ -43,8 +44,8 @@ struct IntegratorEntry {
   void (*step)(ToolState& tool, const Vec3& force, double mass, double dt, ForceField& field, double tolerance);
   int order = 1;         ///< order of convergence on undamped springs
   int damped_order = 1;  ///< order of convergence with damping
-  /// True if the force at the start of the step acts unchanged over the step (M dv = f dt). The work of the force in
-  /// the step then depends on this force only.
+  /// True if the force at the start of the step acts unchanged over the step (M dv = f dt). The work in the step then
+  /// follows from this force and the displacement alone.
   bool holds_force = false;
   /// Returns the matrix A of one step, (x, v) -> A (x, v), with position x and velocity v.
   Eigen::Matrix2d (*step_matrix)(const SpringDamper&) = nullptr;
@@ -76,9 +77,9 @@ struct LinearForce {
   ForceJacobian assumed;
 };
 
-/// Returns the map of one step of an integrator for a mass M under a linear force and a held force: the columns belong
-/// to the components of position [m], velocity [m/s] and held force [N], the rows to position and velocity after the
-/// step.
+/// Returns the matrix of one step of an integrator for a mass M under a linear force and a force that is held over the
+/// step. The columns belong to the components of position [m] and velocity [m/s] before the step and of the held force
+/// [N], the rows to position and velocity after the step.
 Eigen::Matrix<double, 6, 9> step_map(const IntegratorEntry& integrator, double M, double dt, const LinearForce& force);
 
 /// The linear system that defines the stability of an integrator (thesis section A.3): one spring-damper on a mass, M

@@ -45,7 +45,8 @@ TEST(McNeely, IsTheSumUpToTenPointsAndTenMeansBeyond) {
       "mcneely", [](double n) { return std::min(1.0, 3.0 / n); }, config);
 }
 
-/// A law with one spring along the averaged gradient. Its depth d_r is a function of the depths and of |sum u_i|.
+/// A law with one spring along the averaged gradient. The depth of this spring is a function of the depths of the
+/// contacts and of `length` = |sum u_i|.
 struct Law {
   const char* name;
   double (*depth)(const Eigen::VectorXd& depths, double length);
@@ -69,14 +70,14 @@ TEST(AveragedDirection, IsOneSpringAlongTheSummedGradient) {
       const test::Dense dense(contacts);
       const Vec3 sum = dense.U.rowwise().sum();
       const double n = static_cast<double>(dense.n()), length = sum.norm();
-      // If the gradients cancel to rounding, the direction is undefined.
+      // If the gradients nearly cancel, the direction is not defined well enough to be compared.
       if (length < 1e-6 * n) return;
       const Vec3 u = sum / length;
       const double d = law.depth(dense.d, length);
 
       const LawForce force = make_law(law.name, config)->evaluate(contacts);
-      // The sum has an error of n eps in each component. The direction and the inverse length have this error divided
-      // by the length of the sum.
+      // The sum of n unit gradients has an error of up to n^2 eps: n roundings of partial sums of up to n. The direction
+      // u and the factor 1 / length have this error divided by `length`.
       const double rounding = 4 * n * n * std::numeric_limits<double>::epsilon() / length;
       ASSERT_LE((force.spring + 1234.5 * d * u).norm(), rounding * 1234.5 * d) << law.name << ' ' << family;
       ASSERT_LE((force.S - u * u.transpose()).norm(), rounding) << law.name << ' ' << family;
@@ -85,8 +86,8 @@ TEST(AveragedDirection, IsOneSpringAlongTheSummedGradient) {
 }
 
 TEST(AveragedDirection, TurnsRoundWhereOneOfOpposedContactsComes) {
-  // Thesis B.3.3: m contacts push in one direction, and m - 1 or m + 1 contacts in the opposite direction. The original
-  // algorithm then adds all depths.
+  // Section B.3.3 of the thesis: m contacts push in one direction, and m - 1, m or m + 1 contacts in the opposite
+  // direction. If the numbers differ by 1, original_averaging adds the depths of all contacts.
   for (const Law& law : kLaws) {
     for (const int n : {0, 1, 5, 50}) {
       for (const int more : {-1, 0, 1}) {
@@ -130,7 +131,7 @@ LawForce tandpasta(ContactBuffer& contacts) {
   return make_law("tandpasta", {})->evaluate(contacts);
 }
 
-/// Checks the weights beta_i / sigma_E and the force of thesis F.2 against dense matrices.
+/// Checks the weights beta_i / sigma_E and the force of section F.2 of the thesis against dense matrices.
 TEST(Tandpasta, IsItsFormula) {
   test::for_random_contacts([](ContactBuffer contacts, const char* name) {
     const test::Dense dense(contacts);
@@ -138,10 +139,10 @@ TEST(Tandpasta, IsItsFormula) {
     const Eigen::VectorXd beta = inner.rowwise().sum().cwiseAbs().cwiseQuotient(inner.cwiseAbs().rowwise().sum());
     const Eigen::VectorXd d2 = dense.d.array().square();
     const double s = beta.dot(d2) / d2.sum();
-    // The error of beta is up to n eps (sums of n inner products divided by a sum of at least 1); c = beta / sigma
-    // amplifies this error.
+    // The error of beta is up to n eps, because beta is a sum of n inner products divided by a sum of at least 1. The
+    // division by s amplifies this error in c = beta / s.
     const double rounding = 8 * static_cast<double>(dense.n()) * kEps / s;
-    if (s < 1e-9) return;  // rounding decides near the threshold
+    if (s < 1e-9) return;  // near the energy threshold of the law, rounding decides whether the force is zero
     const Eigen::VectorXd c = beta / s;
     const LawForce force = tandpasta(contacts);
     ASSERT_LE((test::weights(contacts) - c).cwiseAbs().maxCoeff(), rounding * c.maxCoeff()) << name;
@@ -179,8 +180,8 @@ RenderingConfig config_of(double coupling, double saturation = 1e9) {
   return config;
 }
 
-// Returns the rounding error of sums of n <= 300 terms, amplified by the condition number of K_vc I + K S_sum, which is
-// at most 1 + n K / K_vc.
+// Returns the rounding error of sums of n <= 300 terms, amplified by the condition number of the matrix K_vc I + K
+// S_sum. K_vc is `coupling`, and the condition number is at most 1 + n K / K_vc.
 double rounding(const test::Dense& dense, double coupling) {
   const double n = static_cast<double>(dense.n());
   return 4 * n * kEps * (1 + n * kK / coupling);
@@ -221,7 +222,8 @@ TEST(VirtualCoupling, AlongTheSumKeepsItsDirectionAndTakesItsStiffnessInSeries) 
   });
 }
 
-/// Returns the displacement at which the coupling exerts the force f: the inverse of f = K x / sqrt(1 + (K x / F)^2).
+/// Returns the displacement x at which the coupling exerts the force f: the inverse of f = K x / sqrt(1 + (K x / F)^2),
+/// where K is `coupling` [N/m] and F is `saturation` [N].
 Vec3 displacement(const Vec3& f, double coupling, double saturation) {
   return f / (coupling * std::sqrt(1.0 - (f / saturation).squaredNorm()));
 }
@@ -240,7 +242,7 @@ TEST(StaticCoupling, BalancesACopyBetweenTheCouplingAndTheContactsItIsStillIn) {
         const Vec3 pushed = -kK * (dense.U * pressed);
         // The law finds the equilibrium to 1e-13 K |pressed|. displacement() computes the difference 1 - (f / F)^2,
         // which loses digits if the force f is close to the saturation F. The contacts multiply the error of the
-        // displacement by up to n K / K_vc.
+        // displacement by up to n K / K_vc, where K_vc is `coupling`.
         const double kept = 1.0 - (felt / saturation).squaredNorm();
         const double n = static_cast<double>(dense.n());
         const double lost = 1e-15 / kept * (1.0 + n * kK / coupling) * felt.norm() + 1e-12 * kK * dense.d.norm();

@@ -99,20 +99,21 @@ TEST_P(NormalProjectionLaw, IsStiffnessShapingOnItsDepthModelWithTheSameIteratio
   }
 }
 
-// Tests merged_shaping, and exact_shaping by its optimality condition, which has a unique solution.
+// Tests exact_shaping and merged_shaping. The weights of exact_shaping must satisfy its optimality condition, which has
+// a unique solution.
 
 constexpr std::size_t kSetsOfAFamily = 25000;
 constexpr std::size_t kLargestSet = 1000;
 
 // A violation r of the optimality condition changes tr S - |S|^2 by at most r tr S, where tr S <= 3/2 + sqrt(3)/2 <
-// 2.4. The violation changes the bound on lambda_max that follows from the condition by less.
+// 2.4. An upper bound of lambda_max follows from the optimality condition; the violation changes it by less.
 constexpr double kTraceRounding = 2.4 * test::kShapingRounding;
 
 /// Checks all properties of the optimum, with the tolerance of rounding in double precision.
 void expect_optimal(const test::GradientDistribution& family, ContactBuffer& contacts) {
   const int steps = solve_exact_shaping(contacts);
   // One to five steps are typical. In the mixtures, clusters of several scales beside many duplicates make the active
-  // set change contact by contact: 135 steps were the worst of 1e6 mixtures.
+  // set change contact by contact: the largest number of steps among 1e6 mixtures was 135.
   ASSERT_LT(steps, std::string(family.name) == "mixture" ? 200 : 60);
   const auto optimality = test::shaping_optimality(contacts, kExactShapingEpsilon);
   // The condition is written so that a NaN also fails.
@@ -139,7 +140,8 @@ TEST_P(ExactShapingOnFamily, IsOptimalAndWithinTheBounds) {
   }
 }
 
-/// Sets for which earlier versions of the solver failed, given by the seeds that determine their size and gradients.
+/// Sets of contacts for which earlier versions of the solver failed: the name of the gradient distribution, and the
+/// seeds that determine the size and the gradients of each set.
 const std::pair<const char*, std::vector<std::uint64_t>> kHardSets[] = {
     // For these sets, rounding hides the slope of the dual function. A line search that makes no step then stops at a
     // distance of 1e-4 from the optimum.
@@ -184,8 +186,8 @@ TEST(ExactShaping, AZeroGradientGetsNoWeight) {
 TEST(ExactShaping, ANonFiniteGradientDoesNotHang) {
   for (const double bad : {std::nan(""), std::numeric_limits<double>::infinity()}) {
     ContactBuffer contacts = test::contacts_of({{1, 0, 0}, {bad, 0, 0}, {0, 1, 0}});
-    // The result has no meaning, and in a run the check of the bounds ends the run after this step. Only the number of
-    // Newton steps must be bounded.
+    // The result has no meaning. A run with such a result ends after the step, because the check of the bounds fails.
+    // Therefore only the number of Newton steps must be bounded.
     EXPECT_LE(solve_exact_shaping(contacts), 1000);
   }
 }
@@ -242,8 +244,8 @@ TEST(MergedShaping, IsOptimalForTheTensorsOfItsGroups) {
     const double rounding = 4 * kEps * static_cast<double>(given + 8);
     ASSERT_LE((force.S - S).norm(), rounding * (1 + S.norm())) << family;
     ASSERT_LE((force.spring - dense.spring(kK, c)).norm(), rounding * kK * 0.001 * 3) << family;  // sum c <= 3
-    // Check the bound of exact_shaping. Its proof only requires that the tensor of each group has trace 1. The solver
-    // satisfies the optimality condition to 1e-14.
+    // Check the bounds that hold for exact_shaping. Their proof requires only that the tensor of each group of merged
+    // contacts has trace 1. The solver satisfies the optimality condition to 1e-14.
     ASSERT_GE(S.trace() + 1e-12, S.squaredNorm()) << family;
     ASSERT_LE(lambda_max(S), (1 + std::sqrt(3.0)) / 2 + 1e-12) << family;
     bool same_weight = true;  // same weight for contacts with the same gradient

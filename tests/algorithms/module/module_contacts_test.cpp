@@ -28,7 +28,8 @@ struct Script {
 };
 Script script;
 
-/// Writes the contacts of `script`, or throws at the call `throws_at`.
+/// Step function of the module under test. Throws at call number `script.throws_at`, counted from 0. At all other
+/// calls, writes the contacts `script.answer`.
 int step(void*, const HapbenchPose* pose, HapbenchContacts* contacts, HapbenchForce*, char*) {
   script.pose = *pose;
   if (script.asked++ == script.throws_at) throw std::runtime_error("no\nway");

@@ -17,7 +17,8 @@
 namespace hapbench::proxy_test {
 namespace {
 
-/// Sum of lambda_i u_i, and sum of the lambda_i, to which the rounding error of the first sum is proportional.
+/// Sums over the contacts i with the gradients u_i and the multipliers lambda_i (weights): `sum` is the sum of lambda_i
+/// u_i, and `lambdas` the sum of lambda_i. The rounding error of `sum` is proportional to `lambdas`.
 struct Held {
   Vec3 sum = Vec3::Zero();
   double lambdas = 0.0;
@@ -35,8 +36,8 @@ double violation(const ContactBuffer& contacts, std::size_t i, const Vec3& x) {
   return contacts.depth[i] + contacts.gradient(i).dot(x);
 }
 
-/// Random contacts and a wanted move. The contacts are built around a random move, `allowed`, which satisfies all of
-/// them, about 30 % with equality.
+/// Random contacts and a wanted move [m]. The depths are chosen so that a random move, `allowed`, satisfies the
+/// constraints of all contacts, and about 30 % of the constraints with equality.
 struct Problem {
   ContactBuffer contacts;
   Vec3 wanted;
@@ -62,8 +63,8 @@ TEST(NearestAllowed, SatisfiesTheConditionsOfOptimality) {
   for_feasible_problems([](Problem problem, const char* family) {
     const AllowedMove allowed = nearest_allowed(problem.wanted, problem.contacts);
     ASSERT_TRUE(allowed.feasible) << family;
-    // Lengths are up to 0.4 mm; the violation of an active contact may be the rounding error of multipliers that
-    // cancel.
+    // Lengths are up to 0.4 mm. The terms lambda_i u_i may nearly cancel; their rounding error then violates the
+    // constraints of active contacts.
     const Held h = held(problem.contacts);
     const double rounding = 4e-4 * kViolationTolerance + 1e-13 * h.lambdas;
     for (std::size_t i = 0; i < problem.contacts.size(); ++i) {
@@ -109,7 +110,7 @@ TEST(NearestAllowed, SharesWhatOppositeWallsLackInEqualSquares) {
     EXPECT_FALSE(allowed.feasible);
     const double N = static_cast<double>(n), M = static_cast<double>(m);
     const double x = (M * b - N * a + kCompromiseEpsilon * wanted.x()) / (N + M + kCompromiseEpsilon);
-    // The Newton step solves a system with the condition number (N + M) / epsilon.
+    // The Newton step solves a linear system with the condition number (N + M) / epsilon.
     EXPECT_NEAR(allowed.move.x(), x, 1e-4 * 1e-16 * (N + M) / kCompromiseEpsilon);
     EXPECT_NEAR(allowed.move.y(), wanted.y(), 1e-12);
     EXPECT_NEAR(allowed.move.z(), wanted.z(), 1e-12);
@@ -144,8 +145,9 @@ TEST(NearestAllowed, FindsTheLeastSquaresOfContradictingContacts) {
     const AllowedMove allowed = nearest_allowed(wanted, contacts);
     if (allowed.feasible) continue;
     ++contradicting;
-    // The gradient vanishes at the minimum. The solver stops at epsilon times the tolerance, and sums of n terms of
-    // 1e-4 are rounded.
+    // At the minimum, the gradient of epsilon/2 |x - t|^2 + 1/2 sum max(0, violation)^2 vanishes, where x is the
+    // allowed move and t the wanted move. The solver stops if the gradient is below epsilon times the tolerance. Sums
+    // of n terms of 1e-4 add rounding errors.
     Vec3 gradient = kCompromiseEpsilon * (allowed.move - wanted);
     for (std::size_t k = 0; k < n; ++k) gradient += std::max(0.0, violation(contacts, k, allowed.move)) * gradients[k];
     ASSERT_LE(gradient.norm(), 1e-19 + 1e-20 * static_cast<double>(n * n));
@@ -252,7 +254,7 @@ RenderingConfig proxy_config() {
   return config;
 }
 
-/// A proxy in a setting. Tests call step().
+/// A proxy and the points of a setting. step() moves the tool and updates `contacts`, `force` and `proxy_position`.
 struct Rig {
   PointShell shell;
   ShellSource source;
@@ -303,11 +305,12 @@ ToolPose above(const test::Setting& setting) {
 TEST(ProxyRendering, OfAnEdgeOnAPlaneIsTheDepthOfTheEdgeWhereverThePointsLie) {
   Random random(1);
   for (int i = 0; i < 300; ++i) {
-    // Below a tilt of 0.11 rad the tip is flush with the plane. The first pass of the proxy finds points within 0.1 mm.
+    // The tilt is at least 0.11 rad, because the tip counts as flush with the plane at smaller tilts. The depth is
+    // below 0.1 mm, because the first pass of the proxy finds only points within 0.1 mm of the proxy.
     const double tilt = random.uniform(0.11, 1.3), depth = 9e-5 * random.uniform();
     const test::Setting setting = tilted_on_plane(tilt, depth, random);
     test::Probe probe(setting, proxy_config());
-    // The proxy must come from outside, because otherwise the points would push it sideways out of the shell.
+    // The proxy must start outside of the shell, because otherwise the points would push it sideways out of the shell.
     probe.force_at(above(setting));
     const RenderedForce force = probe.force_at(setting.pose);
     EXPECT_LE((force.spring - Vec3(0, 0, kK * depth)).norm(), kK * 1e-12) << "tilt " << tilt << ", depth " << depth;
@@ -369,7 +372,7 @@ TEST(ProxyRendering, NeverLetsThePointsInWhereTheToolHasRoom) {
 }
 
 TEST(ProxyRendering, HoldsAToolThatIsPulledThroughAPlane) {
-  // The whole tool is below the points, where penalty springs have no contact.
+  // The tool moves down until it is completely below the points. Penalty springs would then have no contact.
   test::Setting setting;
   setting.points = surface_points(Plane{0.004, 0.0001});
   setting.tool = {0.0005, 0.002, Tip::flat};
@@ -433,7 +436,8 @@ TEST(ProxyRendering, DampsTheTurnOfTheEdgeThatTouches) {
   const Vec3 turn(0.3, -0.4, 0.1);
   rig.step({setting.pose, Vec3::Zero(), turn});
   ASSERT_EQ(rig.contacts.size(), 1u);
-  // One patch holds the edge. The normal component of the velocity omega x r at its point is damped.
+  // One flat patch around a point of the plane holds the edge. The velocity omega x r of the proxy at this point is
+  // damped along the normal of the plane.
   const double along = turn.cross(rig.contacts.point(0) - rig.proxy_position).z();
   const double B = 2.0 * config.damping_ratio * std::sqrt(kK * config.mass);
   EXPECT_LE((rig.force.rendered - rig.force.spring - Vec3(0, 0, -B * along)).norm(), 1e-12);

@@ -41,8 +41,9 @@ RenderingConfig proxy(double stiffness, double rotation) {
   return config;
 }
 
-/// Returns the pose that a hand intends for a drill that is tilted from upright by `tilt` [rad] about +y, so that the
-/// tip moves towards -x. The point of the drill's axis at the distance `pivot` [m] behind the tip lies at `tip` [m].
+/// Returns the pose that a hand intends for a drill. The drill is tilted from upright by `tilt` [rad] about +y, so that
+/// a positive tilt moves the tip towards -x. The position `tip` [m] is the position of the point on the drill's axis
+/// that lies `pivot` [m] behind the tip.
 Intent intent_of(const HandAndCoupling& springs, const Vec3& tip, double tilt, double pivot = 0.0) {
   Intent intent;
   intent.orientation = turn_by({0.0, tilt, 0.0});
@@ -78,7 +79,8 @@ struct OneContact {
     ThreeDofDevice device(shell, tool, springs, config, 0.0005);
     return pressed(device).x();
   }
-  /// Return the compliance [m/N] of the 6-DOF device, and of a proxy with the rotational stiffness k.
+  /// Closed forms of the compliance [m/N]: compliance() of the 6-DOF device, and compliance_of_proxy(k) of a proxy with
+  /// the rotational stiffness k [N m/rad].
   double compliance() const {
     const double l = lever(), c = springs.grip;
     return 1.0 / series() + (l - c) * (l - c) / springs.hand_rotation + l * l / springs.coupling_rotation;
@@ -101,8 +103,8 @@ constexpr HandAndCoupling kSprings = {.coupling = 2000.0,
                                       .hand_rotation = 0.2,
                                       .force_point = 0.035,
                                       .grip = 0.0};
-/// Relative error of the closed forms: they neglect the rotation of 1e-4 rad, which changes the normal and the lever of
-/// the contact.
+/// Largest relative error of the closed forms. They neglect that a rotation of up to 1e-4 rad changes the normal and
+/// the lever of the contact.
 constexpr double kLinear = 1e-4;
 
 HandAndCoupling with(HandAndCoupling springs, const std::function<void(HandAndCoupling&)>& change) {
@@ -116,12 +118,13 @@ TEST(Turns, AreTheInverseOfEachOtherAndHaveTheirDerivative) {
   const Vec3 v(0.3, -0.9, 0.5), w = 1e-6 * Vec3(0.2, 0.7, -0.4);
   const Eigen::Quaterniond from = turn_by({1.0, 0.2, -0.3});
   EXPECT_LE((turn_between(from, turned(from, v)) - v).norm(), 1e-14);
-  // The remainder is of second order in w: 1e-12.
+  // The error of the linear approximation is of second order in w: |w|^2 = 1e-12.
   EXPECT_LE(
       (turn_between(Eigen::Quaterniond::Identity(), turned(turn_by(v), w)) - v - rotation_vector_derivative(v) * w)
           .norm(),
       1e-12);
-  // The two formulas of the derivative agree at the angle at which the function changes from one to the other.
+  // rotation_vector_derivative() uses one formula below the angle 0.01 and another formula above it. Both formulas
+  // agree at this angle.
   const Vec3 small = 0.0099999 * v.normalized(), larger = 0.0100001 * v.normalized();
   EXPECT_LE((rotation_vector_derivative(small) - rotation_vector_derivative(larger)).norm(), 3e-7);
 }
@@ -133,7 +136,7 @@ TEST(PoseSprings, HaveTheDerivativesOfTheirEnergy) {
                                .grip = 0.012,
                                .grip_target = {0.001, 0.002, -0.01},
                                .target = turn_by({0.1, 0.3, 0.0})};
-  // Returns the energy, minimised over the rotation of the handle by Newton steps of the model.
+  // Returns the smallest energy over all rotations of the handle. Newton steps with energy_model() find this rotation.
   const auto energy_at = [&](CoupledPose pose) {
     for (int i = 0; i < 50; ++i) move(pose, energy_model(springs, pose), Vec6::Zero());
     return 0.5 * spring_force(springs, pose).squaredNorm() / springs.stiffness +
@@ -148,8 +151,8 @@ TEST(PoseSprings, HaveTheDerivativesOfTheirEnergy) {
   still.handle_turn.setZero();
   still.handle_follows.setZero();
   for (int k = 0; k < 6; ++k) {
-    // Compare with central differences of the energy E = 1e-2 J with a step h. The rounding error is 1e-18 / h, the
-    // truncation error of order h^2.
+    // Compare gradient and Hessian with central differences of the energy with a step h. The energy is about 1e-2 J.
+    // The rounding error of the first difference is 1e-18 / h, and its truncation error is of order h^2.
     const double h = k < 3 ? 1e-6 : 1e-4;
     const auto at = [&](double sign) {
       CoupledPose moved = pose;
@@ -184,7 +187,7 @@ TEST(OneContact, IsRightUnderAProxyThatDoesNotTurnIfTheForceActsThere) {
   EXPECT_NEAR(contact.with(law("proxy", 2000.0)) / contact.reference(), 1.0, kLinear);
 }
 
-// ---- Prediction 2: the matching stiffness, and the error for other values of K_r'
+// ---- Prediction 2: the rotational stiffness at which the proxy renders F, and the error of the proxy with K_r'
 
 TEST(OneContact, HasTheForcesOfTheClosedForms) {
   for (const auto& [l, c, error] : {std::array{0.03, 0.01, -0.18}, {0.03, -0.01, 0.13}, {0.04, 0.02, -0.32}}) {
@@ -205,8 +208,8 @@ TEST(OneContact, HasTheForcesOfTheClosedForms) {
   }
 }
 
-// If 1/K' < c (l - c) / K_phi, the force rotates the tip into the wall, and there is no equilibrium near the start.
-// Tests one value of c for which the inequality holds and one for which it does not.
+// If 1/K' < c (l - c) / K_phi, the force rotates the tip into the wall, and there is no equilibrium near the upright
+// pose. Tests one value of c for which the inequality holds and one for which it does not.
 TEST(OneContact, HasNoEquilibriumWhereTheForceTurnsTheTipIntoTheWall) {
   for (const auto& [c, stable] : {std::pair{0.015, false}, {0.008, true}}) {
     const OneContact contact(with(kSprings,
@@ -226,13 +229,14 @@ TEST(OneContact, HasNoEquilibriumWhereTheForceTurnsTheTipIntoTheWall) {
     if (stable)
       EXPECT_NEAR(force, expected, 0.05 * expected);
     else
-      // A stationary pose with the opposite sign of the force is no equilibrium, because the wall would pull.
+      // The force of the closed form is negative, and a wall cannot pull. Therefore the device must find no balanced
+      // pose, or a balanced pose far from the upright pose.
       EXPECT_TRUE(rest > kBalanced || force > 0.5) << "far away, or nowhere";
   }
 }
 
-// Checks that the proxy with the stiffness K_r' renders the force of the 6-DOF device if the grip is at the force
-// point.
+// The following test checks that the proxy with the rotational stiffness K_r' renders the force of the 6-DOF device if
+// the grip is at the force point.
 
 struct Path {
   std::vector<SurfacePoint> points;
@@ -341,8 +345,8 @@ TEST(TightPeg, HasNoForceButATorqueAndPenaltyLawsRenderAGhost) {
       shaping.follow(about);
     }
     const Vec3 force = reference.handle().force, torque = reference.handle().torque;
-    // The peg may tilt by 1e-6 rad and may rise: the axial force is K' a (1 - cos alpha), because nothing holds the peg
-    // axially.
+    // The peg may tilt by 1e-6 rad in the hole. `free` bounds the lateral force [N] that this tilt can cause. Nothing
+    // holds the peg in the axial direction, so the lateral force is compared with the closed form.
     const double free = 1e-6 * (series * a + rotation / a);
     EXPECT_NEAR(torque.norm(), rotation * alpha, 0.02 * rotation * alpha + 1e-6);
     if (pivot == a) {
@@ -372,7 +376,8 @@ TEST(OneContact, CreatesEnergyUnderEveryStiffness) {
       const double t = i / 100.0;
       const double pressed = t < 1 ? t : t < 2 ? 1 : t < 3 ? 3 - t : 0;
       const double turned = t < 1 ? 0 : t < 2 ? t - 1 : t < 3 ? 1 : 4 - t;
-      // The hand rotates about the force point, so that the energy of the rotation is returned only during the release.
+      // The hand rotates about the force point. The force point does not move during the rotation, so the force does no
+      // work; the work appears only during the release.
       const Intent intent = intent_of(rigid_hand, Vec3(-press * pressed, 0.0, rigid_hand.force_point), angle * turned,
                                       rigid_hand.force_point);
       ASSERT_LE(device.follow(intent), kBalanced) << k << ' ' << i;
@@ -381,10 +386,10 @@ TEST(OneContact, CreatesEnergyUnderEveryStiffness) {
       last_force = handle.force;
       last_position = handle.position;
     }
-    // At the depth of 1 mm, the rotation adds l sin(0.1) to the depth. The release then moves back over 1 mm with a
-    // force that is larger by the stiffness times l sin(0.1). The closed form uses lever and normal of the upright
-    // drill. Its errors are: 1 - cos 0.1 = 0.5 %, sin 0.1 of the radius over l = 0.2 %, and 1 % for the work along the
-    // normal, which rotates by 0.1 rad.
+    // After pressing by 1 mm, the rotation adds l sin(0.1) to the depth. During the release over 1 mm, the force is
+    // larger than during the pressing by `stiffness` times l sin(0.1). The closed form uses the lever and the normal of
+    // the upright drill. Its errors are: 1 - cos 0.1 = 0.5 %; sin(0.1) times radius / l = 0.2 %; and 1 % because the
+    // normal rotates by 0.1 rad.
     const double stiffness = 1.0 / (1.0 / 2000.0 + l * l / k);
     EXPECT_NEAR(1e3 * work, 1e3 * stiffness * press * l * std::sin(angle), 0.03 * millijoules);
     EXPECT_NEAR(1e3 * work, millijoules, 0.05 * millijoules) << "as published, with two digits";
@@ -447,8 +452,8 @@ TEST(SpringsInSeries, AreExactForIsotropicStiffnessOnly) {
 
 // ---- The reference device
 
-// Checks that a closed path without jumps creates no energy, wherever the grip is: the energy of a device with torque
-// is a potential.
+// Checks that a closed path without jumps creates no energy, for two positions of the grip. The force and the torque of
+// the 6-DOF device are the derivatives of a potential.
 TEST(SixDofDevice, CreatesNoEnergyOnAClosedPath) {
   const PointShell shell(surface_points(Plane{.size = 0.004}), 0.0);
   const Cylinder tool(kRadius, kLength, Tip::flat);
@@ -472,8 +477,8 @@ TEST(SixDofDevice, CreatesNoEnergyOnAClosedPath) {
       last = handle;
     }
     EXPECT_GT(moved, 1e-6);
-    // The trapezoidal rule with 400 steps on a path of curvature 1 has an error of (2 pi / 400)^2 / 12 of the work,
-    // 2e-5.
+    // The work is computed by the trapezoidal rule with 400 steps over an angle of 2 pi. Its relative error is about
+    // (2 pi / 400)^2 / 12 = 2e-5.
     EXPECT_LE(std::abs(work), 1e-3 * moved);
   }
 }

@@ -94,7 +94,8 @@ TEST(ActuatorLimitedPassivity, WithoutLimitsOwesNothing) {
   }
 }
 
-/// Checks the damping of the stage against the largest damping that its limits allow, which the test finds by trial.
+/// Checks that the stage damps as much as its limits and its energy debt allow: slightly more damping would break a
+/// limit or dissipate more than the debt.
 TEST(ActuatorLimitedPassivity, DissipatesWhatActuatorsAllowAndOwesTheRest) {
   bool owed_once = false, across_once = false;
   for (std::uint64_t seed = 1; seed <= 50; ++seed) {
@@ -115,8 +116,9 @@ TEST(ActuatorLimitedPassivity, DissipatesWhatActuatorsAllowAndOwesTheRest) {
       ASSERT_GE(taken, -rows.rounding());
       ASSERT_LE(taken, std::max(owed, 0.0) + rows.rounding());
       if (owed <= 0.0) continue;
-      // Check the priorities: a damping that is larger by a thousandth would break a limit, or would dissipate more
-      // than the debt.
+      // The stage adds damping first along the force (a1), and then perpendicular to the force (a2). Check that each
+      // damping is as large as possible: if it were larger by a thousandth, it would break a limit, or would dissipate
+      // more than the debt.
       const Vec3 n = f.normalized(), along = v.dot(n) * n, across = v - along;
       const double a1 = (f - given).dot(along) / along.squaredNorm();
       const double a2 = (f - given).dot(across) / across.squaredNorm();
@@ -286,8 +288,8 @@ Mat3 load(const Vec3& u, double newtons) {
 }
 
 /// Checks that in every step, the work that the tool does against friction is at least the increase of the bristle's
-/// energy, for any motion, loads and normals. The tolerance is rounding: some 50 operations on energies of the size of
-/// K_t e^2.
+/// energy, for any motion, loads and normals. The tolerance is the rounding error of about 50 operations on energies of
+/// the size of K_t e^2, where K_t is the stiffness and e the deflection of the bristle.
 TEST(DryFriction, IsPassiveForAnyMotionLoadsAndNormals) {
   Random random(1);
   for (int run = 0; run < 400; ++run) {

@@ -90,8 +90,8 @@ TEST(PassivityController, KeepsAnyForceUnderAnyHandPassive) {
   }
 }
 
-/// Renders random forces of at most `limit` and random moments from the third step on. Both are independent of the
-/// tool.
+/// Renders no force and no moment in the first two steps. In all later steps, renders random forces of at most `limit`
+/// [N] and random moments, which do not depend on the tool.
 class Lever final : public ForceAlgorithm {
  public:
   Lever(std::uint64_t seed, double limit) : numbers_(seed), limit_(limit) {}
@@ -209,7 +209,8 @@ TEST(PassivityController, WithNothingToGiveItStopsTheToolAtMost) {
   EXPECT_GT(after.dot(before), 0.0);
 }
 
-/// Checks the Jacobian of f_render = s f - alpha w: s times the Jacobian of f plus the damping alpha. Here s = 0.
+/// The controller renders s f - alpha w, where f is the force of the law and w the velocity. Checks that the Jacobian
+/// of this force is s times the Jacobian of f, with alpha added to its damping. In this test, s = 0.
 TEST(PassivityController, ItsJacobianIsThatOfTheForceItRenders) {
   RenderingConfig config;
   config.mass = 0.2;

@@ -30,8 +30,8 @@ std::vector<std::uint32_t> indices(const ContactBuffer& contacts) {
   return {contacts.index.begin(), contacts.index.begin() + static_cast<std::ptrdiff_t>(contacts.size())};
 }
 
-/// The algorithm of thesis C.3, corrected as the `source` text of the reduction states. `order`: order in which the
-/// contacts are visited.
+/// The algorithm of section C.3 of the thesis, with the corrections that the `source` text in point_stage.cpp
+/// describes. `order`: order in which the contacts are visited.
 struct Reference {
   std::vector<std::size_t> kept;
   std::uint64_t dropped = 0;

@@ -79,7 +79,8 @@ TEST(AtomicFile, ThatRunsOutOfSpaceThrowsAtCommitAndLeavesTheOldTarget) {
   }
 }
 
-/// Kills a process while it writes `target`. The unfinished file is longer than the files that tests write.
+/// Starts a process that writes `target`, and kills the process before the file is complete. The unfinished file that
+/// the process leaves is longer than all files that the tests write.
 void kill_a_writer_of(const fs::path& target) {
   const pid_t child = ::fork();
   ASSERT_GE(child, 0);

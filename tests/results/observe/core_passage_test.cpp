@@ -154,7 +154,8 @@ TEST(ThroughAWall, FromOneFaceToTheOther) {
       const Path path = [](double u) { return upright(-0.0015 + 0.004 * u, -0.002); };
       EXPECT_TRUE(run(tool, solid, points, path, 200).through) << tool.name << " " << share;
       const Path back = [&path](double u) { return path(0.45 * (1.0 - std::abs(2.0 * u - 1.0))); };
-      // The wall is thicker than the depth to which the tool enters.
+      // On the path `back`, the axis of the tool moves 0.3 mm into the wall and returns. If the wall is thicker, this
+      // is no passage.
       if (share >= 1.0) {
         EXPECT_FALSE(run(tool, solid, points, back, 200).through) << tool.name << " " << share;
       }
@@ -162,7 +163,9 @@ TEST(ThroughAWall, FromOneFaceToTheOther) {
   }
 }
 
-/// Checks a block that keeps the tool out, or that the tool leaves on the path by which it entered.
+/// Checks that three paths into a block and out again do not count as a passage through the block: the tool is pressed
+/// onto the top and lifted; it is pressed into the side and drawn back; it is pressed into the side and drawn out
+/// upwards. Also checks that a path through the block does not count if the triangles of the block face inwards.
 TEST(DeepInABlock, IsNotThrough) {
   const Vec3 low(0.0, -0.003, -0.004), high(0.004, 0.003, 0.0);
   const TriangleSoup block = box(low, high);

@@ -27,7 +27,7 @@ struct Row {
   bool in_contact = true;
 };
 
-constexpr double kDt = 0.01;  ///< step [s]; exact enough that 0.03 s are three steps
+constexpr double kDt = 0.01;  ///< time step [s]; despite rounding, 0.03 s count as three steps
 
 /// Returns the phases of the steps as a text with a, l or s for each step (away, landing, settled).
 std::string phases(const SettlingRule& rule, const std::string& contact) {
@@ -50,11 +50,11 @@ MetricsObserver forces_of(const std::vector<Row>& rows, const SettlingRule& rule
   return observer;
 }
 
-// Checks the settled filter only. The known answers compare the output of the filter with scipy.
+// Checks only the output after settle_at(). tests/known_answers compares the output of the filter with scipy.
 TEST(HighPass, SettledAtAConstantGivesExactlyZero) {
   HighPass filter(30.0, 2000.0);
   const Vec3 value(0.1, -1e3, 1.0 / 3.0);
-  // Give both sections earlier samples, which settling must remove.
+  // Filter other samples first. settle_at() must remove their effect on both biquads of the filter.
   for (int k = 0; k < 10; ++k) filter.filter(k * value);
   filter.settle_at(value);
   for (int k = 0; k < 100; ++k) ASSERT_EQ(filter.filter(value), Vec3::Zero());
@@ -155,7 +155,7 @@ TEST(ContactForces, OfSeveralTrialsAddUp) {
   EXPECT_EQ(number_of(list, "force_rms_above_30Hz_N"), 0.0);
 }
 
-/// Returns the value that a histogram reports for this number if it contains no other numbers.
+/// Returns the value that a histogram reports for `number`. The histogram contains no other number.
 double counted(double number) {
   MagnitudeHistogram histogram;
   histogram.add_square(number * number);
@@ -231,7 +231,7 @@ struct Accounts {
   double kinetic_at_start = 0.0, stored_at_start = 0.0;
 };
 
-/// Runs a setting with the energy ledger.
+/// Runs a simulation with the energy ledger. Returns the energies [J] after the first step and at the end.
 Accounts keep_accounts(SimulationConfig config, SimulationParts parts) {
   EnergyLedger ledger(config.mass, config.dt, parts.motion->position_is_free(), parts.source->capacity(),
                       *config.integrator);
@@ -248,8 +248,8 @@ Accounts keep_accounts(SimulationConfig config, SimulationParts parts) {
   return accounts;
 }
 
-/// Checks that the energy balance of a free run is closed. `limit` is the force limit of an ideal device [N]; empty for
-/// no limit.
+/// Checks that the energy balance of a free run is closed: all energy is accounted for, except rounding errors. `limit`
+/// is the force limit of an ideal device [N]; empty for no limit.
 void expect_closed(const test::AnalyticScene& scene, const RenderingConfig& config, const IntegratorEntry& integrator,
                    std::optional<double> limit = {}) {
   SCOPED_TRACE(std::string(scene.name) + " " + config.algorithm + " " + integrator.info.name);
@@ -261,7 +261,8 @@ void expect_closed(const test::AnalyticScene& scene, const RenderingConfig& conf
   run.integrator = &integrator;
   const Accounts a = keep_accounts(run, std::move(parts));
   const EnergyBalance& b = a.balance;
-  // Every step adds a few roundings of the exchanged energy; other integrators add further roundings.
+  // Every step adds a few rounding errors of the exchanged energy. With integrators other than leapfrog, there are also
+  // rounding errors of the energy `integration`.
   const double rounding =
       400 * 20 * kEpsilon * (a.turnover + (&integrator == &kLeapfrog ? 0.0 : std::abs(b.integration)));
   EXPECT_LE(a.residual_max, rounding);

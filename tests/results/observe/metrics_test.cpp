@@ -17,7 +17,8 @@
 #include "tests/results/observing.hpp"
 #include "tests/support/fakes.hpp"
 
-/// Tests transitions between trials, and runs that lack the data of a metric. Known answers test the numbers.
+/// Tests transitions between trials, and runs that lack the data of a metric. tests/known_answers tests the values of
+/// the metrics.
 namespace hapbench::metrics_test {
 namespace {
 
@@ -181,8 +182,8 @@ TEST(ReductionJumps, CompareTheNumbersOfTheSamePointAsWell) {
   EXPECT_EQ(jumps.changes(), 2u) << "fewer points";
 }
 
-/// Returns the shortest time of a step over several trials [s]. Each trial has a step with `first` and then a step with
-/// `second`.
+/// Returns the time [s] that ReductionJumps takes to process the contacts `second` after the contacts `first`: the
+/// shortest time of several trials.
 double shortest_row(const ContactBuffer& first, const ContactBuffer& second) {
   using Clock = std::chrono::steady_clock;
   ReductionJumps jumps(first.capacity());
@@ -197,8 +198,8 @@ double shortest_row(const ContactBuffer& first, const ContactBuffer& second) {
   return shortest;
 }
 
-// Checks the growth of the time. If the number of points grows by a factor of 8, the time grows by a factor of 8
-// (linear), about 10 (n log n) or 64 (quadratic).
+// Checks how the time of one step grows with the number n of points. If n grows by a factor of 8, a time in O(n) grows
+// by a factor of 8, in O(n log n) by about 10, and in O(n^2) by 64.
 TEST(ReductionJumps, TakeTimeThatGrowsLessThanQuadratically) {
   constexpr std::uint32_t kFew = 2000, kGrowth = 8;
   constexpr double kMaxGrowth = 28.0;

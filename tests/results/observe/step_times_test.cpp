@@ -35,7 +35,8 @@ TEST(StepTimes, AStepDoesNotAllocate) {
 
 using std::chrono::milliseconds;
 
-/// Returns the samples of steps that take `step`, with observers that take `watching` in each step.
+/// Returns the times [ns] that a StepSampler measures. In each step, the simulation takes the time `step`, and the
+/// observers take the time `watching`.
 std::vector<std::uint64_t> samples(std::uint64_t steps, milliseconds step, milliseconds watching) {
   const ContactBuffer none(1);
   StepSampler sampler(steps);
@@ -52,8 +53,8 @@ std::vector<std::uint64_t> samples(std::uint64_t steps, milliseconds step, milli
 TEST(StepSampler, LeavesOutWhatObserversTake) {
   const std::vector<std::uint64_t> times = samples(3, milliseconds(0), milliseconds(5));
   ASSERT_EQ(times.size(), 2u);  // no step follows the last step
-  // Take the shortest sample: other processes of the machine can only make a sample longer, and hardly twice in
-  // succession.
+  // Compare only the shortest sample: other processes of the machine can only make a sample longer, and rarely delay
+  // both samples.
   EXPECT_LT(*std::min_element(times.begin(), times.end()), 5'000'000u);
 }
 
@@ -79,7 +80,7 @@ Times scrambled(std::uint64_t n) {
   return times;
 }
 
-// Checks ranks: the value of rank r among 1 … n is r.
+// Checks the ranks of percentiles. The samples are 1 … n, so the sample of rank r is r.
 TEST(StepLatency, PercentilesAreThoseOfNearestRank) {
   const StepLatency thousand = step_latency(scrambled(1000), 0);
   EXPECT_EQ(thousand.p50, 500u);

@@ -50,19 +50,20 @@ TEST(IdealTrajectory, ComparesEachSoManyRows) {
 constexpr double kRounding = 1e-11;  // error that the header states
 const Cylinder kTool;
 
-/// Returns the depth in the block [m] of a point on the tool's side. `angle` is the angle about the axis [rad],
-/// `height` the distance above the tip [m].
+/// Returns the depth in the block [m] of a point on the lateral surface of the tool. `angle` is the angle of the point
+/// about the tool's axis [rad], `height` its distance from the tip along the axis [m].
 double depth_at(const ToolPose& pose, double angle, double height) {
   const Vec3 e1 = pose.axis.unitOrthogonal(), e2 = pose.axis.cross(e1);
   const Vec3 side = kTool.radius() * (std::cos(angle) * e1 + std::sin(angle) * e2);
   return -signed_distance(kBlock, pose.position + side - height * pose.axis);
 }
 
-/// Returns the depth [m] of the deepest point at an angle: evaluates many heights, then searches around the deepest
-/// height by ternary search.
+/// Returns the largest depth [m] of the points at this angle about the tool's axis: evaluates many heights, then
+/// searches around the deepest height by ternary search.
 double deepest_at(const ToolPose& pose, double angle) {
   constexpr int kHeights = 400;
-  constexpr double kSpacing = 0.006 / kHeights;  // [m]; from 6 mm above the tip on, the tool is in free air
+  // Spacing of the heights [m]. More than 6 mm above its tip, the tool is always in free air.
+  constexpr double kSpacing = 0.006 / kHeights;
   double best = 0.0;
   for (int h = 0; h < kHeights; ++h) {
     if (depth_at(pose, angle, h * kSpacing) > depth_at(pose, angle, best)) best = h * kSpacing;
@@ -107,12 +108,13 @@ TEST(Interpenetration, EqualsASearchOverTheWholeTool) {
   }
 }
 
-/// Checks a tool that is shorter than the hole is deep, and that is wholly inside the wall: its upper end may be the
-/// deepest point.
+/// Checks a tool that is shorter than the depth of the hole and wholly below the top of the block. Its upper end may
+/// then be its deepest point.
 TEST(Interpenetration, KnowsTheUpperEndOfAShortTool) {
   const Cylinder tool(kTool.radius(), 0.001);
   for (const double reach : {0.0006, 0.0008}) {
-    // The tool leans outwards, so that the upper end is further out, and is far below the top.
+    // The tool leans outwards, so that its upper end is deeper in the wall than its tip. The upper end is far below the
+    // top of the block.
     const double tilt = 0.3, s = std::sin(tilt), c = std::cos(tilt);
     const ToolPose pose = tilted({reach, 0.0, -0.003}, tilt);
     EXPECT_NEAR(interpenetration(kBlock, tool, pose), reach + 0.001 * s + 0.0005 * c - 0.001, kRounding);

@@ -30,8 +30,7 @@ using test::lines_of;
 using test::read_file;
 using test::TemporaryDirectory;
 
-// Tests properties of a run's tables that the known answers do not test; the known answers test the numbers of every
-// column.
+// Tests the tables of a run, except the numbers in their columns, which tests/known_answers tests.
 
 /// Returns the lines of the table that a recorder writes for these steps, without the header.
 std::vector<std::string> recorded(const RowSource& source, const std::vector<StepRecord>& rows,

@@ -61,11 +61,12 @@ TEST_F(ComparisonOf, JitteredScenesStartFromOnePositionForEachSeed) {
   const Comparison comparison = planned(question);
   const auto start = [&](std::size_t run) { return comparison.load(run).scenario.initial.position; };
   for (std::size_t seed = 0; seed < 3; ++seed) {
-    // Norms of sums of three rounded squares are exact to a few units in the last place.
+    // The norm is the root of a sum of three rounded squares, so its error is a few units in the last place.
     EXPECT_NEAR(start(seed).norm(), 1e-4, 1e-18);
     EXPECT_EQ(start(seed), start(3 + seed)) << "the other algorithm";
     EXPECT_NE(start(seed), start((seed + 1) % 3));
-    // Springs in the plane remain in the plane. Adding to 1e-3 rounds by up to 1e-19.
+    // The springs lie in the plane z = 0, so the jitter keeps the start position in this plane. The sum of the jitter
+    // and 1e-3 m is rounded by up to 1e-19 m.
     EXPECT_EQ(start(6 + seed).z(), 0.0);
     EXPECT_NEAR((start(6 + seed) - Vec3(0.001, 0.0, 0.0)).norm(), 1e-4, 1e-18);
   }
@@ -128,8 +129,8 @@ TEST_F(ComparisonOf, ScenesRemovesWhatAnEarlierOneLeftAndNothingElse) {
   EXPECT_FALSE(fs::exists(out / "plane/mean"));
 }
 
-/// Checks that two shells are built for three scenes: two blocks with different grids, one of them in two scenes with
-/// different start positions. Checks one and four threads.
+/// Checks that only two shells are built for three scenes. Two scenes have the same block and different start
+/// positions; the third scene has a block with another grid. Checks runs with one thread and with four threads.
 TEST_F(ComparisonOf, AnyScenesBuildsEachDistinctShellOnce) {
   for (const unsigned jobs : {1u, 4u}) {
     Json scene = test::minimal_scenario("block_with_hole");

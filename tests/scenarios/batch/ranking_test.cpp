@@ -88,8 +88,8 @@ TEST(Ranking, RanksByMeansThenThoseWithoutOneThenByFailedSeeds) {
   EXPECT_EQ(of_one_seed({0.5, 1.0, 0.25}, Better::more), (Ranks{2, 1, 3}));
   EXPECT_EQ(of_one_seed({1.0, 2.0}, Better::none), (Ranks{0, 0}));
   EXPECT_EQ(of_one_seed({2.0, 1.0, 2.0, 5.0}), (Ranks{2, 1, 2, 4}));
-  // The resolution is 0.1 % of the larger number: 1.0015 exceeds the first two numbers by more, but not the third
-  // number.
+  // Two numbers count as equal if they differ by at most 0.1 % of the larger number. So 1.0015 counts as larger than
+  // the first two numbers, but as equal to the third number.
   EXPECT_EQ(of_one_seed({1.0 + 1e-15, 1.0, 1.0009, 1.0015}), (Ranks{1, 1, 1, 3}));
   EXPECT_EQ(of_one_seed({0.0, 1e-300, 0.0}), (Ranks{1, 3, 1})) << "nothing is like zero";
   EXPECT_EQ(ranks(rank_comparison({1.0, 1.3, 1.5}, Better::less, 1, 0.2)), (Ranks{1, 1, 2}))
@@ -110,8 +110,8 @@ TEST(Ranking, RanksByMeansThenThoseWithoutOneThenByFailedSeeds) {
   EXPECT_EQ(without_common.at(0, 2, 0).mean, 5.0);
 }
 
-/// Checks ranks of laws whose values cannot be told apart, because the errors are too large. The page of
-/// tests/scripts/ranking_test.py has the same ranks.
+/// Checks ranks of laws whose values cannot be told apart, because the errors are too large.
+/// tests/scripts/ranking_test.py tests the same rule for the HTML page.
 TEST(Ranking, LeavesOutWhatTheErrorsDoNotAllow) {
   const auto with_error = [](const Values& values, double error) {
     return ranks(rank_comparison(values, Better::less, 1, error));

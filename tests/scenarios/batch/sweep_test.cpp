@@ -114,7 +114,7 @@ TEST(SweepPlan, HasAnotherDefinitionForEveryOtherContent) {
     definitions.insert(plan_sweep(Cases({{"sweep.json", plane}}, {}, box, sampling), {}).definition);
   }
   EXPECT_EQ(definitions.size(), 11u);
-  // The number of threads, the location of the file and the spelling of its path do not matter.
+  // The number of threads, the path of the scenario file and the spelling of the numbers do not change the definition.
   EXPECT_EQ(plan_sweep(grid(steps, {"elsewhere.json", plane}), {7, ""}).definition,
             plan_of(plane, {"time.steps=1.0,2e0"}).definition);
 }

@@ -144,7 +144,7 @@ TEST_F(TableFiles, OfShardsAreJoinedWhenAllAreThere) {
   EXPECT_TRUE(join());
   EXPECT_EQ(read_file(file_), "index,a\n0,a\n1,c\n2,\"b,\"\n3,new\n");
   write_shard(0, 2, {"0,a"});
-  expect_refusal([&] { join(); }, "allowed: shards of one division");
+  expect_refusal([&] { join(); }, "allowed: shards of one sweep");
 }
 
 }  // namespace

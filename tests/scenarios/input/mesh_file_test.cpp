@@ -304,7 +304,7 @@ TEST_F(MeshFile, NamesAPolygonThatCrossesItself) {
   EXPECT_EQ(
       warnings[0],
       "uneven.obj: polygons that are not planar: 1, the first in line 6; the largest is off its plane by 7.9 % of its "
-      "diameter; their triangles are one of several choices");
+      "diameter; other divisions into triangles are possible");
   EXPECT_EQ(warnings[1].find("uneven.obj: the mesh is open"), 0u);
 }
 
@@ -383,17 +383,18 @@ TEST_F(MeshFile, KeepsOneOfSeveralEqualFaces) {
   ASSERT_EQ(two.warnings.size(), 1u);
   EXPECT_EQ(
       two.warnings[0],
-      "two.obj: every face is double: each triangle is listed with both windings, and the first of them was kept: 12");
+      "two.obj: every face is double: each triangle is listed with both windings, and only the first copy was kept: 12 "
+      "triangles");
   sheet.triangles = {{0, 1, 2}, {2, 1, 0}, {1, 3, 2}, {2, 3, 1}};
   const auto warnings = read("sheet.off", test::off_text(sheet)).warnings;
   ASSERT_EQ(warnings.size(), 3u);
   EXPECT_EQ(warnings[1].find("sheet.off: a double-sided sheet: each triangle is listed with both windings"), 0u);
   twice = cube;
   twice.triangles.push_back(cube.triangles[3]);
-  EXPECT_EQ(warning_of("same.ply", test::ply_text(twice)), ": faces left out, which repeat an earlier face: 1");
+  EXPECT_EQ(warning_of("same.ply", test::ply_text(twice)), ": faces left out because they repeat an earlier face: 1");
   std::swap(twice.triangles.back()[0], twice.triangles.back()[1]);
   EXPECT_EQ(warning_of("opposite.ply", test::ply_text(twice)),
-            ": faces left out, which repeat an earlier face with opposite winding: 1");
+            ": faces left out because they repeat an earlier face with opposite winding: 1");
 }
 
 /// Checks a double-sided sheet: the two sides of a plane quadrilateral. The readers divide the two sides along
@@ -498,20 +499,20 @@ TEST_F(MeshFile, WarnsOnceAboutWhatIsOdd) {
   odd.triangles.pop_back();
   EXPECT_EQ(
       warning_of("open.obj", test::obj_text(odd)),
-      ": the mesh is open: 3 boundary edges, within x 1e+03 ... 1e+03, y -1e+03 ... 0, z 0 ... 1e+03 mm; beyond them "
-      "there is nothing to touch");
+      ": the mesh is open: 3 boundary edges, within x 1e+03 ... 1e+03, y -1e+03 ... 0, z 0 ... 1e+03 mm; the surface "
+      "ends there");
   odd = cube;
   std::swap(odd.triangles[4][0], odd.triangles[4][1]);
   EXPECT_EQ(warning_of("wound.off", test::off_text(odd)),
-            ": faces turned, which were wound against their neighbours: 1");
+            ": faces reversed because they were wound against most faces of their component: 1");
   EXPECT_EQ(warning_of("inside_out.ply", test::ply_text(test::reversed(cube))),
-            ": closed parts turned, which were inside out: 1");
+            ": closed components reversed because their normals pointed to the wrong side: 1");
   EXPECT_EQ(warning_of("touching.obj", test::obj_text(test::together(cube, test::cube(1.0, {2, 2, 0})))),
             ": the surface is cut along edges with more than two faces: 1, the first at (1e+03, 1e+03, 0) mm");
   odd = cube;
   odd.triangles.push_back({0, 1, 1});
   EXPECT_EQ(warning_of("degenerate.off", test::off_text(odd)),
-            ": faces left out, two of their corners being the same: 1");
+            ": faces left out because two of their corners are equal: 1");
 }
 
 TEST_F(MeshFile, IsResampledToTheSpacing) {

@@ -64,13 +64,15 @@ TEST(MeshPolygons, KeepsOneOfSeveralEqualPolygons) {
     const MeshFile mesh(text, name, {});
     EXPECT_TRUE(mesh.is_closed()) << name;
     EXPECT_NEAR(volume_of(mesh), 90.0, 1e-12) << name;
-    EXPECT_EQ(warning_of(name, text),
-              ": every face is double: each triangle is listed with both windings, and the first of them was kept: 12");
+    EXPECT_EQ(
+        warning_of(name, text),
+        ": every face is double: each triangle is listed with both windings, and only the first copy was kept: 12 "
+        "triangles");
   }
   twice = kQuadrilaterals;
   twice.emplace_back("7 6 4 5");
   for (const auto& [name, text] : boxes(twice))
-    EXPECT_EQ(warning_of(name, text), ": faces left out, which repeat an earlier face: 2");
+    EXPECT_EQ(warning_of(name, text), ": faces left out because they repeat an earlier face: 2");
 }
 
 /// Checks polygons with corners on their edges, such as a face whose neighbour is divided more finely. The mesh is
@@ -99,8 +101,7 @@ TEST(MeshPolygons, MayHaveCornersOnALine) {
     std::vector<std::string> faces = kQuadrilaterals;
     faces[0] = corners;
     for (const auto& [name, text] : boxes(faces))
-      EXPECT_EQ(warning_of(name, text).find(": polygons with repeated corners, which were left out: 1, the first in l"),
-                0u)
+      EXPECT_EQ(warning_of(name, text).find(": polygons whose repeated corners were left out: 1, the first in l"), 0u)
           << warning_of(name, text);
   }
 }

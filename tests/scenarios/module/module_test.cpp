@@ -81,14 +81,15 @@ TEST(AddedAlgorithm, IsRefusedWithTheReason) {
     return problem_with({"x", "a", "b", "c", "d"}, std::move(own));
   };
   const AlgorithmParameter good{"p", {0, 1, "1"}, 0.5, "meaning"};
-  EXPECT_EQ(with({good, good}), "parameter \"p\" is there twice");
+  EXPECT_EQ(with({good, good}), "parameter \"p\" occurs twice");
   EXPECT_TRUE(with({{"a b", good.range, 0.5, "m"}}).starts_with("a parameter is called \"a b\"; allowed"));
   EXPECT_EQ(with({{"p", good.range, 1.5, "m"}}), "parameter \"p\": its default is out of its range");
   EXPECT_EQ(with({{"p", {0, 1, "1", true}, 0.0, "m"}}), "parameter \"p\": its default is out of its range");
   EXPECT_EQ(with({{"p", good.range, std::numeric_limits<double>::quiet_NaN(), "m"}}),
             "parameter \"p\": its default is out of its range");
   for (const NumberRange range : {NumberRange{1, 0, "1"}, {1, 1, "1"}, {0, kInfinity, "1"}})
-    EXPECT_EQ(with({{"p", range, 0.5, "m"}}), "parameter \"p\": a range needs two finite ends, the lower first");
+    EXPECT_EQ(with({{"p", range, 0.5, "m"}}),
+              "parameter \"p\": a range needs two finite limits, the lower limit first");
   EXPECT_EQ(with({{"p", {0, 1, nullptr}, 0.5, "m"}}), "parameter \"p\": its unit is missing");
   EXPECT_EQ(with({{"p", good.range, 0.5, nullptr}}), "parameter \"p\": its meaning is missing");
   EXPECT_EQ(algorithms().size(), before);
@@ -226,7 +227,7 @@ TEST_F(AModuleLaw, ReportsWhatIsNoForce) {
     EXPECT_EQ(fault_of(kForce), "gives a stiffness that is not finite");
   }
   script = {.fault = ""};
-  EXPECT_EQ(fault_of(kForce), "fails in step: it does not say why");
+  EXPECT_EQ(fault_of(kForce), "fails in step: no reason given");
   script = {.creates = false};
   EXPECT_EQ(fault_of(kMean), "fails in create: out of clay");
 }

@@ -199,9 +199,10 @@ RecordedNumbers numbers_below(const fs::path& directory) {
   return numbers;
 }
 
-/// Compares numbers with the stored numbers, either of commands (names with a colon, `of_commands`) or of scenarios.
-/// Fails if a number differs or is not stored. If `some` is false, also fails if a stored name is missing in `found`.
-/// The failure names file and column. If the variable kRenew is set, stores the numbers instead.
+/// Compares numbers with the stored numbers. If `of_commands` is true, these are the numbers of commands, whose names
+/// have a colon; otherwise the numbers of scenarios. Fails if a number differs or is not stored. If `some` is false,
+/// also fails if a stored name is missing in `found`. The failure names file and column. If the variable kRenew is set,
+/// stores the numbers instead.
 void expect_recorded(bool of_commands, const NumbersByName& found, bool some = false) {
   ASSERT_FALSE(found.empty());
   if (std::getenv(kRenew) != nullptr) {
@@ -233,10 +234,10 @@ std::vector<std::string> shortened(const Scenario& scenario) {
   return arguments;
 }
 
-/// Returns the scenarios that are run in full: all scenarios under scripts/test --all. Otherwise omits studies with
-/// several subjects, which take half of the time; Commands.HaveTheNumbersOnRecord runs one trial of each. With
-/// AddressSanitizer, also omits scenarios of more than 10^4 steps, because they take minutes and their first steps find
-/// the same errors.
+/// Returns the scenarios that are run in full. Under scripts/test --all these are all scenarios. Otherwise omits the
+/// studies with several subjects, which take half of the time of all scenarios; Commands.HaveTheNumbersOnRecord runs
+/// one trial of each study. With AddressSanitizer, also omits scenarios of more than 10^4 steps, because they take
+/// minutes and their first steps find the same errors.
 std::vector<BundledScenario> scenarios_in_full() {
   std::vector<BundledScenario> scenarios = bundled_scenarios();
   constexpr std::int64_t kMostSanitizedSteps = 10'000;
@@ -313,8 +314,8 @@ std::string summary_without_work(Json summary) {
 
 // Checks that the second run of a scenario gives the same bytes as the first run. The second run is made by another
 // process of the scalar build, with brute force instead of skips, from the effective scenario that the first run wrote.
-// Scenarios of many steps are shortened. Only every 16th scenario is tested, except in a soak test, because brute force
-// is slow.
+// Scenarios of many steps are shortened. Because brute force is slow, only every 16th scenario is tested; scripts/test
+// --all tests every scenario.
 TEST_F(BundledScenarios, GiveTheSameBytesInTheScalarBuildWithoutSkipsFromTheirEffectiveScenarios) {
   const fs::path first = *directory_ / "first", again = *directory_ / "again",
                  effective = *directory_ / "effective" / "scenes";

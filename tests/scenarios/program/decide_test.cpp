@@ -66,8 +66,8 @@ TEST_F(LimitCommand, OnADeviceIsThatOfTheSceneWithIt) {
   for (std::size_t i = 0; i < rows.size(); ++i) {
     EXPECT_TRUE(rows[i]["limit"].is_number());
     EXPECT_EQ(rows[i]["stable_low"], own[i]["stable_low"]);
-    // The question without --device also verifies samples between the ends of the interval. Its limit may therefore be
-    // lower, never higher.
+    // Only the question without --device also verifies samples between the ends of the interval. Its limit is therefore
+    // at most the limit of the question with --device.
     EXPECT_LE(own[i]["limit"], rows[i]["limit"]);
     EXPECT_EQ(own[i]["tried_between"], 48);
     EXPECT_EQ(rows[i]["tried_between"], 0);
@@ -144,7 +144,7 @@ TEST_F(TuneCommand, PrintsTheLimitsThatLimitPrints) {
 }
 
 /// Checks that a bound also holds if the error of the metric is added. The error is the change of the metric if the
-/// step or the spacing is halved, or the depth is evaluated in every step.
+/// time step or the point spacing is halved, or if the depth is evaluated in every step.
 TEST_F(TuneCommand, KeepsALimitByTheErrorOfItsMetric) {
   const Json law = tune({"--bound", "inside_max_m=6e-4", "--json"}).json()["algorithms"][0];
   ASSERT_TRUE(law["feasible"].get<bool>()) << law.dump(1);
@@ -202,8 +202,8 @@ TEST_F(ConvergeCommand, WritesTheSameBytesHoweverManyJobs) {
     EXPECT_EQ(read_file(directory_ / "one" / name), read_file(directory_ / "three" / name)) << name;
 }
 
-/// Checks which time step `converge` prints as the coarsest with a sufficiently small error. The error of a largest
-/// value includes its spread over the choices of the first counted step (Metric::sampling_spread).
+/// Checks the time step that `converge --to` prints: the largest step at which the error is below the limit. The error
+/// of a metric that is a largest value includes the spread Metric::sampling_spread.
 TEST_F(ConvergeCommand, NamesTheCoarsestLevelThatIsEnough) {
   for (const auto& [to, expected] :
        {std::pair{"0.03", "\nerror below 3 %: time.step_s = 0.00025 ("},
@@ -213,7 +213,8 @@ TEST_F(ConvergeCommand, NamesTheCoarsestLevelThatIsEnough) {
   }
 }
 
-// Compares the committed ledger of claims and its robustness with the output of the command that creates them.
+// Compares the committed ledger of claims, and the committed record of the robustness of its verdicts, with the output
+// of `reproduce`, which creates both.
 
 const fs::path kReference = fs::path(HAPBENCH_SCENARIOS) / "../../results/reference";
 
@@ -271,7 +272,7 @@ void expect_on_record(const Json& ledger, const std::vector<Claim>& claims) {
 }
 
 // Checks the claims without subjects. The claims about the subjects of appendix D take four fifths of the time of all
-// claims, so they are left out. numbers.txt contains the trajectories of the subjects.
+// claims, so they are left out. Instead, tests/data/numbers.txt stores the numbers of the subjects' trajectories.
 TEST(Ledger, OfClaimsWithoutSubjectsIsTheOneTheProgramMakes) {
   std::vector<Claim> claims = all_claims();
   std::erase_if(claims, [](const Claim& claim) { return claim.timing || claim.costly; });

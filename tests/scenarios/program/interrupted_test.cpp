@@ -100,7 +100,8 @@ TEST(FailedWrite, OfAFolderThatAnotherRunWritesTo) {
   EXPECT_TRUE(fs::is_empty(directory / "out"));
 }
 
-/// Fixture with a program that reads a pipe without a writer, and therefore does not check for a stop.
+/// Fixture with a program that waits for input from a pipe into which nobody writes. While it waits, it does not notice
+/// a signal to stop.
 class Stopped : public testing::Test {
  protected:
   void SetUp() override {

@@ -1,6 +1,6 @@
-// `run`, `limit` and `tune` must compute the same linear limit of K, also if the slope of the contact force over the
-// displacement is not K times the stiffness ratio: for laws without weights, and with a hand that is sampled with the
-// device.
+// `run`, `limit` and `tune` must compute the same linear limit of K. This must also hold in two special cases: for laws
+// without weights, where the slope of the contact force over the displacement is not K times the stiffness ratio, and
+// with a hand of type `impedance`, whose force is computed at the samples of the device.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -18,7 +18,8 @@ namespace {
 
 using test::hapbench;
 
-/// Returns the scenario of a tool that a hand presses on a plane. The hand is sampled with the device.
+/// Returns the scenario of a tool that a hand presses on a plane. The force of the hand is computed at the samples of
+/// the device.
 Json pressed(const std::string& law, const char* device, const char* tip) {
   Json scene = Json::parse(R"({
     "time": {"step_s": 0.0005, "duration_s": 1.5},
@@ -66,8 +67,9 @@ TEST_F(LinearLimitOfCommands, IsOneInRunAndLimit) {
         for (const double factor : {1.2, 1.6}) {
           const auto ratio = limit_ratio_at(scene, factor * *linear);
           if (!ratio) continue;  // the run does not vibrate
-          // Both commands compute the limit to 1e-7 from derivatives with an error of 1e-7. A nonlinear contact has
-          // another slope at another equilibrium, and `edge` is printed with six digits.
+          // Both commands compute the limit to 1e-7 from derivatives with an error of 1e-7. The tolerance is larger for
+          // two reasons: a nonlinear contact has a slightly different slope at each equilibrium, and the value of
+          // `edge` is printed with six digits.
           EXPECT_NEAR(*ratio, factor, 1e-4 * factor) << law << " " << device << " " << tip;
           ++compared;
         }

@@ -107,7 +107,7 @@ TEST_F(PluginCommand, FailsWhenASourceOfContactsFails) {
   EXPECT_EQ(run.status, 3);
   EXPECT_NE(run.err.find("hostile (hostile.so) gives 10001 contacts; allowed: at most 10000"), std::string::npos)
       << run.err;
-  EXPECT_NE(run.err.find("a law or source of contacts from outside failed once"), std::string::npos) << run.err;
+  EXPECT_NE(run.err.find("a law or contact source of a module failed once"), std::string::npos) << run.err;
 }
 
 /// Checks the proxy, which finds its contacts itself. The contacts of a module change neither its force nor its

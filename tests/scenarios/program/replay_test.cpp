@@ -30,8 +30,8 @@ const char* const kScene = R"({
   "rendering": {"algorithm": "shaped_stiffness", "stiffness_N_per_m": 2000, "damping_ratio": 0.2}
 })";
 
-/// Returns a log in which the handle moves into the hole, around its wall, out and in again, with a gap of 50 ms and a
-/// fault.
+/// Returns a log in which the handle moves into the hole, around its wall, out and in again. Two successive calls are
+/// 51 ms apart instead of 1 ms. A position that is not a number causes a fault, which is cleared later.
 std::string recorded(const std::string& scenario) {
   HapbenchMount mount = HAPBENCH_MOUNT_INIT;
   mount.max_force = 5.0;

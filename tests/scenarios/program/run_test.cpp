@@ -59,7 +59,7 @@ TEST_F(RunCommand, ShowsSevenColumnsAndARowForEachScenario) {
   EXPECT_EQ(lines[3].find("single_spring  summation  completes"), 0u) << lines[3];
   EXPECT_EQ(lines[4].find("single_damper  summation  completes"), 0u) << lines[4];
   EXPECT_EQ(lines[6].find("99 % of the time steps are computed within "), 0u) << lines[6];
-  EXPECT_EQ(lines[8], "diagnosis of single_damper: damping (0.998 > 0.5)");
+  EXPECT_EQ(lines[8], "diagnosis of single_damper: damping (0.998, threshold 0.5)");
   EXPECT_EQ(lines.back(), "results in " + out());
   const auto wide = lines_of(hapbench({"run", "single_spring", "--wide", "--out", out()}).out);
   EXPECT_EQ(words_of(wide[2]).size(), 14u) << wide[2];
@@ -179,7 +179,8 @@ void PrintTo(const BadInput& input, std::ostream* out) {  // NOLINT: GoogleTest'
   *out << input.name;
 }
 
-/// Returns the minimal scenario of a plane with `value`, which may be invalid JSON, at the pointer.
+/// Returns the text of the minimal scenario of a plane, with the text `value` at the JSON pointer `pointer`. `value`
+/// may be invalid JSON.
 std::string with(const std::string& pointer, const std::string& value) {
   Json json = test::minimal_scenario("plane");
   json[Json::json_pointer(pointer)] = "@@";

@@ -111,7 +111,8 @@ TEST_F(NewCommand, JudgesTheSizeOfAShellAndStartsOverTheLargestComponent) {
   const std::vector<std::string> words = {"new", "shell", "--from", path("mm.csv"), "--out", path("shell.json")};
   const ProgramRun refused = hapbench(words);
   EXPECT_EQ(refused.status, 2);
-  EXPECT_NE(refused.err.find("the shell is 8 m long in metres, 8 mm if its numbers are millimetres"), std::string::npos)
+  EXPECT_NE(refused.err.find("the shell is 8 m long if its numbers are metres, 8 mm if they are millimetres"),
+            std::string::npos)
       << refused.err;
   std::vector<std::string> confirmed = words;
   confirmed.insert(confirmed.end(), {"--unit", "m"});
@@ -274,7 +275,8 @@ TEST(ValidateCommand, NamesPointsThatTheToolFeelsOneByOne) {
   EXPECT_EQ(warnings_of_tooth({"environment.spacing_m=0.00016"}).find("apart"), std::string::npos);
 }
 
-/// Checks that bundled scenes cause none of these warnings. In a bundled scene, such a warning would be a false alarm.
+/// Checks that no bundled scene causes a warning about units, reversed normals or a coarse point spacing. In a bundled
+/// scene, such a warning would be a false alarm.
 TEST(ValidateCommand, FindsNoUnitsWrongInBundledScenes) {
   for (const test::NamedScenario& scenario : test::bundled_scenario_files()) {
     const ProgramRun run = test::hapbench_in_process({"validate", scenario.name});
@@ -323,9 +325,9 @@ std::string without_files(const std::string& text) {
   return std::regex_replace(text, std::regex("[^\n]*\\.json: /"), "/");
 }
 
-/// Checks that effective scenarios reproduce their runs. Runs scenarios with files, all records and unusual settings,
-/// then their effective scenarios from a directory that a link leads to. The paths in the new effective scenarios are
-/// written differently; everything else is the same, including the hash of the scenario.
+/// Checks that effective scenarios reproduce their runs. Runs scenarios with files, all records and unusual settings.
+/// Then runs their effective scenarios in a directory that is reached by a symbolic link. The second runs write other
+/// file paths into their effective scenarios. Everything else is the same, including the hash of the scenario.
 TEST(EffectiveScenario, ReproducesTheRunFromAnotherDirectory) {
   const test::TemporaryDirectory directory;
   fs::create_directory(directory / "my scenes");

@@ -66,7 +66,8 @@ TEST_F(SweepCommand, StartsNoFurtherRunsWhereTheyCannotBeKept) {
   EXPECT_EQ(table("a"), table("b"));
 }
 
-/// Checks a soft law that lets the tool through. Runs that fail are results; only an unmet `expect` is an error.
+/// Checks stiffnesses that are so small that the tool goes through the surface. Runs that fail are results; only an
+/// unmet `expect` is an error.
 TEST_F(SweepCommand, CountsRunsThatFailAndEndsThemEarly) {
   const auto sweep_of = [this](const std::string& out, const Words& more) {
     Words all = {"sweep",  "mesh_molar",
@@ -87,7 +88,7 @@ TEST_F(SweepCommand, CountsRunsThatFailAndEndsThemEarly) {
   EXPECT_EQ(cell(1, "force_max_N"), "");
   EXPECT_EQ(cell(3, "ended_at_s"), "");
   EXPECT_NE(cell(3, "force_max_N"), "");
-  // With --full, the outcomes are the same, and failed runs also have numbers.
+  // With --full, the outcomes are the same, and failed runs also have values of metrics.
   ASSERT_EQ(sweep_of("full", {"--full"}).status, 0);
   const auto full = lines_of(table("full"));
   for (std::size_t row = 1; row < 4; ++row) EXPECT_EQ(cells_of(full[row])[2], cells_of(lines[row])[2]);
@@ -133,8 +134,8 @@ TEST_F(SweepCommand, HasTheRunsThatThePrintedCommandRepeats) {
   words.erase(words.begin());
   words.insert(words.end(), {"--out", (directory_ / "run").string()});
   ASSERT_EQ(hapbench(words).status, 0);
-  // The files are equal byte for byte, including the counted allocations of a run beside other runs. The diagnosis
-  // equals the diagnosis of the single command.
+  // The sweep and the single `run` write the same bytes, except that only `run` adds a diagnosis to summary.json. The
+  // number of allocations is also the same, although other runs of the sweep run at the same time.
   test::expect_same_files(directory_ / "a/runs/000014", directory_ / "run", {"summary.json"});
   Json summary = Json::parse(read_file(directory_ / "run/summary.json"));
   EXPECT_EQ(summary.erase("diagnosis"), 1u);
@@ -355,7 +356,7 @@ TEST_F(Study, IsNotNamedByTheValueOfAnOption) {
     EXPECT_EQ(run.status, 0) << run.err;
     EXPECT_TRUE(fs::is_directory(directory_ / study)) << study;
   };
-  // The folders have the names of bundled studies, one of this command and one of another command.
+  // Each folder given to --out has the name of a bundled study of the same command.
   expect_folder({"run", "single_spring"}, "run_limits");
   expect_folder({"limit", "single_spring", "--resolution", "0.5"}, "stability_delay");
   // A study after options and their values is also found.

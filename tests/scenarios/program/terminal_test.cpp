@@ -208,7 +208,7 @@ TEST(DescribeCommand, ExplainsEveryNameThereIs) {
 }
 
 TEST(DescribeCommand, ExplainsTheWordsAndHeadingsThatResultsHave) {
-  std::vector<std::string> words = {"qualitatively replicated"};
+  std::vector<std::string> words = {"qualitatively replicated", "tolerances", "limit_tolerance"};
   for (const OutcomeInfo& outcome : outcome_infos()) words.emplace_back(outcome.name);
   for (const RunVerdictText& verdict : run_verdict_texts()) words.emplace_back(verdict.name);
   for (const RunHeading& heading : kRunHeadings) words.emplace_back(heading.title);

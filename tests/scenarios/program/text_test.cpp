@@ -69,7 +69,7 @@ TEST(RunWarnings, QuoteEachLawsOwnNumber) {
                                     run("proxy", "1.5 mm deep")};
   EXPECT_EQ(run_warnings(runs),
             (std::vector<std::string>{"scene: 2 mm deep (mean, summation)",
-                                      "scene: 1 mm deep (proxy; 1 more of its runs with other numbers)"}));
+                                      "scene: 1 mm deep (proxy; further runs with other numbers: 1)"}));
   EXPECT_EQ(run_warnings({runs.data(), 1}), std::vector<std::string>{"scene: 2 mm deep"});
 }
 

@@ -23,7 +23,7 @@ using test::bundled;
 using test::rows_of;
 
 // Compares bundled scenarios with closed forms. Bilateral springs are compared with the linear recurrence (x, v) <- A
-// (x, v) of one spring-damper under the integrator, with the matrix A of Eq. A.2. Another test spends ten minutes in
+// (x, v) of one spring-damper under the integrator, with the matrix A of Eq. A.2. Another test simulates ten minutes in
 // contact.
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
@@ -270,9 +270,9 @@ struct Run {
   std::int64_t steps;
   double allowed = kOutside;  ///< allowed depth of a point in the proxy [m]
 };
-/// Allowed depth [m] of a shell point in a proxy that is in a corner. The proxy also keeps out of the flat patches of
-/// surface around the points. In a corner, the patches may leave no room for the proxy although the points do. The
-/// depth of the patches, at most a tenth of the spacing, is then distributed over patches and points.
+/// Allowed depth [m] of a shell point in a proxy that is in a corner. The proxy avoids overlap with the shell points
+/// and with a flat patch of surface around each point. In a corner, it may be able to avoid the points but not the
+/// patches. The overlap, at most a tenth of the point spacing, is then shared between patches and points.
 constexpr double kShared = 1e-5;
 class ProxyOverAWholeRun : public testing::TestWithParam<Run> {};
 INSTANTIATE_TEST_SUITE_P(Scenes, ProxyOverAWholeRun,

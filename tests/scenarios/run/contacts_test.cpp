@@ -40,8 +40,8 @@ std::vector<std::string> late(std::int64_t every, std::int64_t delay, const char
           std::string("rendering.contacts.between=") + between};
 }
 
-// Checks contacts of a plane with `between` "linear", whose depths follow the motion of the tool between two queries.
-// They equal contacts that are found in every step.
+// Checks contacts of a plane with `between` "linear": between two queries, the depths of the contacts are changed by
+// the motion of the tool. The spring forces must equal the forces of a run that finds its contacts in every step.
 
 TEST(LinearContacts, OfAPlaneAreFreshForEveryAlgorithm) {
   // The tool is in contact from step 6 on, and the contacts found in step 7 are used from step 11 on.

@@ -12,7 +12,8 @@
 namespace hapbench::early_end_test {
 namespace {
 
-// Tests runs of batches, which end at a failure that no later step can undo (RunLength::until_failure).
+// Tests runs with RunLength::until_failure, which batches of runs use. Such a run ends at a failure that no later step
+// can undo.
 
 bool has_values(const Result& run) {
   return std::ranges::any_of(run.metrics, [](const Metric& m) { return number_of(m.value).has_value(); });

@@ -171,7 +171,7 @@ std::string warnings_of(const Result& report) {
   return text;
 }
 
-/// Checks paths of two to four straight legs, of which each leg turns back or to one side. A tool that lags behind the
+/// Checks paths of two to four straight legs. Each new leg turns back or to one side. A tool that lags behind the
 /// moving point of the hand's spring by a fraction of its width counts as following the path, whatever the distance
 /// between the start and the end of the path is. Under strong dry friction the tool follows none of the paths.
 TEST(Drag, IsJudgedAlongItsPathAlsoWhereThePathReturns) {
@@ -282,7 +282,7 @@ std::vector<Pair> pairs() {
        {"device_at_wall", {"device.servo.delay_samples=20"}},
        {"drag_molar", {"rendering.stiffness_N_per_m=2e6"}}},
       {"edge", {"drag_molar", {"rendering.stiffness_N_per_m=2e6"}}, molar},
-      // In this scene, nothing presses the ball to an equilibrium.
+      // In bounce_molar, no hand presses the ball onto the tooth, so there is no equilibrium in contact.
       {"edge",
        {"bounce_molar", {"rendering.stiffness_N_per_m=3e6"}},
        {"bounce_molar", {"rendering.stiffness_N_per_m=157", "rendering.damping_ratio=7.5"}}},
@@ -407,8 +407,9 @@ struct Trap {
   const char* rule;
   Scene scene;
   std::vector<std::pair<const char*, double>> metrics;
-  const char *right, *wrong;  ///< text that the advice contains, and text that it does not contain; empty `right`: the
-                              ///< rule finds nothing
+  /// `right`: text that the advice must contain; if it is empty, the rule must find nothing. `wrong`: text that the
+  /// advice must not contain.
+  const char *right, *wrong;
   Outcome outcome = Outcome::completes;
   const char* fault = "";
   RunObservations observations = {};
@@ -576,8 +577,8 @@ TEST(Diagnosis, BlamesTheStepWhereThatIsTooLong) {
   EXPECT_EQ(far.warnings[0].text.find("time.step_s"), std::string::npos) << far.warnings[0].text;
 }
 
-/// Checks runs without a diagnosis, which is computed only on request. A run still has a warning if its numbers do not
-/// characterise the law.
+/// Checks runs for which no diagnosis is requested. If the numbers of such a run do not characterise the law, the run
+/// still has a warning.
 TEST(Diagnosis, OfARunThatNobodyDiagnosesIsAWarning) {
   for (const auto& [override, rule] : {std::pair("rendering.friction.mu_f_s_per_m=1000", "friction"),
                                        {R"(rendering.reduction={"threshold":0.9})", "reduction"}}) {

@@ -148,8 +148,8 @@ TEST(LostTorque, IsTheSumOverTheContactsOfArmTimesShareForEveryAlgorithm) {
   for (const AlgorithmEntry& algorithm : algorithms()) {
     SCOPED_TRACE(algorithm.info->name);
     expect_torques(algorithm.info->name, kPlane);
-    // The slot is too narrow for the tool, so the proxy cannot avoid overlapping it. Other tests cover the forces of
-    // the contacts in this case.
+    // The slot is narrower than the tool, so the proxy always overlaps the walls. Other tests cover the contact forces
+    // of the proxy in this case.
     if (std::string_view(algorithm.info->name) != "proxy") expect_torques(algorithm.info->name, kSlot);
   }
 }

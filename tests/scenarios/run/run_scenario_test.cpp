@@ -25,8 +25,8 @@ using test::TemporaryDirectory;
 
 // Tests a run with its trials and files, and the ways in which it ends: complete, diverged or stopped.
 
-/// Returns the scenario of a study of two subjects, with two trials of two targets each, on a plane. It takes little
-/// time.
+/// Returns the scenario of a study of two subjects, with two trials of two targets each, on a plane. Its run takes
+/// little time.
 LoadedScenario study(const char* record = R"({"trajectory": false})") {
   const Json json = Json::parse(std::string(R"({
     "name": "study", "time": {"step_s": 0.001, "duration_s": 30}, "environment": {"type": "plane", "size_m": 0.004},
@@ -154,7 +154,7 @@ TEST(StiffnessEigenvalues, AreThoseOfTheSpringsUnderTheAlgorithm) {
     double lambda;
   } kCases[] = {
       {R"([{"direction":[1,0,0],"count":7},{"direction":[0,-1,0],"count":3}])", "summation", 7.0},
-      // Three springs at 60 degrees give S = 3/2 I in the plane.
+      // Three springs in a plane, at angles of 60 degrees, have the stiffness matrix 3/2 K I in this plane.
       {R"([{"direction":[1,0,0],"count":1},{"direction":[0.5,0.8660254037844386,0],"count":1},
            {"direction":[-0.5,0.8660254037844386,0],"count":1}])",
        "summation", 1.5},
@@ -202,7 +202,7 @@ Scenario admittance_on_wall(double delay) {
   return struck(scenario);
 }
 
-/// Relative rounding error of some sixty steps of a state that need not decay.
+/// Rounding error of the state after up to 60 steps, relative to the largest state so far. The state need not decay.
 constexpr double kRounding = 1e-12;
 
 void expect_same_motion(const Scenario& scenario) {

@@ -35,7 +35,7 @@ namespace fs = std::filesystem;
 constexpr double kRadius = 0.0005;
 constexpr double kUnknown = -1.0;
 
-/// Returns the true depth of the tool with its tip centre at p; kUnknown if the depth is not defined.
+/// Returns the true depth [m] of the tool with its tip centre at p [m]; kUnknown if the depth is not defined.
 using Truth = std::function<double(const Vec3& p)>;
 
 /// Depth of a ball in the plane z = 0. The shank points away from the plane.
@@ -43,8 +43,8 @@ double ball_in_plane(const Vec3& p) {
   return std::max(0.0, kRadius - p.z());
 }
 /// Depth of a tool in a plate that is 0.2 mm thick, below z = 0, and wider than the tool's path. The tool extends
-/// vertically from the lowest point of its ball to the end of its shank. Its depth is the depth of the height at which
-/// the tool is nearest to the middle plane of the plate.
+/// vertically from the lowest point of its ball to the end of its shank. The deepest point of the tool is its point
+/// nearest to the middle plane of the plate. The depth is the distance of this point from the nearer face.
 double ball_in_plate(const Vec3& p) {
   const double neck = 0.3 * 2.0 * kRadius, end = std::sqrt(kRadius * kRadius - neck * neck) + 20.0 * neck;
   const double height = std::clamp(-0.0001, p.z() - kRadius, p.z() + end);
@@ -126,8 +126,8 @@ double flat_in_plane(const Vec3& p) {
   return std::max(0.0, -p.z());
 }
 
-/// Depth of a ball in the cone about z with its apex at z = -3 mm. The wall's normal is inclined by the half angle from
-/// the horizontal.
+/// Depth of a ball in the cone about z with its apex at z = -3 mm and a half angle of 0.5 rad. The wall's normal is
+/// inclined by the half angle from the horizontal.
 double ball_in_cone(const Vec3& p) {
   const double rho = p.head<2>().norm(), z = p.z() + 0.003;
   return std::max(0.0, kRadius - (std::sin(0.5) * z - std::cos(0.5) * rho));
@@ -336,8 +336,8 @@ InsideDepths depths_of(const LoadedScenario& loaded, std::uint64_t every) {
   return inside.depths();
 }
 
-/// Checks that a run without a record, which evaluates the depth in few steps, finds the depths of `exact` within its
-/// tolerances. `exact` are the metrics of a run that evaluated every step.
+/// Checks that a run without a record finds the true depths within its stated errors, although it evaluates the depth
+/// in few steps. `exact` are the metrics of a run that evaluated the depth in every step.
 void expect_seen_without_record(const LoadedScenario& loaded, const MetricList& exact) {
   const InsideDepths few = depths_of(loaded, 0);
   const auto max = number_of(exact, "inside_max_m"), settled = number_of(exact, "inside_settled_m");
@@ -376,8 +376,8 @@ TEST_F(ScenesMadeToFool, GetTheirTrueOutcomeAndDepthAlsoWithoutARecord) {
   }
 }
 
-/// Checks scenes in which the tool is in no step deeper than half the wall's thickness, and a drag that ends deep in a
-/// gap, away from its path.
+/// Checks scenes in which the depth of the tool never exceeds half the thickness of the wall. Also checks a tool that
+/// is dragged, leaves its path and ends deep in a gap.
 TEST_F(ScenesMadeToFool, WithThinWallsOrAGapGetTheirTrueOutcome) {
   const Case cases[] = {
       {"led sideways through a plate, its tip below",
@@ -409,8 +409,8 @@ TEST_F(ScenesMadeToFool, WithThinWallsOrAGapGetTheirTrueOutcome) {
   }
 }
 
-/// Checks a drill that rotates in a hole. Its edge is in the wall by a fiftieth of its width, a depth that a coarser
-/// search would miss.
+/// Checks a drill that rotates in a hole. The edge of the drill is in the wall by about a fiftieth of the drill's
+/// width. A coarser search would miss this depth.
 TEST(SettledDepth, OfEveryRowIsKnownToTheTolerance) {
   const std::vector<std::string> changes = {"time.steps=400",
                                             "expect={}",

@@ -203,11 +203,10 @@ TEST_F(Override, DelayInSecondsIsTheSceneSamples) {
   EXPECT_EQ(with({both}), with({device}));
   EXPECT_EQ(with({both, "time.step_s=0.0003"}), with({device, "time.step_s=0.0003"}));
   EXPECT_EQ(with({both, R"(time={"step_s":0.0003,"steps":20})"}), with({device, "time.step_s=0.0003"}));
-  EXPECT_EQ(
-      refusal(R"(device={"type":"impedance","handle_mass_kg":0.1,"delay_s":0.0023,"delay_samples":2.3})")
-          .find("/device/delay_s: got 0.0023 s together with delay_samples 2.3; allowed: one of the two, or both where "
-                "they"),
-      0u);
+  EXPECT_EQ(refusal(R"(device={"type":"impedance","handle_mass_kg":0.1,"delay_s":0.0023,"delay_samples":2.3})")
+                .find("/device/delay_s: got 0.0023 s together with delay_samples 2.3; allowed: one of the two, or both "
+                      "with consistent values"),
+            0u);
   EXPECT_NE(refusal(R"(device={"type":"impedance","handle_mass_kg":0.1,"delay_s":-1})").find("/device/delay_s: got -1"),
             std::string::npos);
   EXPECT_EQ(

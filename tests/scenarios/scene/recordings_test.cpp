@@ -125,18 +125,19 @@ TEST(StrokeFile, IsRefusedOnceWithTheNumberOfRows) {
 TEST(TraceFile, IsRefusedWithItsRow) {
   EXPECT_EQ(
       refusal("0,0,0,0,0,0,1,-1\n0,0,0,0,0,0,2,1\n0,0,0,0,0,0,1,1\n1,0,0,0,0,0,1,-1\n"),
-      "t.csv, line 2, contact 1: got depth -1; allowed: >= 0, how deep the point is in the tool (2 more rows have "
+      "t.csv, line 2, contact 1: got depth -1; allowed: >= 0, the depth of the point inside the tool (2 more rows have "
       "faults)");
   EXPECT_EQ(refusal("0,0,0,0,0,0,1,1\n0.1,0,0,0,0,0,1,1\n0.05,0,0,0,0,0,1,1\n"),
             "t.csv, line 4, contact 3: got time 0.05 after 0.1; allowed: ascending times");
   EXPECT_EQ(refusal("0,0,0,0,0,0,1.01,1\n"),
             "t.csv, line 2, contact 1: got a gradient ux,uy,uz of length 1.01; allowed: 1 within 0.001");
   EXPECT_EQ(refusal("0,0,0,0,0,0,1,-1e-9\n"),
-            "t.csv, line 2, contact 1: got depth -1e-09; allowed: >= 0, how deep the point is in the tool");
+            "t.csv, line 2, contact 1: got depth -1e-09; allowed: >= 0, the depth of the point inside the tool");
   EXPECT_NE(refusal("0,0,0\n"), "");
   std::string many;
   for (int i = 0; i < 100'001; ++i) many += "0,0,0,0,0,0,1,1\n";
-  EXPECT_EQ(refusal(many), "t.csv, line 100002, contact 100001: got more contacts at time 0; allowed: at most 100000");
+  EXPECT_EQ(refusal(many),
+            "t.csv, line 100002, contact 100001: got too many contacts at time 0; allowed: at most 100000");
   EXPECT_THROW(parse_contact_trace("time_s,x,y,z\n", "t.csv"), InputError);
   EXPECT_THROW(parse_contact_trace("", "t.csv"), InputError);
 }

@@ -121,8 +121,8 @@ void expect_agreement(const test::Mutation& mutant, const std::optional<InputErr
   const std::string message = objection->what();
   EXPECT_EQ(message.find_first_of("\n\r"), std::string::npos) << name << " " << mutant.change;
   EXPECT_NE(message.find("allowed"), std::string::npos) << name << " " << mutant.change << ": " << message;
-  // The location that the error names exists in the document, unless the error is about a field that has its default
-  // value and contradicts given fields.
+  // If the shape of the document is wrong, the location that the error names exists in the document. An error about
+  // contradicting fields may name a field that the document does not contain, because the field has its default value.
   EXPECT_TRUE(!wrong_shape || mutant.document.contains(Json::json_pointer(objection->location_text()))) << message;
 }
 

@@ -24,7 +24,7 @@ struct NamedText {
 };
 /// Prints the name in test listings.
 void PrintTo(const NamedText& text, std::ostream* out);  // NOLINT: GoogleTest's name
-/// Returns the same mesh in every format and encoding.
+/// Returns `soup` in every file format and encoding.
 std::vector<NamedText> mesh_texts(const TriangleSoup& soup);
 
 }  // namespace hapbench::test

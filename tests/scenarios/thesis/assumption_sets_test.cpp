@@ -103,9 +103,10 @@ TEST_F(AssumptionSets, JudgeNothingThatUsesAScenarioOfAMissedCalibration) {
   EXPECT_EQ(found[0].why, "no value of stiffness gives the published 5 raw points");
 }
 
-/// Checks the calibration of the hand's force in task 2. Another angle of the hand changes the number of contacts
-/// before the reduction, and the calibration finds a force of the hand that restores this number. If the set gives the
-/// force itself (`given`), the calibration keeps this force.
+/// Checks the calibration of the hand's force in task 2. If the assumption about the pushing direction of the hand
+/// changes (task2.hand_angle), the number of contacts before the reduction changes. The calibration then finds a force
+/// of the hand that restores this number. If the force is one of the assumptions that the set itself gives (`given`),
+/// the calibration keeps this force.
 TEST(Calibration, OfRecordedInputsIsMadeAnew) {
   const Assumptions assumptions(kReference / "assumptions.json");
   const auto index = [&](const std::string& id) {

@@ -273,9 +273,9 @@ TEST_P(MultiRateContactsOfEverySchedule, AreTheFreshOnesOfTheQueryMovedAsTheTool
   EXPECT_EQ(dropped > 0, schedule.linear);
 }
 
-/// Checks linear contacts of springs that may pull: contacts with a negative depth are not dropped. The depth of a
-/// spring is linear in the position of the tool. Contacts that are found in every eighth step, with depths extrapolated
-/// linearly between these steps, therefore equal contacts that are found in every step.
+/// Checks linear extrapolation of contacts for springs that may pull, whose contacts with a negative depth are not
+/// dropped. The depth of a spring is linear in the position of the tool. If contacts are found in every eighth step and
+/// their depths are extrapolated linearly between these steps, they therefore equal contacts found in every step.
 TEST(MultiRateContacts, OfSpringsThatPullAreFreshWhenLinear) {
   const auto springs = std::make_shared<SpringSet>();
   Random random(1);

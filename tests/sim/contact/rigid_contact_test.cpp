@@ -10,12 +10,12 @@
 namespace hapbench::rigid_contact_test {
 namespace {
 
-// Tests the free position of a tool between rigid triangles against closed forms.
+// Tests against closed forms the free position: the position of a tool that cannot enter rigid triangles.
 
 constexpr double kRadius = 0.0005;        // radius of the tool [m]
 constexpr RoundTool kBall{kRadius, 0.0};  // a tool of which only the tip can touch
 const Vec3 kDown = -Vec3::UnitZ();
-constexpr double kExact = 1e-14;  // tolerance [m]: rounding of centimetres in some additions
+constexpr double kExact = 1e-14;  // tolerance [m]: rounding in some additions of lengths of 1 cm
 
 /// Adds the square a b c d, whose corners are counter-clockwise from outside.
 void add_square(TriangleSoup& soup, const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {

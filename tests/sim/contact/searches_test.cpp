@@ -78,7 +78,7 @@ std::vector<SurfacePoint> at(const std::vector<Vec3>& positions) {
   return points;
 }
 
-/// Returns true if a search over a shell of this one point reports the point.
+/// Returns true if a search over a shell whose only point is at `position` reports this point.
 bool collides(const Cylinder& tool, const ToolPose& pose, const Vec3& position) {
   const PointShell shell(at({position}), 0.0);
   const auto query = make_contact_query(shell, tool, Skips::off);
@@ -91,8 +91,8 @@ class ShellQueryForTip : public testing::TestWithParam<Tip> {};
 INSTANTIATE_TEST_SUITE_P(BothTips, ShellQueryForTip, testing::Values(Tip::flat, Tip::round),
                          [](const auto& tip) { return tip.param == Tip::flat ? "flat" : "round"; });
 
-// Poses along the coordinate axes and sizes that are multiples of powers of two: all coordinates below are exact, so it
-// is exactly known which points are in the tool, including its surface.
+// With poses along the coordinate axes, and lengths that are small multiples of a power of two, all coordinates below
+// are exact. It is therefore exactly known which points are in the tool, including its surface.
 constexpr double kRadius = 0x5p-13;  // 0.61 mm, a multiple of 5 for the point (3, 4) on the circle
 constexpr double kLength = 0x1p-7;
 // One unit in the last place of coordinates below 1/2; the radius is far larger than this unit.
@@ -144,7 +144,8 @@ std::size_t marked_near(const PointShell& shell, const ToolShape& tool, const To
   });
 }
 
-/// Returns the largest number of points near the tool over some poses, divided by the bound of this number.
+/// Returns the largest number of points within a margin of the tool over some poses, divided by the bound of this
+/// number.
 double worst_part_of_bound(const ToolShape& tool, double size, Random& random) {
   const double margin = random.uniform(0.0, 0.3) * tool.half_width();
   const PointShell shell(test::random_shell(random, size), 0.0);

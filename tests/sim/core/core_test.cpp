@@ -71,7 +71,7 @@ TEST(Profile, HasTheValuesOfItsShape) {
   const struct {
     const char* name;
     Profile profile;
-    std::vector<std::pair<double, double>> values;  ///< exact values: time and value
+    std::vector<std::pair<double, double>> values;  ///< times, and the exact value of the profile at each time
   } kCases[] = {
       {"zero by default", {}, {{0.0, 0.0}, {123.0, 0.0}}},
       {"constant", -2.5, {{-1e9, -2.5}, {0.0, -2.5}, {0.3, -2.5}, {1e9, -2.5}}},
@@ -262,8 +262,8 @@ TEST(Math, SineAndCosineTogetherAreTheSameBits) {
   EXPECT_TRUE(std::signbit(math::sine_cosine(-0.0).sine) && std::isnan(math::sine_cosine(kInf).cosine));
 }
 
-/// Checks the bits that every compiler and instruction set must give. The value was computed by g++ 12 for AVX-512 and
-/// by clang 14 without optimization for SSE2.
+/// Checks the bits that every compiler and instruction set must give. g++ 12 for AVX-512, and clang 14 without
+/// optimization for SSE2, computed the expected hash.
 TEST(Math, GivesTheSameBitsEverywhere) {
   Random random(4);
   Hash64 hash;

@@ -72,8 +72,8 @@ Slot random_slot(Random& random) {
           random.uniform(5e-5, 5e-4)};
 }
 
-// Returns the longest allowed distance of neighbours: the spacing, plus a tolerance of 1e-9 of the spacing, plus the
-// rounding of two coordinates of at most 1 cm.
+// Returns the longest allowed distance between neighbouring points: the spacing, plus a tolerance of 1e-9 of the
+// spacing, plus the rounding of two coordinates of at most 1 cm.
 double longest(double spacing) {
   return spacing * (1.0 + 1e-9) + 4 * kEps * 0.01;
 }
@@ -115,7 +115,7 @@ TEST(Hole2dShell, FollowsTheProfileFromLeftToRightInStepsOfAtMostTheSpacing) {
       EXPECT_LE(step, longest(hole.spacing));
       length += step;
     }
-    // Intervals add up to the length of the profile only if they never turn back.
+    // The distances between successive points add up to the length of the profile only if the points never turn back.
     const double profile = 2 * hole.mouth + 2 * hole.depth + hole.width;
     EXPECT_NEAR(length, profile, 4 * kEps * static_cast<double>(points.size()) * profile);
     EXPECT_EQ(points.front().position, Vec3(-hole.width / 2 - hole.mouth, 0, 0));
@@ -214,9 +214,9 @@ TEST(BlockWithHole, TheSurfaceIsAsFarAwayAsTheDistanceSaysAndTheSignIsMembership
                           !(rho < 0.001 && p.z() > -0.005);
     ASSERT_EQ(d < 0.0, material) << p.transpose();
     inside += material ? 1 : 0;
-    // A step of length |d| against the gradient must end on the surface: the distance is not an underestimate. The
-    // gradient is a central difference over 1e-7 m, with an error of up to 1e-7 / |d| near medial axes. There the
-    // surface lies in another direction, so points whose gradient is not a unit vector are left out.
+    // A step of length |d| against the gradient must end on the surface, because the distance is not an underestimate.
+    // The gradient is a central difference over 1e-7 m. Near medial axes, it has an error of up to 1e-7 / |d| and need
+    // not point away from the surface. Points whose gradient is not a unit vector are therefore left out.
     constexpr double h = 1e-7;
     Vec3 gradient;
     for (int k = 0; k < 3; ++k) {

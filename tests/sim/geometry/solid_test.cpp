@@ -108,7 +108,7 @@ TEST(Solid, OfPartsThatOverlapIsInsideInBoth) {
 
 TEST(Solid, OfAnOpenSheetIsUnknownBeyondItsBorder) {
   const auto solid = solid_of(test::sheet(10, 10, [](int i, int j) { return Vec3(0.001 * i, 0.001 * j, 0.0); }));
-  const double up = solid->at({0.005, 0.005, 0.001}).value;  // the winding of the sheet decides
+  const double up = solid->at({0.005, 0.005, 0.001}).value;  // the winding of the sheet determines the sign
   EXPECT_NEAR(std::abs(up), 0.001, 1e-15);
   for (const double z : {0.02, -0.02}) {
     EXPECT_NEAR(solid->at({0.0052, 0.0047, z}).value, std::copysign(1.0, up) * z, 1e-15);
@@ -180,7 +180,7 @@ TEST(Inside, OfAToolOverABorderIsNeverNothing) {
   EXPECT_EQ(search.depth(pose).value_or(1.0), 0.0);
 }
 
-/// Returns the depth of the deepest grid node in the tool.
+/// Returns the depth below the solid's surface of the deepest grid node that lies in the tool.
 double dense_depth(const test::DefinedTool& tool, const ToolPose& pose, const Solid& solid, double step) {
   const Box box = tool.shape->box_near(pose, 0.0, solid.region());
   const Vec3 low = box.min.cwiseMax(solid.region().min), high = box.max.cwiseMin(solid.region().max);
@@ -204,9 +204,9 @@ struct TiltedSolid {
   double tilt;
 };
 
-/// Checks tools of every kind that are pressed into every kind of solid, against a dense sample of the tool. The result
-/// is the depth of a point of the tool, so the deepest sample is deeper by at most the tolerance. The deepest point has
-/// a sample in or near the tool within half a diagonal of the grid.
+/// Compares the depth of tools of every kind in solids of every kind with the depth of the deepest sample. The samples
+/// are the nodes of a dense grid that lie in the tool. The deepest sample may be deeper than the result of the search
+/// by at most the tolerance of the search.
 TEST(Inside, AgreesWithADenseSampleOfTheTool) {
   const TriangleSoup box = test::cube(0.001, {0.0, 0.0, -0.001});
   const TriangleSoup plate = test::cube(0.001, {0.0, 0.0, 0.0});
@@ -239,12 +239,13 @@ TEST(Inside, AgreesWithADenseSampleOfTheTool) {
         continue;
       }
       EXPECT_LE(sample, *depth + InsideSearch::kTolerance * (width + *depth)) << kind.name << " in " << tilted.name;
-      // The deepest point of the tool usually has a sample within half a diagonal. At sharp edges it may have none so
-      // close in the tool, so two diagonals are allowed.
+      // Usually, a sample is within half a diagonal of the grid from the deepest point of the tool. At sharp edges of
+      // the tool, the nearest sample may be farther away, so two diagonals are allowed.
       EXPECT_LE(*depth, sample + 2.0 * std::sqrt(3.0) * step) << kind.name << " in " << tilted.name;
       largest = std::max(largest, sample - *depth);
       deep += *depth > 0.0 ? 1 : 0;
-      // The bound must not be lower than the depth, neither at this pose nor at a nearby pose for which it must hold.
+      // A bound that is computed at this pose must not be lower than the depth. The same is true for a bound that is
+      // computed at the nearby pose `beside` for all poses that are as near to `beside` as this pose.
       InsideBound bound(*tool.shape, *tilted.solid);
       EXPECT_GE(std::max(0.0, bound.at(pose, 0.0, 0.0, 0.0, true)), *depth - 1e-12)
           << kind.name << " in " << tilted.name;
@@ -292,13 +293,14 @@ TEST(Inside, OfAMeshToolIsThatOfItsMesh) {
   for (const double tilt : {0.0, 0.3}) {
     ToolPose pose = at({0.0, 0.0, -0.0001});
     pose.axis = {-std::sin(tilt), 0.0, -std::cos(tilt)};
-    // The deepest point is the lowest corner of the mesh: one of its 48 corners is at the front.
+    // The deepest point is the lowest corner of the mesh. One of the 48 corners of its end lies exactly in the
+    // direction of the tilt.
     EXPECT_NEAR(search.depth(pose).value_or(0.0), 0.0001 + 0.0005 * std::sin(tilt), grid->error_bound()) << tilt;
   }
 }
 
-/// Checks that a known distance nearby bounds the search and changes no bit of the result, also at a point of the
-/// surface.
+/// Checks that the known distance of a nearby point, which bounds the search for the distance of a point, changes no
+/// bit of the result. Some points are on the surface.
 TEST(Solid, KnownDistanceNearbyChangesNothing) {
   const TriangleSoup sphere = test::sphere(0.004, 3);
   TriangleSoup open = sphere;

@@ -118,7 +118,7 @@ TEST(Integrators, AskForTheForceAsOftenAsTheySay) {
   }
 }
 
-/// Force of a spring along x that only pushes, from x = 0 on.
+/// Force of a spring along x that pushes towards -x at positions x > 0. At x <= 0 the force is zero.
 class OneSidedSpring final : public ForceField {
  public:
   Vec3 force_at(double, const Vec3& position, const Vec3&) noexcept override {
@@ -152,9 +152,10 @@ std::pair<double, double> bounce(const IntegratorEntry& integrator, double dt, d
           contact / (std::numbers::pi * std::sqrt(kMass / OneSidedSpring::kStiffness))};
 }
 
-/// Checks a bounce: contact lasts half a period, and the tool leaves with the speed of its arrival. With steps of 0.1
-/// ms, w h is 0.045. Between the events, kEvent makes Runge-Kutta steps. They lose (w h)^6 / 144 of the energy in each
-/// of 70 steps, 4e-9, and make the contact longer by the fraction (w h)^4 / 120 = 3e-8.
+/// Checks a bounce: contact lasts half a period, and the tool leaves with the speed of its arrival. Let w be the
+/// angular frequency of mass and spring, and h the step. With h = 0.1 ms, w h is 0.045. Between the events, kEvent
+/// makes Runge-Kutta steps. In each of 70 steps, they lose the fraction (w h)^6 / 144 of the speed, 4e-9 in total.
+/// They make the contact longer by the fraction (w h)^4 / 120 = 3e-8.
 TEST(Event, FindsContactOnAndOffWithinAStep) {
   const auto [gain, duration] = bounce(kEvent, 1e-4, 1e-12);
   EXPECT_NEAR(gain, 0.0, 1e-8);

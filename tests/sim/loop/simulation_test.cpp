@@ -445,8 +445,8 @@ ToolState run_spring(ObservedEnergy& observed, double damping, double position, 
   return tool;
 }
 
-/// Checks the definition of the energy: work is the kinetic energy that the force adds, so E_n - E_0 is the energy that
-/// the tool has lost.
+/// Checks the definition of the observed energy E_n after n steps. Work is the kinetic energy that the force adds to
+/// the tool, so that E_n - E_0 is the energy that the tool has lost.
 TEST(ObservedEnergy, IsWhatALoneToolHasLost) {
   ObservedEnergy observed(kStep);
   const ToolState end = run_spring(observed, 20.0, 0.003, 0.4, 300);

@@ -284,7 +284,8 @@ TEST(MeshFromTriangles, RebuildsAnySurfaceFromItsTrianglesInAnyOrder) {
     EXPECT_EQ(mesh.n_vertices(), original.n_vertices());
     EXPECT_EQ(mesh.n_edges(), original.n_edges());
     EXPECT_EQ(mesh.n_faces(), original.n_faces());
-    // Rounding of sums of a thousand terms of a few units, in another order.
+    // The tolerance covers the rounding of two sums of the same thousand terms, up to a few units each, in different
+    // orders.
     EXPECT_NEAR(enclosed_volume(mesh), enclosed_volume(original), 1e-11);
   }
 }
@@ -318,7 +319,7 @@ TEST(Refine, LeavesNoLongerEdgeAndTheSameSurface) {
   EXPECT_LE(longest_edge(mesh), 0.05);
   EXPECT_GT(longest_edge(mesh), 0.025) << "no finer than asked for";
   EXPECT_EQ(test::euler_characteristic(mesh), euler);
-  // Rounding of sums of some 1e5 terms, relative 1e5 * 2^-53.
+  // The relative rounding error of a sum of some 1e5 terms is about 1e5 * 2^-53.
   EXPECT_NEAR(surface_area(mesh) / area, 1.0, 3e-11);
   EXPECT_NEAR(enclosed_volume(mesh) / volume, 1.0, 3e-11);
 }
@@ -387,9 +388,9 @@ TEST(Refine, NormalsOnASphereAreWithinTheAngleOfItsFacets) {
   refine(mesh, 0.0002);
   const auto points = vertices_with_normals(mesh);
   ASSERT_GT(points.size(), 5000u);
-  // A facet's normal is the sphere's normal at the centre of its circumscribed circle. Its angle to the sphere's normal
-  // at any other point of the facet is therefore at most asin(r / R). The mean of normals within a cone lies in the
-  // cone too.
+  // A facet's normal is the sphere's normal at the centre of the facet's circumscribed circle. Let r be the radius of
+  // this circle and R the radius of the sphere. The angle between the facet's normal and the sphere's normal at any
+  // point of the facet is at most asin(r / R). The mean of normals within a cone lies in the cone too.
   const double angle = std::asin(widest / kRadius);
   double worst = 0.0;
   for (const SurfacePoint& p : points)

@@ -51,8 +51,9 @@ def their_mesh(block, spacing, density):
 def compare(program, block, spacing, density):
     ours, our_faces = our_mesh(program, block, spacing, density)
     theirs, their_faces, nodes = their_mesh(block, spacing, density)
-    # scikit-image computes in single precision. Its errors are half a unit in the last place of an index up to `nodes`,
-    # and a few units of the distance, which is of the order of one next to the surface.
+    # scikit-image computes in single precision. Its error is half a unit in the last place of an index up to `nodes`,
+    # plus a few units in the last place of the signed distance. Next to the surface, this distance is about one grid
+    # spacing, the unit of the coordinates.
     tolerance = (nodes + 8) * 2.0**-24
     gap, partner = cKDTree(theirs).query(ours)
     print(

@@ -103,7 +103,8 @@ bool same(const IsoSurface& a, const IsoSurface& b) {
 }
 
 TEST(MarchingCubes, NarrowBandFindsWhatAFullSweepFinds) {
-  // Compare the surfaces of the same field, once exact and once scaled down so that no node is skipped.
+  // Compare the surfaces of a field of exact distances, which lets marching cubes skip nodes far from the surface, and
+  // of the same field scaled down, so that no node is skipped.
   const BlockWithHole block = small_block();
   DensityField field = density_field(block, 0.0002, Density::signed_distance);
   const IsoSurface band = surface_of(field);

@@ -12,7 +12,7 @@ namespace {
 constexpr double kStep = 1.0 / 1024;  // sums of this step are exact
 constexpr int kSecond = 1024;
 
-/// Returns rules with one target at the origin and the thesis's times.
+/// Returns rules with one target at the origin. All times have their default values, which are those of the thesis.
 TargetRules one_target() {
   TargetRules rules;
   rules.positions = {Vec3(0, 0, 0)};
@@ -68,7 +68,7 @@ TEST(ForceGauge, ShowsAStepAsAFirstOrderLowPassDoes) {
   TargetTask task(with_gauge(cutoff, 0.1), 1);
   for (int i = 1; i <= kSecond; ++i) {
     task.advance(kOff, 2.0, 2.0, kStep);
-    // Rounding: 1024 roundings of a number of at most 2; the low-pass reduces each of them with time.
+    // The tolerance covers 1024 rounding errors of a number of at most 2. The low-pass reduces each error with time.
     ASSERT_NEAR(task.reading(), 2.0 * -std::expm1(-2.0 * pi * cutoff * i * kStep), 1e-13) << i;
   }
 }
@@ -128,9 +128,9 @@ TEST(Threshold, MayBeOnTheSpringForceThroughALowPassWithAGrace) {
   const int grace = 100;
   TargetRules rules = one_target();
   rules.threshold = Threshold{PressForce::spring, 30.0, grace * kStep};
-  // At 1.6 N the low-pass is below 1 N for ln(1.6 / 0.6) / (2 pi f) after a rise, 5 samples. It stays above 1 N for
-  // ln(1.6) / (2 pi f) after a fall, 2 samples. With a dropout of n samples the reading is therefore below 1 N for n +
-  // 3 samples.
+  // The force steps between 0 and 1.6 N, and the low-pass has the cutoff f = 30 Hz. After a rise, the filtered force
+  // stays below 1 N for ln(1.6 / 0.6) / (2 pi f), 5 samples. After a fall, it stays above 1 N for ln(1.6) / (2 pi f), 2
+  // samples. If the force is 0 for n samples, the filtered force is therefore below 1 N for n + 3 samples.
   for (const int dropout : {grace - 3, grace - 2}) {
     TargetTask task(rules, 1);
     int samples = 0;

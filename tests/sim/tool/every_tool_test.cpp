@@ -96,7 +96,7 @@ TEST_P(EveryTool, HasDepthsThatAreDistancesToItsSurface) {
       ASSERT_GE(in.depth[i], 0.0);
       ASSERT_NEAR(in.depth[i], std::max(0.0, slack_at(tool, pose, in.point(i))), kRounding);
       ASSERT_NEAR(in.gradient(i).norm(), 1.0, 4 * std::numeric_limits<double>::epsilon());
-      // Only along the gradient does the path of length `depth` end on the surface.
+      // A path of length `depth` from the point ends on the surface only if it follows the gradient.
       const Vec3L out = in.point(i).cast<long double>() + in.depth[i] * in.gradient(i).cast<long double>();
       ASSERT_NEAR(static_cast<double>(tool.slack(pose, out)), 0.0, 2 * kRounding);
     }
@@ -224,8 +224,9 @@ TEST_P(EveryTool, KeepsPointsOutByConstraintsIfItIsConvex) {
     ++convex;
     ContactBuffer contacts(8);
     for (std::uint32_t i = 0; i < 8; ++i) {
-      // The normal may be parallel to the axis, so that the face is flush with the tip or the bottom, or it is random.
-      // A move towards the surface makes faces replace edges.
+      // The surface normal at a contact is random or parallel to the tool's axis. In the second case, the surface is
+      // parallel to the flat ends of the tool. For a move towards the surface, a constraint by an edge of the tool may
+      // be replaced by the constraint of a face of the tool.
       const Vec3 normal =
           random.below(3) == 0 ? random.direction() : Vec3((random.below(2) == 0 ? 1.0 : -1.0) * pose.axis);
       contacts.push(i, tool.near_point(pose, random), normal);

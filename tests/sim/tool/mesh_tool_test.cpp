@@ -137,11 +137,11 @@ TEST(SignedDistanceGrid, RefusesBadMeshesWithWhatWasMeasured) {
   TriangleSoup open = test::cube();
   open.triangles.pop_back();
   EXPECT_EQ(refusal(open),
-            "the mesh bounds no solid: 3 open edges (a triangle on one side only); the first at [1, -1, 0] m; "
+            "the mesh bounds no solid: 3 boundary edges (edges with only one triangle); the first at [1, -1, 0] m; "
             "close its holes");
   TriangleSoup turned = test::cube();
   std::swap(turned.triangles[0][0], turned.triangles[0][1]);
-  EXPECT_NE(refusal(turned).find("3 edges whose triangles are wound against each other"), std::string::npos);
+  EXPECT_NE(refusal(turned).find("3 edges whose triangles have inconsistent winding"), std::string::npos);
   EXPECT_NE(refusal(test::reversed(test::cube())).find("inside out (volume -8 m^3)"), std::string::npos);
   EXPECT_EQ(refusal(TriangleSoup{}), "the mesh has no triangles");
   TriangleSoup flat = test::cube();
@@ -160,7 +160,7 @@ TEST(SignedDistanceGrid, RefusesBadMeshesWithWhatWasMeasured) {
 
 TEST(SignedDistanceGrid, RefusesMeshesThatPassThroughThemselves) {
   const std::string overlap = refusal(test::together(test::cube(), test::cube(1.0, {0.5, 0.5, 0.5})));
-  EXPECT_NE(overlap.find("the mesh passes through itself: it encloses ["), std::string::npos) << overlap;
+  EXPECT_NE(overlap.find("the mesh intersects itself: it encloses ["), std::string::npos) << overlap;
   EXPECT_NE(overlap.find("2 times, and so "), std::string::npos) << overlap;
   const std::string hollow = refusal(test::together(test::cube(), test::reversed(test::cube(0.5, {3, 0, 0}))));
   EXPECT_NE(hollow.find("-1 times"), std::string::npos) << hollow;
@@ -170,12 +170,12 @@ TEST(SignedDistanceGrid, RefusesMeshesThatPassThroughThemselves) {
 
 TEST(SignedDistanceGrid, RefusesMeshesThatAreThinnerThanTheirGridOrTooLarge) {
   const std::string thin = refusal(test::cup(20), 0.2);
-  EXPECT_NE(thin.find("of its surface is less than two spacings (0.4 m) thick, the thinnest place 0.29"),
+  EXPECT_NE(thin.find("of its surface is less than two spacings (0.4 m) thick; the smallest thickness is 0.29"),
             std::string::npos)
       << thin;
   EXPECT_NE(thin.find("set the nodes at most 0.14"), std::string::npos) << thin;
   const std::string large = refusal(test::scaled(test::cube(), 1000.0));
-  EXPECT_NE(large.find("is that its scale? If so, set the nodes "), std::string::npos) << large;
+  EXPECT_NE(large.find("is its scale right? If so, set the nodes "), std::string::npos) << large;
   EXPECT_NE(refusal(test::cube(), 1e-300), "");
 }
 
@@ -350,8 +350,8 @@ TEST_P(MeshToolOf, HasTheGradientOfItsField) {
     }
     const Vec3 u = gradient(tool_, pose, x);
     ASSERT_NEAR(u.norm(), 1.0, 1e-14);
-    // Error of the difference quotient: rounding 1e-16 / step plus truncation of the order of the step, divided by the
-    // gradient's length.
+    // The difference quotient has a rounding error of 1e-16 / step, and a truncation error of the order of the step.
+    // The error of its direction is the sum of both errors, divided by the gradient's length.
     ASSERT_TRUE(slope.norm() < 0.1 || (slope.normalized() - u).norm() < 1e-6);
     // Continuity: in the grid, the second derivatives of the field are at most 2 / spacing, so a displacement by a
     // thousandth of a spacing changes the field's gradient by at most 0.006. If this gradient has at least the length
@@ -381,7 +381,7 @@ TEST_P(MeshToolOf, LeavesItsBodyAtTheExitDistance) {
     for (double t = 0.0; t < exit - GetParam().spacing / 8.0; t += GetParam().spacing / 4.0) {
       ASSERT_LE(field(tool_, pose, x + t * u), 0.0) << t << " of " << exit;
     }
-    // From the exit, along the gradient, the next exit distance is finite and at most twice the reach of the tool.
+    // At the exit, the exit distance along the field's gradient is finite and at most twice the reach of the tool.
     ContactBuffer there = contacts_at({x + exit * u});
     there.set_gradient(0, gradient(tool_, pose, x + exit * u));
     tool_.exit_distances(pose, there, &exit);

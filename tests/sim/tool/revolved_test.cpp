@@ -42,7 +42,7 @@ TEST(CylinderConstraints, OnTheAxisTakeSomeNearestPoint) {
   EXPECT_EQ(contacts.gradient(1), Vec3(-Vec3::UnitZ()));
 }
 
-/// Returns the number of the first sixteen points that are inside the tool.
+/// Returns how many of the first sixteen points are inside the tool.
 std::size_t inside(const ToolShape& tool, const ToolPose& pose, const ContactBuffer& contacts) {
   ContactBuffer found(16);
   tool.push_inside(pose,
@@ -109,17 +109,17 @@ TEST(Meridian, NamesThePointThatIsWrongAndWhy) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   expect_refused("a profile needs", "two points", {{0, 1}});
   expect_refused("profile[1] = [nan, 1]", "finite", {{-2, 1}, {nan, 1}, {0, 1}});
-  expect_refused("profile[1] = [0.5, 1]", "s has to be <= 0", {{-2, 1}, {0.5, 1}});
+  expect_refused("profile[1] = [0.5, 1]", "s must be <= 0", {{-2, 1}, {0.5, 1}});
   expect_refused("profile[1] = [-1, -0.5]", "rho", {{-2, 1}, {-1, -0.5}, {0, 1}});
   expect_refused("profile[1] = [-1, 0]", "only the first and the last", {{-2, 1}, {-1, 0}, {0, 1}});
-  expect_refused("profile[2] = [-1, 1]", "same as the point before", {{-2, 1}, {-1, 1}, {-1, 1}, {0, 1}});
+  expect_refused("profile[2] = [-1, 1]", "equal to the previous point", {{-2, 1}, {-1, 1}, {-1, 1}, {0, 1}});
   expect_refused("profile[1] = [-2, 1]", "from the shank's end to the tip", {{0, 1}, {-2, 1}});
-  expect_refused("profile[1] = [-1, 1]", "goes back on itself", {{-2, 1}, {-1, 1}, {-1.5, 1}, {0, 2}});
-  expect_refused("profile[2] = [0, 0.5]", "goes back on itself", {{-2, 1}, {0, 2}, {0, 0.5}, {0, 1}});
+  expect_refused("profile[1] = [-1, 1]", "reverses onto itself", {{-2, 1}, {-1, 1}, {-1.5, 1}, {0, 2}});
+  expect_refused("profile[2] = [0, 0.5]", "reverses onto itself", {{-2, 1}, {0, 2}, {0, 0.5}, {0, 1}});
   expect_refused("profile[2]", "line from profile[0] to profile[1]", {{-3, 1}, {-1, 2}, {-2, 3}, {-2.5, 0.5}, {0, 1}});
   expect_refused("profile[1]", "disc that closes the shank's end", {{-2, 2}, {-1, 1}, {-3, 1}, {-3, 3}, {0, 3}});
-  expect_refused("profile[1] = [-1, 1]", "beside it: s = 0", {{-2, 1}, {-1, 1}}, Tip::round);
-  expect_refused("profile[1] = [0, 0]", "beside it: s = 0, rho > 0", {{-2, 1}, {0, 0}}, Tip::round);
+  expect_refused("profile[1] = [-1, 1]", "must end at s = 0", {{-2, 1}, {-1, 1}}, Tip::round);
+  expect_refused("profile[1] = [0, 0]", "must end at s = 0 with rho > 0", {{-2, 1}, {0, 0}}, Tip::round);
   expect_refused("profile[1] = [0, 0]", "no body", {{-2, 0}, {0, 0}});
 }
 
@@ -150,7 +150,8 @@ TEST(Meridian, KnowsWhetherTheBodyIsConvex) {
 }
 
 TEST(Meridian, CutsTheSectionAtCornersThatTurnInwards) {
-  // A shank, a cone and a head: two corners turn inwards, one of them at a step.
+  // The profile has a shank, a cone and a head. It turns inwards at two corners: between shank and cone, and between
+  // cone and head, where the radius jumps.
   const Meridian meridian({{-9, 1}, {-4, 1}, {-3, 2}, {-3, 3}, {-1, 3}, {0, 2}}, Tip::flat);
   ASSERT_EQ(meridian.parts.size(), 3u);
   EXPECT_EQ(meridian.parts[2].low, -3);
@@ -196,8 +197,8 @@ TEST(BurProfile, KeepsAThousandthOfTheDiameterToItsArcs) {
     EXPECT_NEAR(std::hypot(a.s, a.rho), 0.0005, 1e-18);
     EXPECT_GE(std::hypot(0.5 * (a.s + b.s), 0.5 * (a.rho + b.rho)), 0.0005 - 1e-6);
   }
-  // Smooth profile: after the shank, no corner of pear and flame turns by more than the angle of a chord. The corners
-  // of the tip, of the shank and of the flame's largest diameter are exceptions.
+  // Between the corner of the shank and the tip, the outlines of pear and flame are convex, and no corner turns by more
+  // than the arc of one chord.
   for (const BurFamily family : {BurFamily::pear, BurFamily::flame}) {
     const BurProfile bur = bur_profile(family, 0.001, 0.003, 0.0004);
     for (std::size_t i = 2; i + 1 < bur.profile.size(); ++i) {

@@ -13,8 +13,8 @@
 namespace hapbench::field_limit_test {
 namespace {
 
-// Tests limits of fields in further cases. tests/known_answers tests limits of springs by theory and by runs, limits of
-// fields other than K, and bounds on metrics.
+// Tests stability limits of fields in special cases. tests/known_answers tests the limits of springs by theory and by
+// runs, the limits of fields other than K, and limits with bounds on metrics.
 
 using Words = std::vector<std::string>;
 
@@ -48,8 +48,8 @@ TEST(FieldLimit, OfWhatNeverRestsIsNone) {
   EXPECT_FALSE(limit.end.value) << *limit.end.value;
 }
 
-/// Number of steps with which runs 0.1 % below the limit are stable: the rule requires a decay by a tenth in a quarter
-/// of the run.
+/// Override with a number of steps that is large enough: a run at 0.1 % below the limit counts as stable, because its
+/// amplitude decreases by at least a tenth within a quarter of the run.
 const Words kLong = {"time.steps=2000"};
 
 /// Scene that is unstable at every K: a handle of 0.1 kg without friction, on an undamped spring with a delay. At small
@@ -96,8 +96,9 @@ TEST(FieldLimit, DoesNotBlameDryFrictionForVibration) {
   EXPECT_FALSE(limit.unstable_alone);
 }
 
-/// Checks a wall that holds the handle from both sides. Dry friction and an encoder are not part of its linear loop, so
-/// they do not change the linear limit. The handle may come to rest at a position where no spring is deflected.
+/// Checks a wall that holds the handle from both sides. The linear model of the loop contains neither dry friction nor
+/// the encoder, so they do not change the linear limit. The handle may come to rest at a position where no spring is
+/// deflected.
 TEST(FieldLimit, OfAHandleWithFrictionHasTheLinearLimitWithoutFriction) {
   const std::string smooth = R"("type":"impedance","handle_mass_kg":0.35,"viscous_N_s_per_m":0.5,"delay_samples":1)";
   const auto limit_of = [](const std::string& device) {
@@ -118,8 +119,8 @@ TEST(FieldLimit, OfAHandleWithFrictionHasTheLinearLimitWithoutFriction) {
   }
 }
 
-/// Checks a scene with local average. The same scene without contact has no points, but still has the stage that merges
-/// the points of a cell.
+/// Checks a scene with `local_average`, the stage that merges the contacts within a grid cell. The search for the limit
+/// also simulates the scene without any points. This stage must then accept an environment without points.
 TEST(FieldLimit, OfASceneWithLocalAverageIsOne) {
   const Asked asked{"tap_corner", "rendering.stiffness_N_per_m", {"time.steps=200"}, Range{1e6, 1e8, true}};
   Asked averaged = asked;

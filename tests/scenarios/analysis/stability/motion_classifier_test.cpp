@@ -82,8 +82,9 @@ TEST(MotionClassifier, OfAMovedToolSeesWhatNoHandDoesAndWhatOneFeels) {
   EXPECT_EQ(class_of_moved_tool(0.01, 3.0), MotionClass::stable) << "a hand does that, too";
 }
 
-/// Returns the class of a tool that a hand holds at 20 mm during the first quarter of the run, and at 0 afterwards. An
-/// oscillation at 12 Hz, which may decay, is added to its position.
+/// Returns the class of a tool that a hand moves along x at 20 mm/s during the first quarter of the run, and holds
+/// afterwards. An oscillation at 12 Hz, which may decay, is added to the velocity. `amplitude` [m/s], `decay` [1/s],
+/// `still`: the step in which the script of the motion ends.
 MotionClass class_of_swinging_tool(double amplitude, double decay, double still) {
   constexpr double kStep = 0.0005, kTurn = 2.0 * std::numbers::pi * kStep;
   return class_by(MotionClassifier::of_moved_tool(kSteps, kStep, still), [&](double k) {

@@ -31,14 +31,14 @@ TEST(LawStress, NoForceIsInfiniteOrOutOfBound) {
 }
 
 TEST(LawStress, ReachesTheBoundsThatCanBeReached) {
-  // Parallel springs of equal depth reach the bound of the sum, of the mean and of a shaped direction. virtual_coupling
-  // and least_squares reach their bounds at the singular value s of the matrix of gradients at which s / (eps + s^2) is
-  // largest, with eps = 1 for virtual_coupling.
+  // Parallel springs of equal depth reach the bounds of `summation`, of `mean` and of stiffness shaping.
+  // virtual_coupling and least_squares reach their bounds at the singular value s of the matrix of gradients at which s
+  // / (eps + s^2) is largest, with eps = 1 for virtual_coupling.
   for (const StressCounts& c : stress_laws(20'000, 2, {2, ""})) {
     if (!c.largest_share) continue;
-    // The bounds of these laws are worst cases of rounding, which no set reaches.
+    // The bounds of these two laws assume the worst case of rounding, which no contact set reaches.
     if (c.algorithm == "tandpasta" || c.algorithm == "original_averaging") continue;
-    // The bound of the proxy is its largest motion in a step, which no set reaches.
+    // The bound of the proxy is its largest possible motion in a step, which no contact set reaches.
     if (c.algorithm == "proxy") continue;
     EXPECT_GT(*c.largest_share, 0.9) << c.algorithm;
     EXPECT_LE(*c.largest_share, 1.0 + 1e-9) << c.algorithm;

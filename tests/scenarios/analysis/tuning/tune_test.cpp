@@ -71,9 +71,10 @@ double worst_limit_at_wall(const Scenario& scenario, double zeta, double mass) {
   return least;
 }
 
-/// Checks the device at a wall that only pushes. With little damping the tool bounces off, and the bounces do not decay
-/// within the run. From zeta = 0.5 on, the result is the limit of the worst hand at the best zeta and mass. The run
-/// takes four seconds, so that the landing, which decays slowly near the limit, is a small part of the judged steps.
+/// Checks an admittance device at a wall that pushes but does not pull. With little damping, the tool bounces off the
+/// wall, and the bounces do not decay within the run. For zeta >= 0.5, the result is the limit with the worst hand, at
+/// the best zeta and mass. The run simulates four seconds, so that the landing, which decays slowly near the limit, is
+/// a small part of the judged steps.
 TEST(Tune, OfTheDeviceAtAWallIsTheLimitOfTheWorstHand) {
   TuneQuestion asked = question("device_at_wall", {"device.force_limit_N=null", "time.steps=8000"});
   asked.threads = 2;
@@ -176,8 +177,8 @@ TEST(Tune, IsFeasibleIfAGridIsAndForEveryLooserBound) {
   }
 }
 
-/// Checks a handle that friction holds. 0.8 N of dry friction hold the handle against a hand of 100 N/m that pulls by
-/// 4.5 mm, so with this hand the tool never touches the wall.
+/// Checks a handle that dry friction holds. The target of the hand moves 4.5 mm away from the handle, so that a hand of
+/// 100 N/m pulls with at most 0.45 N. The dry friction is 0.8 N, so with this hand the tool never touches the wall.
 TEST(Tune, NamesTheRunThatFailsAndTheOptionThatLeavesItOut) {
   TuneQuestion asked = question("impedance_at_wall", {"device.coulomb_N=0.8"});
   asked.threads = 2;
@@ -227,7 +228,7 @@ TEST(Tune, EvaluatesATrialOnlyAsFarAsAnAnswerNeedsIt) {
   EXPECT_LT(needed.runs(), complete.runs());
   EXPECT_GT(feasible, 0u);
   EXPECT_GT(soft, 0u);
-  // The order of the trials by excess equals the order of complete trials.
+  // Partially evaluated trials have the same order by excess as completely evaluated trials.
   const std::vector<const TuneTrial*> nearest = needed.nearest(2), known = complete.nearest(2);
   ASSERT_EQ(nearest.size(), known.size());
   for (std::size_t i = 0; i < nearest.size(); ++i) {

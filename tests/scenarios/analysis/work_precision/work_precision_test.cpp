@@ -36,8 +36,9 @@ std::vector<WorkPrecisionProblem> study(const std::vector<std::string>& over, do
   return work_precision(question, {});
 }
 
-/// Returns the exact rms error of the position of velocity Verlet at the common times: its solution is
-/// x_0 cos(omega' t) with cos(omega' h) = 1 - (omega h)^2 / 2.
+/// Returns the exact rms error [m] of the position that velocity Verlet computes with the time step h = `step` [s]. The
+/// mean is over the times k kStep with k = 0 … kSteps - 1. The solution of velocity Verlet is x_0 cos(omega' t) with
+/// cos(omega' h) = 1 - (omega h)^2 / 2.
 double exact_error_of_verlet(double step) {
   const double omega = std::sqrt(kStiffness / kMass);
   const double of_verlet = std::acos(1.0 - 0.5 * omega * omega * step * step) / step;
@@ -102,8 +103,8 @@ TEST(WorkPrecision, RefusesAnAxisOfTheTimeStep) {
   EXPECT_TRUE(test::input_error_of([] { study({R"(time={"step_s":1e-3,"steps":64})"}); }));
 }
 
-/// Checks that an axis with the integrator is rejected: the curve of each integrator would replace the values of this
-/// axis, and the problems of the axis would be equal.
+/// Checks that an axis with the integrator is rejected: the study sets the integrator of each curve itself. This would
+/// replace the values of this axis, and all problems of the axis would be equal.
 TEST(WorkPrecision, RefusesAnAxisThatContainsTheIntegrator) {
   for (const char* axis : {"integrator=leapfrog,rk4", R"(integrator={"type":"rk4"})"}) {
     const auto error = test::input_error_of([axis] { study({axis}); });
