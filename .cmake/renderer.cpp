@@ -1,1 +1,1 @@
-// CMake requires a source file for this library; the functions of the library are in scenarios/renderer.
+// CMake requires a source file for the shared library hapbench_renderer; its functions are in scenarios/renderer.

@@ -63,8 +63,9 @@ def pairs_to_judge(claims, cases):
 
 
 def take_from_record(entries, record):
-    """Copies the recorded verdicts into `entries`, for claims whose recorded verdict and single verdicts are the
-    same."""
+    """Copies into `entries` the verdicts of pairs that `record` has. A pair in `record` is used only if it has the same
+    claim, the same values, and the same verdicts: of the claim, and with each of the two values alone.
+    """
     known = {
         (claim["id"], claim["verdict"], json.dumps([pair["values"], pair["alone"]])): pair
         for claim in record
@@ -77,7 +78,7 @@ def take_from_record(entries, record):
 
 
 def judged(program, claims, values):
-    """Returns the verdict and the number of each of these claims with the assumptions changed to `values`."""
+    """Returns the verdict and the number of each claim in `claims`, with the assumptions changed to `values`."""
     with tempfile.TemporaryDirectory() as folder:
         sets = Path(folder) / "sets.csv"
         with open(sets, "w", newline="", encoding="utf-8") as file:
@@ -131,8 +132,9 @@ def main():
     entries = pairs_to_judge(read("claims.json"), cases)
     take_from_record(entries, read("pairs.json") if RECORD.exists() else [])
 
+    # Claims with few pairs come first. If the command is interrupted, more claims then have verdicts for all pairs.
     missing = {}
-    for entry in entries:
+    for entry in sorted(entries, key=lambda entry: len(entry["pairs"])):
         for pair in entry["pairs"]:
             if "verdict" not in pair and (not wanted or entry["id"] in wanted):
                 missing.setdefault(json.dumps(pair["values"]), {})[entry["id"]] = pair

@@ -27,14 +27,14 @@ namespace hapbench {
 namespace {
 
 /// Waypoints of the pointer, which sets the hand's target position [m] and the wrist's tilt and azimuth [rad]. Keeps
-/// only the latest waypoints. From the current step on, profiles of these waypoints equal profiles of all waypoints bit
-/// for bit.
+/// only the latest waypoints. In the next step and in all later steps, a profile of the kept waypoints has the same
+/// values, bit for bit, as a profile of all waypoints.
 class Pointer {
  public:
   static constexpr std::size_t kLed = 5;
 
-  /// Adds a waypoint at time t [s]. `now` is the time of the next step [s]. Of the waypoints before this time, only the
-  /// last two are kept.
+  /// Adds a waypoint at time t [s]. `now` is the time of the next step [s]. Of the waypoints up to the time `now`, only
+  /// the last two are kept.
   void add(double t, const std::array<double, kLed>& values, double now) {
     for (std::size_t i = 0; i < kLed; ++i) {
       auto& points = led_[i].points;
@@ -71,7 +71,7 @@ class Session final : public Observer {
 
   void on_step(const StepRecord& row) noexcept override {
     last_ = row.force.S;
-    // Force above the vibration cutoff; zero if the sampling rate is too low for the filter.
+    // Part of the force above the cutoff frequency of vibration; zero if the sampling rate is too low for the filter.
     Vec3 vibration = Vec3::Zero();
     if (high_pass_) {
       if (row.step == 0) high_pass_->settle_at(row.force.rendered);
@@ -184,8 +184,8 @@ class Session final : public Observer {
       assemble(scene_.scenario(), scene_.files(), make_shell(scene_.scenario(), scene_.files()), {});
   std::shared_ptr<const PointShell> shell_ = parts_.shell;
   std::shared_ptr<const ToolShape> tool_ = parts_.tool;
-  ImpedanceHand* hand_ = nullptr;     ///< owned by the simulation; null without pointer
-  ScriptedMotion* motion_ = nullptr;  ///< owned by the simulation; null without pointer
+  ImpedanceHand* hand_ = nullptr;     ///< owned by the simulation; null if the pointer does not move the hand
+  ScriptedMotion* motion_ = nullptr;  ///< owned by the simulation; null if the pointer does not move the hand
   Pointer pointer_;
   MetricsObserver metrics_{scene_.scenario().time.step};
   PassivityObserver passivity_{scene_.scenario().time.step};

@@ -44,7 +44,7 @@ class Arguments(argparse.ArgumentParser):
     """An argument parser that prints an error as one line, without the usage."""
 
     def error(self, message):
-        print_error(f"{message}; {self.prog} --help shows what there is")
+        print_error(f"{message}; {self.prog} --help shows the usage")
         sys.exit(BAD_INPUT)
 
 
@@ -168,8 +168,8 @@ def word_of(action):
 
 
 def entry(word, meaning, width):
-    """Returns lines of the help: a word with its meaning beside it, or below it if the word is too long. `width`:
-    largest length of a line."""
+    """Returns lines of the help: a word, and its meaning on the right of the word. If the word is too long, its meaning
+    begins on the next line. `width`: largest length of a line."""
     column = 28
     text = textwrap.fill(
         meaning, width, initial_indent=" " * column, subsequent_indent=" " * column, **WHOLE_WORDS
@@ -178,14 +178,15 @@ def entry(word, meaning, width):
 
 
 def the_program():
-    """Returns the file of the program hapbench: the program that started this process, or else the program in PATH.
-    Returns None if there is neither."""
+    """Returns the path of the program hapbench: the program that started this process, or, if the program did not start
+    this process, the program in PATH. Returns None if the program is also not in PATH."""
     return os.environ.get("HAPBENCH_PROGRAM") or shutil.which("hapbench")
 
 
 def output_of_program(what, *words):
-    """Returns the text that the program prints for the arguments `words`. `what` completes the message for a missing
-    program, such as "evaluates --where". Raises InputError with the program's messages if the program fails.
+    """Returns the text that the program prints for the arguments `words`. Raises InputError if the program is not found
+    or fails; if it fails, the error has its messages. `what`: what the program does, for the message that the program
+    is not found, such as "evaluates --where".
     """
     program = the_program()
     if not program:
@@ -217,7 +218,7 @@ def stop_on_ctrl_c(name):
         for scratch in list(_unfinished):
             with suppress(OSError):
                 os.unlink(scratch)
-        # Line end that notice() also uses: on a terminal, it erases the status line.
+        # On a terminal, this text erases the line that notice() has written.
         end_of_line = "\r\033[K" if sys.stderr.isatty() else ""
         with suppress(OSError):
             os.write(2, f"{end_of_line}hapbench: {name} {stopped()}\n".encode())
@@ -270,8 +271,8 @@ def internal_error(name, error):
 
 def exit_status(name, doing, work):
     """Calls `work`, which does the work of the command `name`, and returns the exit status of the command. `doing`:
-    text of the notice during long work; empty for no notice. Rejected input is printed with one line for each fault,
-    and any other failure as one line."""
+    text of the notice during long work; empty for no notice. Each fault of a rejected input is printed as one line. Any
+    other failure is printed as one line."""
     try:
         with notice(doing):
             status = work()
@@ -339,8 +340,8 @@ def table_text(headings, rows, wide, numbers=False):
 
 
 def nearest(name, names):
-    """Returns the end of an error message about an unknown name: the most similar valid name, in the words of the
-    program. Returns an empty text if no name is similar."""
+    """Returns the end of an error message about an unknown name: a text with the most similar valid name, worded as in
+    the program's messages. Returns an empty text if no name is similar."""
     lower = {candidate.lower(): candidate for candidate in reversed(names)}
     # Prefers names that begin with the given name, then names that contain it, then names that are only similar.
     longer = sorted((n for n in lower if n.startswith(name.lower())), key=len) or [
@@ -378,8 +379,8 @@ def require_name(got, name, valid):
 
 
 def finite_number(word):
-    """Returns the number in the whole word (bytes), or NaN if the word is not a finite number. Unlike float(), rejects
-    "1_0" and " 1"."""
+    """Returns the number that `word` (bytes) is, or NaN if `word` is not a finite number. Unlike for float(), "1_0" and
+    " 1" are not numbers."""
     value = (
         float(word) if re.fullmatch(rb"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?", word) else math.nan
     )
@@ -409,7 +410,8 @@ def refuse_source(out, source, what):
 
 
 def write(file, data):
-    """Creates or replaces a file atomically. `data`: text or bytes. Raises OSError with the name of the file."""
+    """Creates or replaces a file atomically. `data`: text or bytes. If this fails, raises OSError with the name of the
+    file."""
     try:
         file.parent.mkdir(parents=True, exist_ok=True)
         scratch = file.with_name(f".{file.name}.{os.getpid()}.tmp")
@@ -446,9 +448,9 @@ def unwritable(error):
 
 @contextmanager
 def notice(text):
-    """Prints the elapsed seconds while the work in the `with` statement takes longer than 2 s. A terminal has one
-    updated line; otherwise a line is printed after 2, 4, 8 s and so on. Prints nothing if the text is empty.
-    """
+    """If the work in the `with` statement takes longer than SILENCE, prints `text` and the elapsed seconds on standard
+    error. On a terminal, one line is updated; otherwise a line is printed after 2, 4, 8 s and so on. Prints nothing if
+    `text` is empty."""
     ended = threading.Event()
     thread = threading.Thread(target=show_seconds, args=(text, ended), daemon=True)
     if text:

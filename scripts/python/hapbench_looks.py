@@ -1,5 +1,5 @@
-"""Palette of figures and pages. Each algorithm has the same colour, line style and marker in all of them, and so have
-classes of runs and other elements.
+"""Palette of figures and pages. Each algorithm has the same colour, line style and marker in all figures and pages.
+Each class of runs, such as "stable", has the same colour and hatching in all of them.
 
 Each colour has a contrast of at least 4.5 to its background (WCAG 2.1, AA), so that names can be printed in it:
 `colour` on white, and `dark` on the dark page. For readers with deuteranopia, protanopia or tritanopia, the colours of
@@ -69,7 +69,7 @@ CLASSES = {
     "vibrating": ("vibrating", "#E0A030", ""),
     "thrown_out": ("thrown out", "#B05A1E", ""),
     "diverged": ("diverged", "#7A2E00", ""),
-    # Classes of runs that say nothing about stability, and outcomes of the runs of a sweep.
+    # The following classes do not show whether a run is stable. Some are outcomes of the runs of a sweep.
     "went_through": ("passed through", "#8E7CC3", "xxxxx"),
     "stuck": ("stuck", "#5B7F95", "....."),
     "lost_contact": ("lost contact", "#B05A1E", "\\\\\\\\\\"),
@@ -95,9 +95,9 @@ def by_class(names):
 # Dashes and markers of algorithms without an entry in ALGORITHMS.
 FURTHER_DASHES = ((2, 2), (6, 1, 1, 1), (4, 2), (1, 2))
 FURTHER_MARKERS = ("8", "H", "3", "4", "+", "x", ".")
-# Pairs of limits: largest relative luminance of a colour on white, and smallest relative luminance of a colour on the
-# dark page. Colours within the first pair of limits have a contrast of at least 5.4 to the background, within the
-# second pair at least 10.
+# Two pairs of limits of the relative luminance. Each pair has the largest luminance of a colour on white and the
+# smallest luminance of a colour on the dark page. Colours within the first pair of limits have a contrast of at least
+# 5.4 to their background. Colours within the second pair have a contrast of at least 10.
 LUMINANCES = ((0.14, 0.30), (0.05, 0.60))
 HUES = 24
 # Smallest distance in OKLab at which the colours of two lines in a figure can be distinguished. It corresponds to about
@@ -132,7 +132,8 @@ VISIONS = {
         ]
     ),
 }
-# Matrices from linear RGB to cone responses, and from their cube roots to OKLab (Ottosson, 2020).
+# TO_CONES converts linear RGB to cone responses. TO_OKLAB converts the cube roots of the cone responses to OKLab
+# (Ottosson, 2020).
 TO_CONES = np.array(
     [
         [0.4122214708, 0.5363325363, 0.0514459929],
@@ -150,8 +151,7 @@ TO_OKLAB = np.array(
 
 
 def law_name(algorithm):
-    """Returns the name of a law in the form that the pictures and pages of the user's runs and the tables of the
-    program print."""
+    """Returns the name of a law as figures, pages and printed tables show it."""
     return algorithm.replace("_", " ")
 
 
@@ -175,9 +175,9 @@ def by_name(algorithm):
 
 def distinguish(algorithms):
     """Chooses looks for those algorithms of one picture that have no entry in ALGORITHMS. If the colour that follows
-    from an algorithm's name is too close to another colour for some type of colour vision, the algorithm gets the hue
-    that is most distant from all other colours. Otherwise it keeps its colour. If another algorithm has the same
-    marker, the algorithm gets a free marker."""
+    from an algorithm's name is too close to another colour of the picture for some type of colour vision, the algorithm
+    gets the hue that is most distant from the other colours. Otherwise it keeps its colour. If another algorithm of the
+    picture has the same marker, the algorithm gets an unused marker."""
     CHOSEN.clear()
     names = sorted(set(algorithms))
     looks = [Look("", PUBLISHED, PUBLISHED_DARK, (), "")]
@@ -203,8 +203,9 @@ def free_marker(default, looks):
 
 
 def distance(pair, looks):
-    """Returns the smallest distance in OKLab between a pair of colours (on white and on the dark page) and the colours
-    of `looks`, over all types of colour vision."""
+    """Returns the smallest distance in OKLab between `pair` and the colours of `looks`, over all types of colour
+    vision. `pair`: (colour on white, colour on the dark page). Only colours on the same background are compared.
+    """
     return min(
         (
             np.linalg.norm(
@@ -218,15 +219,16 @@ def distance(pair, looks):
 
 
 def oklab(colour):
-    """Returns the OKLab coordinates of a colour. Each row is the colour as seen by one type of VISIONS."""
+    """Returns the OKLab coordinates of a colour "#RRGGBB", with a row for each type of colour vision in VISIONS."""
     rgb = np.array([int(colour[i : i + 2], 16) / 255 for i in (1, 3, 5)])
     seen = np.array([matrix @ linear(rgb) for matrix in VISIONS.values()])
     return np.cbrt(np.clip(seen, 0, 1) @ TO_CONES.T) @ TO_OKLAB.T
 
 
 def in_hue(hue, luminances=LUMINANCES[0]):
-    """Returns two colours of a hue (0 to 1): the lightest colour whose relative luminance is at most luminances[0], for
-    white, and the darkest colour whose relative luminance is at least luminances[1], for the dark page.
+    """Returns two colours of a hue (0 to 1). The first, for a white background, is the lightest colour whose relative
+    luminance is at most luminances[0]. The second, for the dark page, is the darkest colour whose relative luminance is
+    at least luminances[1].
     """
     shades = [colorsys.hls_to_rgb(hue, percent / 100, 0.65) for percent in range(101)]
     light = max((s for s in shades if luminance(s) <= luminances[0]), key=luminance)

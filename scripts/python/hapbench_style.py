@@ -66,8 +66,8 @@ SHEETS = {
 SHEET, PAGE = SHEETS["double"], Sheet(WIDTH, 3)
 
 # Colours of measured quantities, forces and contacts; algorithms have other colours. Each of these colours has a
-# contrast of at least 4.5 to white. Amber and petrol can be distinguished with every type of colour vision. A third
-# curve has a third colour, and also a different line style or marker. Red is for the thesis's numbers.
+# contrast of at least 4.5 to white. Two curves are amber and petrol, which can be distinguished with every type of
+# colour vision. A third curve also has another line style or marker. Red is for the numbers of the thesis.
 BLACK, GREY, AMBER, PETROL, PLUM, RED = (
     "#000000",
     "#5F5F5F",
@@ -131,8 +131,8 @@ def panels(rows, columns, height, **keywords):
 
 
 def number_ticks(axis, subs=()):
-    """Labels more ticks than the powers of ten on a logarithmic axis that shows too few powers of ten. If `subs` is
-    not empty, labels instead these multiples of each power of ten on a logarithmic axis of any range.
+    """Also labels ticks between the powers of ten on a logarithmic axis, if the ratio of its limits is below 60. If
+    `subs` is not empty, labels instead the multiples `subs` of each power of ten, on a logarithmic axis of any range.
     """
     low, high = axis.get_view_interval()
     if axis.get_scale() == "log" and (subs or high / low < 60):
@@ -247,7 +247,8 @@ DISCS = re.compile(
 
 
 def as_dots(svg):
-    """Replaces consecutive discs of an SVG by one path of dots with round ends."""
+    """Replaces consecutive discs of an SVG by one path, which is shorter. The path has a line of zero length with round
+    ends at each disc, which looks like the disc."""
     radii = dict(DISC.findall(svg))
 
     def dots(group):

@@ -10,8 +10,8 @@
 namespace hapbench::bench {
 
 /// The main function of a Google Benchmark program. Runs the benchmarks that `add` registers, and writes the commit and
-/// the machine into "context" of --benchmark_format=json. Returns the exit status: 2 for an unknown argument or a
-/// filter that matches nothing, which is a mistake; 1 for an exception.
+/// the machine into "context" of --benchmark_format=json. Returns the exit status: 2 if an argument is unknown or the
+/// filter matches no benchmark, 1 after an exception, otherwise 0.
 template <class Add>
 int run_benchmarks(const char* program, int argc, char** argv, Add add) {
   try {

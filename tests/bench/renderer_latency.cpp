@@ -1,6 +1,6 @@
 // Compares the latency of a call of the renderer with the time of an offline step: renderer_latency [CALLS]. Prints the
 // median, the 99.9th percentile and the largest latency in microseconds, the time of reading the clock, and the number
-// of allocations (0).
+// of allocations, which should be 0.
 #include <algorithm>
 #include <chrono>
 #include <cstdio>

@@ -14,7 +14,8 @@
 #include "tests/bench/bench.hpp"
 #include "tests/support/searches.hpp"
 
-/// Times contact searches and the construction of the shells that they search, also for finer grids of the block.
+/// Times contact searches and the construction of the shells that they search. The growth of these times is measured on
+/// blocks with finer and finer grids.
 namespace hapbench::bench {
 namespace {
 
@@ -91,7 +92,7 @@ void add_searches() {
   }
 }
 
-/// Returns a value of /proc/self/status [bytes]; 0 if there is no such line.
+/// Returns the value of the line `key` of /proc/self/status [bytes]; 0 if the file has no line with this key.
 double memory(const std::string& key) {
   std::ifstream status("/proc/self/status");
   for (std::string word; status >> word;) {

@@ -57,7 +57,8 @@ std::shared_ptr<const SignedDistanceGrid> drill_grid(const Cylinder& drill) {
   return grid;
 }
 
-/// Returns the drill with its side divided into eight lines. With grooves, every other corner is lowered by 0.1 um.
+/// Returns the drill as a solid of revolution whose profile consists of eight line segments along the side. If
+/// `grooved` is true, the radius is reduced by 0.1 um at every other vertex of the profile.
 std::shared_ptr<const ToolShape> as_revolved(const Cylinder& drill, bool grooved) {
   std::vector<ProfilePoint> profile;
   for (int k = 0; k <= 8; ++k) {
@@ -238,8 +239,8 @@ void add_latencies() {
 
 constexpr std::uint64_t kStepsAtATime = 64;
 
-/// Returns the wall of a hole, 0.05 mm inside the upright drill that fills it: n points, all of them contacts, evenly
-/// distributed like the seeds of a sunflower.
+/// Returns n points on the wall of a hole that the upright drill fills. The wall lies 0.05 mm inside the surface of the
+/// drill, so all points are contacts. The points are evenly distributed, like the seeds of a sunflower.
 std::shared_ptr<const PointShell> wall(std::size_t n, const Cylinder& tool) {
   const double radius = tool.radius() - 5e-5, turn = std::numbers::pi * (3.0 - std::sqrt(5.0));
   std::vector<SurfacePoint> points(n);

@@ -10,8 +10,8 @@
 namespace hapbench::bench {
 namespace {
 
-/// First pose and number of poses [steps]. T1 begins at the start of its run; the other tasks use one later period of 6
-/// s.
+/// Index of the first pose and number of poses, in steps of the run of a task. T1 begins at the start of its run. T2
+/// and T3 use one later period, which lasts 6 s.
 struct Window {
   std::uint64_t first, count;
 };

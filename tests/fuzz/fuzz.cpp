@@ -145,8 +145,8 @@ void read_device(std::string_view text) {
   device_of_file(file_with(text));
 }
 
-/// Creates the module table of a law from the bytes: they are its texts and numbers. The program must accept or reject
-/// the law.
+/// Creates the module table of a law whose texts and numbers are taken from `bytes`. The program must accept the law or
+/// reject it with an error message.
 void read_module(std::string_view bytes) {
   std::vector<std::string> texts;  // texts between zero bytes, at least 8
   std::istringstream in{std::string(bytes)};

@@ -10,8 +10,9 @@ PATTERNS = {"scenario": "*.json", "run": "*.json", "device": "*.json", "module":
 
 
 def without_prose(target, text):
-    """Returns a scene as JSON without blanks and descriptions, because mutations of them find no errors. For the target
-    "device", returns only the device of the scene. Returns None for other files."""
+    """Returns a scene as JSON without blanks and descriptions, because mutations of blanks and descriptions find no
+    errors. For the target "device", returns only the device of the scene. Returns None if `text` is no scene.
+    """
     scene = json.loads(text)
     if not isinstance(scene, dict) or not {"environment", "extends"} & scene.keys():
         return None

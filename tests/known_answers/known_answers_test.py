@@ -15,7 +15,8 @@ for scenes in sorted(Path(__file__).parent.glob("of_*.py")):
 FOUND = {}  # Bench of each scene
 ANSWERS = []
 NO_TABLES = {"run", "import"}  # commands whose JSON does not repeat a table
-NO_WORDS = {"file of the results"}
+# Kinds of words without an answer of their own. The entries of an object of summary.json have their own rows.
+NO_WORDS = {"file of the results", "object of summary.json"}
 TOLERANCES = "tolerances"
 DIAGNOSIS = "diagnosis"
 # JSON members that describe the origin of a result and contain no results.

@@ -87,8 +87,9 @@ def rows_of_ranking(scenes, runs):
 @scene
 def ranking(bench):
     """Checks the ranking of laws for a mass on two parallel springs, in two scenes. In the second scene, the springs
-    are so stiff that leapfrog amplifies every step of most laws, and some starts leave the bounds. The ranking follows
-    from its definition: means over common seeds, and ranks."""
+    are so stiff that leapfrog is unstable for most laws, and the motion from some starting positions exceeds the
+    bounds. The known ranking follows from its definition: means over common seeds, and ranks of these means.
+    """
     start = {"position_m": [1e-4, -1e-3, 0]}
     bench.scenario(
         "held",

@@ -1,5 +1,5 @@
-"""Known answers for the tables of `converge` and for the errors of `compare`: recurrences for the steps of a mass on
-one spring, and their limits for small time steps."""
+"""Known answers for the tables of `converge` and for the errors of `compare`. The known values come from recurrences
+for the motion of a mass on one spring, and from the limits of these values for small time steps."""
 import math
 
 import numpy as np
@@ -11,9 +11,9 @@ from physics import PLAIN, SPRING, UP, Phases, nearest_rank, step_matrix
 
 @scene
 def sampled_finer(bench):
-    """Checks the errors due to the time step and due to the point spacing that `compare` estimates for laws on a plane.
-    Single runs with a half and a quarter of the step or of the spacing give the known values, measured at the same
-    times."""
+    """Checks the estimates of `compare` for two errors of laws on a plane: the error due to the time step, and the
+    error due to the point spacing. The known values come from single runs with a half and a quarter of the time step or
+    of the spacing. Their metrics use the same times as the run with the full time step."""
     laws, by, scene_name = (
         ["summation", "proxy", "shaped_stiffness", "highest_depth"],
         ["force_step_p99_N", "force_max_N"],
@@ -281,8 +281,8 @@ def convergence(bench):
 
 
 def error_of_step(bench, base, f, fine, metric, printed):
-    """Checks the error due to the time step that `compare` states for a number. This error is the error of the coarsest
-    of three levels."""
+    """Checks the error due to the time step that `compare` states for a metric. It is the error of the result with the
+    largest of three time steps."""
     error = verdict_on(f[:3])[2][0]
     (compared,) = bench.json(
         "compare",

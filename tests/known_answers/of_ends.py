@@ -1,4 +1,4 @@
-"""Known answers for words: outcomes of runs, and the classes of motion by which `limit` finds limits."""
+"""Known answers for printed words: outcomes of runs, and the classes of motion by which `limit` finds limits."""
 import math
 
 from answers import EXACT, ROUNDING, Table, Within, scene
@@ -528,7 +528,8 @@ def limit_under_bound(bench, base, field, strip):
 
 
 def words_of_limit(bench, base, printed, resolution, row):
-    """Checks further fields of `limit`: the JSON repeats the options, and a field without an effect has no limit."""
+    """Checks entries of the JSON of `limit` that repeat its options or answer yes or no, for a varied field that changes
+    the runs."""
     for key, known, naive in (
         ("from", 1e3, 1.0),
         ("to", 1e7, 1e6),

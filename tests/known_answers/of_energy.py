@@ -1,4 +1,5 @@
-"""Known answers for the energies of a run: recurrences, and trapezoidal rules along paths."""
+"""Known answers for the energies of a run. The known values come from recurrences and from the trapezoidal rule along
+paths."""
 import math
 
 import numpy as np

@@ -15,8 +15,8 @@ STEP, SPEED, BOUND = (
 
 @scene
 def early_end(bench):
-    """Checks the end of a run that diverges: a free mass on a spring without noticeable effect exceeds the bound of its
-    position."""
+    """Checks the time at which a run ends because it diverges. A mass moves freely, because its spring is extremely
+    soft, until its position exceeds the bound."""
     base = bench.scenario(
         "early_end",
         time={"step_s": STEP, "steps": 40},

@@ -7,7 +7,7 @@ from answers import EXACT, ROUNDING, Table, Within, norms, profile, rms, scene
 from physics import BELOW, STEPPED, SUMMED
 
 
-# The motion is not periodic, so that only one lag fits.
+# Points (time [s], position [m]) of a motion along z. The motion is not periodic, so only one lag fits the reference.
 STEPS = [
     [0, 0],
     [0.1, -1e-3],
@@ -492,7 +492,8 @@ def rigid_tool_in_a_hand(bench):
     )
     naive = ("distance from the target", rms(tip[:, 2] - target))
     bench.metrics(run, [("fidelity.displacement_rms_m", *known, *naive)])
-    # The error of the reference is estimated; it bounds the error against the closed form.
+    # reference_error_N is an estimate by the program. It must be at least the deviation of the reference force from the
+    # closed form.
     reference = run.table("force_reference.csv").vectors("mfx_N", "mfy_N", "mfz_N")
     exact = 400.0 * (rigid - np.column_stack([rigid[:, :2], target]))
     error = run.summary["fidelity"]["reference_error_N"]

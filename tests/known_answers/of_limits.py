@@ -9,7 +9,8 @@ from physics import PLAIN, SPRING, SUMMED, bisected, class_of, held_loop, limit_
 
 @scene
 def limits_of_springs(bench):
-    """Checks the stability limits of two parallel springs with the integrators leapfrog (thesis A.3) and rk4."""
+    """Checks the stability limits of two parallel springs with the integrators leapfrog (section A.3 of the thesis) and
+    rk4."""
     M, dt, zeta, lam, K = 0.1, 0.0005, 0.7, 2.0, 20000.0
     base = bench.scenario(
         "limits_of_springs",
@@ -187,8 +188,9 @@ HANDS = [(0, 0), *((m, k) for m in (0.1, 0.2, 0.5) for k in (100, 300, 1000))]
 
 @scene
 def over_another_field(bench):
-    """Checks the limit of K over damping, delay and hand, for a handle at a bilateral wall. The linear recurrence gives
-    the class of each run, and its eigenvalues give each limit."""
+    """Checks the limit of the stiffness K as a function of the damping, the delay and the hand, for a handle at a
+    bilateral wall. The class of each run follows from a linear recurrence, and each limit from its eigenvalues.
+    """
     words = (
         "limit",
         "wall_on_handle",
@@ -278,7 +280,8 @@ def over_another_field(bench):
 
 
 def limits_over_delay_and_hand(bench, words, close, given, handle):
-    """Checks the limit of K over a delay and over the stiffness of the hand, by the eigenvalues of the sampled loop."""
+    """Checks the limit of the stiffness K as a function of the delay, and as a function of the stiffness of the hand.
+    The known values come from the eigenvalues of the sampled loop."""
     hand = (
         '{"type":"mass_spring_damper","mass_kg":0.2,"stiffness_N_per_m":100,'
         '"damping_N_s_per_m":2,"target":{"x_m":0,"y_m":0,"z_m":0}}'
@@ -327,8 +330,9 @@ def limits_over_delay_and_hand(bench, words, close, given, handle):
 
 
 def limits_over_encoder(bench, words, damping, given):
-    """Checks the limit of K over the encoder step q with dry friction c and viscous friction b: min(2 b / T, 2 c / q)
-    of Abbott and Okamura, with the sampling period T."""
+    """Checks the limit of the stiffness K as a function of the encoder step q, for a device with dry friction c and
+    viscous friction b. The known limit of Abbott and Okamura is min(2 b / T, 2 c / q) with the sampling period T.
+    """
     q = np.geomspace(1e-6, 1e-3, 4)
     printed = bench.json(
         *words,

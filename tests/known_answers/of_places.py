@@ -50,8 +50,9 @@ def interpenetration(tip, tilt):
 
 @scene
 def beside_the_ideal(bench):
-    """Checks the metrics of a drill that is offset from the ideal trajectory of thesis 3.6 by given distances. In half
-    of the rows, the hand is gentle. In some rows, the ideal trajectory does not exist."""
+    """Checks the metrics of a drill that is offset by given distances from the ideal trajectory of section 3.6 of the
+    thesis. In half of the rows, the hand is gentle. In some rows, the ideal trajectory does not exist.
+    """
     n, dt = 24, 0.001
     tilt = np.r_[
         np.linspace(0.35, 0.95, 20), 1.10, 1.15, 1.2, 1.25
@@ -357,8 +358,8 @@ def pressed_ball(bench):
 
 @scene
 def counted(bench):
-    """Checks the work counters, with and without skips, and the tool. A ball touches a plane of 81 x 81 points for
-    seven rows."""
+    """Checks the counters of the work of a run, with skips and without skips. Also checks the printed description of
+    the tool. A ball touches a plane of 81 x 81 points in seven rows."""
     fields = dict(
         time={"step_s": 0.001, "steps": 600},
         environment={"type": "plane", "size_m": 0.008, "spacing_m": 0.0001},

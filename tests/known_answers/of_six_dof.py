@@ -10,7 +10,8 @@ def pressed_on_one_point(bench):
     """Checks the forces of springs in series. The hand presses a tool by the distance D against one point. The lever
     from the force point to the contact is l, and the grip is at the force point.
 
-    The force is D / (1/K' + l^2 / K_r') with torque, and D K' without torque. The stiffnesses in series are
+    The force of a device with torque is D / (1/K' + l^2 / K_r'), and the force of a device without torque is D K'.
+    The stiffnesses in series are
     K' = K_t K_h / (K_t + K_h) and K_r' = K_r K_phi / (K_r + K_phi), with the stiffness K_t of the
     rendering, the rotational stiffness K_r of the coupling, and the stiffnesses K_h and K_phi of the hand.
     """

@@ -191,8 +191,8 @@ def errors_of_settings(bench):
         ("default", [1e-6] * 4),
     )
     add_times(bench, "convergence_timing.csv", times, h, deadline=h)
-    # The error decreases and the cost increases with each level, so that all settings are on the front. In logarithmic
-    # scales the front is straight, so it has no knee.
+    # The error decreases and the cost increases with each level. Therefore no setting is better than another setting in
+    # both, and all settings are on the Pareto front. In logarithmic scales the front is straight, so it has no knee.
     cost = times["seconds_per_simulated_second"]
     front = [not np.any((cost < cost[i]) & (known < known[i])) for i in range(4)]
     texts = lambda values: ["true" if value else "false" for value in values]

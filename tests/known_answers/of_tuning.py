@@ -10,8 +10,9 @@ from physics import SPRING, SUMMED, held_loop, limit_of
 
 @scene
 def tuned(bench):
-    """Checks the recommendation for a handle on one spring with a delay of one sample. The known stiffness is the
-    largest stability limit of the sampled loop over the damping B, divided by the margin."""
+    """Checks the recommendation for a handle on one spring with a delay of one sample. The stability limit of the
+    sampled loop depends on the damping B. The known stiffness is the largest of these limits over all B, divided by the
+    margin."""
     m, b, T, delay = 0.1, 0.5, 0.001, 1
     base = bench.scenario(
         "tuned",

@@ -19,19 +19,19 @@ ROUNDING = 1e-4
 
 
 def presses(t):
-    """Returns the target positions of a hand at the times t [m]: free at first, then three presses. Each press begins
-    between two rows."""
+    """Returns the target positions z [m] of a hand at the times t [s]: 4 mm above the wall, and 8 mm inside the wall
+    during three presses."""
     return np.where((t > 0.3) & (t % 1.2 < 0.8), -8e-3, 4e-3)
 
 
 def decay(t):
-    """Returns the target positions of a hand that presses once and then stays [m]."""
+    """Returns the target positions z [m], at the times t [s], of a hand that presses once and then stays."""
     return np.where(t > 0.3, -8e-3, 4e-3)
 
 
 def simulated(stiffness, damping, delay, target=presses, friction=0.0, slide=0.0, tremor=0.0):
-    """Returns (times, positions (x, z), forces (x, z)) of a handle at a wall, integrated with ten steps per row. The
-    engine uses the true position and velocity `delay` rows earlier."""
+    """Returns (times [s], positions (x, z) [m], forces (x, z) [N]) of a handle at a wall, integrated with ten steps per
+    row. The force follows from the true position and velocity `delay` rows earlier."""
     rng, rows, parts = np.random.default_rng(1), 3000, 10
     at, speed, shake = np.array([0.0, 4e-3]), np.zeros(2), 0.0
     positions, speeds, forces = np.zeros((rows, 2)), np.zeros((rows, 2)), np.zeros((rows, 2))

@@ -14,8 +14,8 @@ from hapbench import InputError, audit  # noqa: E402  (finds the program in the 
 from hapbench_audit.audit import energy_by_contact  # noqa: E402
 
 T = 0.001  # sampling period of the logs [s]
-# Relative error of least squares on exact data: rounding of the normal equations, and 1e-6, which is added to every
-# interval.
+# Allowed relative error of parameters that least squares finds from exact data. It covers the rounding of the normal
+# equations, and the 1e-6 by which audit widens every confidence interval.
 EXACT = 1e-5
 
 
@@ -63,8 +63,9 @@ def rules_of(found):
 
 class KnownAnswers(unittest.TestCase):
     def test_sampled_spring_with_delay(self):
-        """Compares the work with a closed form. With held forces, f_k = −K x_(k−d) on x = A sin(k φ) does the work K A²
-        N sin((d + ½) φ) sin(φ/2) per cycle of N rows."""
+        """Compares the work with a closed form. The force f_k = −K x_(k−d) has a delay of d rows and is held until the
+        next row. On the motion x_k = A sin(k φ) with φ = 2π/N, it does the work K A² N sin((d + ½) φ) sin(φ/2) per
+        cycle of N rows."""
         stiffness, amplitude, per_cycle = 1200.0, 1e-3, 100
         for delay in (0, 1, 3):
             found = []
@@ -84,13 +85,15 @@ class KnownAnswers(unittest.TestCase):
                 * math.sin(angle / 2.0)
             )
             work = (found[1]["energy"]["work_J"] - found[0]["energy"]["work_J"]) / 20.0
-            # The work is a sum of 3000 products of about 4 N and 0.1 mm, each with a relative rounding error of 1e-16.
+            # The work is a sum of 3000 products of a force of about 4 N and a displacement of about 0.1 mm. Each
+            # product has a relative rounding error of 1e-16.
             self.assertAlmostEqual(work, per, delta=1e-12)
 
     def test_limit_and_frequency_in_closed_form(self):
-        """Compares limit and frequency with a closed form. For an undamped handle of mass m at a wall with K and B, let
-        κ = K T²/m and β = B T/m. The loop is stable for κ < 2 β (2 − β)/(2 + β), and its frequency at the limit is θ/T
-        with cos θ = 1 − κ/4 − β/2."""
+        """Compares the stability limit and the frequency with a closed form. For an undamped handle of mass m at a wall
+        with stiffness K and damping B, and the sampling period T, let κ = K T²/m and β = B T/m. The loop is stable for
+        κ < 2 β (2 − β)/(2 + β). Its angular frequency at the limit is θ/T with cos θ = 1 − κ/4 − β/2.
+        """
         mass, damping = 0.1, 5.0
         beta = damping * T / mass
         limit = 2.0 * beta * (2.0 - beta) / (2.0 + beta) * mass / T**2
@@ -100,7 +103,7 @@ class KnownAnswers(unittest.TestCase):
         for factor in (0.5, 1.001):
             z = pressed(20)
             found = audit(table(z, wall(z, factor * limit, damping)), device)["device"]
-            # The relative error of B is 1e-5, and the limit is nearly proportional to B.
+            # The limit is nearly proportional to B, and the relative error of B is at most EXACT.
             self.assertAlmostEqual(found["linear_limit_N_per_m"] / limit, 1.0, delta=2 * EXACT)
             self.assertAlmostEqual(found["ratio"] / factor, 1.0, delta=3 * EXACT)
             if factor < 1.0:
@@ -108,26 +111,29 @@ class KnownAnswers(unittest.TestCase):
                 continue
             kappa = limit * T**2 / mass
             frequency = math.acos(1.0 - kappa / 4.0 - beta / 2.0) / (2.0 * math.pi * T)
-            # At 1.001 times the limit, the squared frequency is at most 1.001 times the squared frequency at the limit.
+            # At a stiffness of 1.001 times the limit, the squared frequency is at most 1.001 times the squared
+            # frequency at the limit.
             self.assertAlmostEqual(found["expected_frequency_Hz"] / frequency, 1.0, delta=1e-3)
         answer = hapbench(
             "limit", "wall_on_handle", "--device", device, "--json", "--out", scratch / "limit",
             "--set", f"time.step_s={T}", "--set", f"rendering.damping_N_s_per_m={damping}",
         )  # fmt: skip
         row = json.loads(answer)["limits"][0]
-        # This loop is linear, so that the theoretical limit and the linear limit are equal; one of them may be missing.
+        # This loop is linear, so that the theoretical limit and the linear limit are equal. The answer may contain only
+        # one of them.
         same = row["theoretical_limit"] or row["linear_limit"]
         self.assertAlmostEqual(found["linear_limit_N_per_m"] / same, 1.0, delta=2 * EXACT)
 
     def test_passive_spring_and_damper(self):
-        """Checks that a held spring and damper with B > K T / 2 creates no energy. Without damping, the held force
-        creates energy, although the work along the path is zero."""
+        """Checks a spring and damper whose force is held between rows. For B > K T / 2, the held force creates no
+        energy. Without damping, the held force creates energy, but a force that is interpolated between rows does
+        not."""
         rng = np.random.default_rng(1)
         z = pressed(20) + 2e-4 * np.cumsum(rng.normal(size=len(pressed(20)))) / 100.0
         stiffness = 1000.0
         damped = audit(table(z, wall(z, stiffness, 1.0)))["energy"]
-        # A contact that begins between two rows adds at most K d²/2. Here d is the displacement per row at first touch:
-        # 80 um plus noise, less than 100 um.
+        # If a contact begins between two rows, the created energy is larger by at most K d²/2. Here d is the
+        # displacement per row at first touch: 80 um plus noise, less than 100 um.
         touch = 0.5 * stiffness * 1e-4**2
         self.assertLessEqual(damped["net_created_J"], damped["net_created_error_J"] + touch)
         bare = audit(table(z, wall(z, stiffness)))["energy"]
@@ -135,7 +141,8 @@ class KnownAnswers(unittest.TestCase):
         self.assertLessEqual(bare["net_created_path_J"], bare["net_created_error_J"] + touch)
 
     def test_quantised_position(self):
-        """Checks that intervals and error bounds contain the true values if an encoder quantises the position."""
+        """Checks that confidence intervals contain the true values, and that the error of the work is within its bound,
+        if an encoder quantises the position."""
         rng = np.random.default_rng(2)
         for step in (1e-5, 5e-5):
             z = (
@@ -151,8 +158,8 @@ class KnownAnswers(unittest.TestCase):
             true_work = float(np.sum(force[:-1] * np.diff(z)))
             energy = found["energy"]
             self.assertLessEqual(abs(energy["work_J"] - true_work), energy["work_error_J"])
-            # The error bound must be useful: smaller than stiffness * mean depth * amplitude for each of the 20 cycles,
-            # which is half of the energy that the spring takes up in a cycle.
+            # The error bound must be useful: smaller than 20 cycles * stiffness * mean depth * amplitude. In each
+            # cycle, the spring takes up twice the energy stiffness * mean depth * amplitude.
             self.assertLess(energy["work_error_J"], 20.0 * 1500.0 * 3e-3 * 1e-3)
 
     def test_position_that_moves_by_few_counts(self):
@@ -178,8 +185,8 @@ class KnownAnswers(unittest.TestCase):
         self.assertAlmostEqual(spring["stiffness_N_per_m"] / stiffness, 1.0, delta=0.01)
         self.assertAlmostEqual(spring["dry_friction_N"] / friction, 1.0, delta=0.01)
         lost = (found["energy"]["work_path_J"] - shorter["energy"]["work_path_J"]) / 10.0
-        # Twice per cycle, where the motion reverses, the sign is wrong for half a step. This changes the work by A (1 −
-        # cos φ) c each time.
+        # Twice per cycle, where the motion reverses, the friction has the wrong sign for half a step. Each time, this
+        # changes the work by A (1 − cos φ) c, where φ is the phase per row.
         self.assertAlmostEqual(lost / (-4.0 * amplitude * friction), 1.0, delta=0.005)
         self.assertNotIn("energy", rules_of(found))
 
@@ -199,7 +206,7 @@ class KnownAnswers(unittest.TestCase):
                 }
             )
         )
-        # The limit is approximated by the formula of Gil and Hulin.
+        # The stability limit of the stiffness is approximated by the formula of Gil and Hulin.
         stiffness = 2.3 * viscous / (T * (0.5 + delay))
         log = handle_at_wall(mass, viscous, delay, stiffness)
         found = audit(log, device)
@@ -218,8 +225,8 @@ class KnownAnswers(unittest.TestCase):
 
 
 def handle_at_wall(mass, viscous, delay, stiffness, seconds=3.0):
-    """Returns the log of a handle that a hand of 200 N/m presses into a wall, integrated with twenty steps per sampling
-    period."""
+    """Returns the log of a handle that a hand with a stiffness of 200 N/m presses into a wall. The motion is integrated
+    with twenty steps per sampling period."""
     z, v, waiting, rows = 1e-3, 0.0, [0.0] * delay, []
     parts = 20
     for k in range(int(seconds / T)):
@@ -263,8 +270,8 @@ class Clocks(unittest.TestCase):
         self.assertEqual(audit(log)["metrics"]["contacts"], 2)
 
     def test_nothing_is_said_about_the_force_between_rows_with_missing_rows_between(self):
-        """Checks that the step and the reversal of a force that changes its sign while rows are missing are not
-        counted, and that they are counted if no row is missing."""
+        """Checks a force that changes its sign between two rows. The metrics count the reversal and the step of the
+        force if no row is missing, but not if rows are missing between the two rows."""
         z = pressed(20)
         force = wall(z, 1000.0)
         force[1000:] *= -1.0
@@ -274,14 +281,15 @@ class Clocks(unittest.TestCase):
         kept[[1000, 1001]] = False
         found = audit({name: values[kept] for name, values in log.items()})["metrics"]
         self.assertEqual(found["force_reversals"], 0)
-        # Without the change of sign, the force changes by at most 1000 N/m times the motion of a row, below 0.1 N.
+        # Without the change of sign, the force changes by at most 1000 N/m times the displacement between two rows,
+        # which is less than 0.1 N.
         self.assertLess(found["force_step_max_N"], 0.1)
 
 
 class Energy(unittest.TestCase):
     def test_contacts_with_unknown_energy_are_left_out_of_the_rate(self):
-        """Checks the created energy per second for contacts of 1 s and 3 s, of which only the first has a known energy
-        of 2 J."""
+        """Checks the created energy per second in contact. The first contact lasts 1 s and creates 2 J. The second
+        contact lasts 3 s, and its energy is unknown."""
         every = [
             {"start_s": 0.0, "end_s": 1.0, "rows": 1000, "created_J": 2.0, "error_J": 0.0},
             {"start_s": 2.0, "end_s": 5.0, "rows": 3000, "created_J": None, "error_J": None},
@@ -416,7 +424,7 @@ class OwnRuns(unittest.TestCase):
                 self.agree(scene, name, found["metrics"][name], summary, name)
             if scene == "device_at_wall":
                 continue  # for a free virtual tool, run uses the mean velocity of a step
-            # The tool does not rotate, so that all energy passes through the translation.
+            # The tool does not rotate, so that moments do no work. All work is done by the force.
             created = summary["passivity"]["net_created_J"]
             self.assertAlmostEqual(
                 found["energy"]["net_created_J"], created, delta=1e-9 + 1e-9 * created

@@ -1,5 +1,5 @@
-"""Tests that hapbench.audit() reports nothing false. The logs have jitter, noise, short slides, rests, and rigid or
-averaged contacts."""
+"""Tests that hapbench.audit() reports nothing false. The logs have jitter, noise, short slides, rests, rigid contacts,
+and forces that are means over the points in contact."""
 import os
 import unittest
 from unittest import mock
@@ -22,8 +22,9 @@ def smooth(share):
 
 
 def presses(t, count, seconds, depth=3e-3, rise=0.05, every=None):
-    """Returns positions [m] of `count` presses into the surface z < 0, to different depths. Durations of a press
-    (`seconds`), of its rise and between the starts of two presses (`every`) are in s."""
+    """Returns positions [m] of `count` presses into the surface z < 0, to different depths. `seconds`: duration of a
+    press [s]. `rise`: duration of its descent and of its ascent [s]. `every`: time between the starts of two presses
+    [s]."""
     z = np.full(len(t), 1e-3)
     for i in range(count):
         start = 0.2 + i * (every or seconds + 0.2)
@@ -53,8 +54,9 @@ def rules_of(found):
 
 class Clocks(unittest.TestCase):
     def test_jitter_is_no_missing_row(self):
-        """Checks that jitter is not counted as missing rows. The time stamps have errors of up to 0.3 intervals, or
-        each interval has such an error. Steps are then between 0.4 and 1.6 intervals."""
+        """Checks that jitter is not counted as missing rows. In one log, each time stamp has an error of up to 0.3
+        intervals, so that the differences of time stamps are between 0.4 and 1.6 intervals. In the other log, each
+        interval has an error of up to 0.3 intervals."""
         rng, rows = np.random.default_rng(1), 4000
         kept = np.ones(rows, bool)
         kept[[700, 1500, 1501, 2900]] = False
@@ -72,7 +74,7 @@ class Clocks(unittest.TestCase):
                 self.assertAlmostEqual(found["rate_Hz"] / rate, 1.0, delta=2e-3, msg=name)
 
     def test_held_values_of_a_log_that_lost_rows(self):
-        """Checks a log in which each value is repeated in five rows, after 1 % of the rows are lost."""
+        """Checks a log in which each value is repeated in five rows. Then 1 % of the rows are removed."""
         rng, rows = np.random.default_rng(7), 3000
         t = T * np.arange(rows)
         z = np.repeat(presses(t, 2, 1.0)[::5] + tremor(t)[::5], 5)
@@ -84,8 +86,8 @@ class Clocks(unittest.TestCase):
         self.assertAlmostEqual(clock["rows_per_force"], 5.0, delta=0.05)
 
     def test_times_without_order_have_no_missing_rows(self):
-        """Checks that no row counts as missing if the time stamps have errors of half an interval, as sorted random
-        times do."""
+        """Checks that no row counts as missing if the time stamps have errors of up to almost half an interval. Times
+        between two neighbouring rows are then almost arbitrary."""
         rng = np.random.default_rng(2)
         t = np.sort(T * (np.arange(3000) + 0.49 * rng.uniform(-1.0, 1.0, 3000)))
         z = presses(t, 2, 0.8)
@@ -101,8 +103,8 @@ class Springs(unittest.TestCase):
         self.assertTrue(round(first) <= delay <= round(last), (first, last))
 
     def test_averaged_contacts_are_no_delay(self):
-        """Checks that no delay is reported for averaged contacts. The mean force over the points in contact falls
-        whenever a point is added. No spring and damper explains this, and all contacts have the same residuals.
+        """Checks that a delay of zero is not excluded if the force is a mean over the points in contact. The mean falls
+        whenever a further point touches. No spring and damper explains this, and the residuals repeat in each contact.
         """
         t = 2e-3 * np.arange(2000)
         z = presses(t, 12, 0.12, depth=1.5e-3, every=0.3)
@@ -114,8 +116,9 @@ class Springs(unittest.TestCase):
             self.assertEqual(found["stiffness"]["delay_interval_s"][0], 0.0)
 
     def test_coarse_positions_do_not_exclude_the_truth(self):
-        """Checks that the intervals contain the true values for coarse positions. Rounding makes the damping at the
-        true delay look negative, within its interval."""
+        """Checks for coarse positions that the confidence intervals of stiffness and delay contain the true values. The
+        rounding of the positions makes the fitted damping at the true delay negative, but its interval contains 0.
+        """
         rng = np.random.default_rng(3)
         t = T * np.arange(9000)
         z = presses(t, 40, 0.1, rise=0.04, every=0.2) + tremor(t)
@@ -134,8 +137,8 @@ class Springs(unittest.TestCase):
                 self.assertLessEqual(spring_of["delay_interval_s"][1], 0.5 * one["rows"] * T)
 
     def test_lost_rows_are_no_shorter_delay(self):
-        """Checks a log from which rows were removed. A delay must include the missing rows, and no velocity may be a
-        difference across them."""
+        """Checks a log from which rows were removed. The delay in rows must count the missing rows, and no velocity may
+        be a difference of positions before and after missing rows."""
         rng = np.random.default_rng(6)
         t = T * np.arange(3000)
         z = presses(t, 2, 1.0) + tremor(t)
@@ -276,7 +279,8 @@ class Oscillations(unittest.TestCase):
         force = np.where(force > 0.0, force + 0.3 * np.sin(2.0 * np.pi * 240.0 * t), 0.0)
         strongest = audit(log_of(t, z, force))["buzz"][0]
         self.assertAlmostEqual(strongest["frequency_Hz"], 240.0, delta=0.5)
-        # Errors below 2 %: noise of the remaining force, and scalloping of the window with a padding of 4.
+        # Errors of less than 2 % come from noise of the other forces, and from the scalloping loss of the window with
+        # zero padding to four times the length.
         self.assertAlmostEqual(strongest["amplitude_N"], 0.3, delta=6e-3)
 
     def test_a_press_is_no_oscillation(self):

@@ -25,7 +25,7 @@ C_FUNCTIONS = re.compile(
     r"c(?:abs|arg|exp|log|pow|sqrt))[fl]?$",
     re.M,
 )
-# OpenMesh uses the cosine in virtual functions for feature edges. hapbench does not call these functions.
+# Calls that are allowed. OpenMesh uses the cosine in virtual functions for feature edges, which hapbench does not call.
 OPENMESH = {
     ("libhapbench_sim_mesh", "cos"),
     ("libhapbench_scenarios_input", "cos"),
@@ -80,8 +80,8 @@ class Consumer(unittest.TestCase):
         self.assertEqual(state_hash, json.loads((out / "summary.json").read_text())["state_hash"])
 
     def test_an_installed_renderer_renders_in_a_loop_of_another_project(self):
-        """Tests a program in C that finds the library by CMake and by pkg-config. hapbench must replay its log bit for
-        bit."""
+        """Tests a program in C that finds the installed library by CMake. hapbench must replay the log of this program
+        bit for bit."""
         project = CONSUMER / "loop"
         build = self.folder / "loop"
         must(CMAKE, "-G", "Ninja", "-S", project, "-B", build, f"-DCMAKE_PREFIX_PATH={self.prefix}")
@@ -203,8 +203,9 @@ class Consumer(unittest.TestCase):
             self.assertNotIn(word, command)
 
     def test_it_computes_elementary_functions_itself(self):
-        """Checks that no library calls an elementary function of the C library, because the last digits differ between
-        versions. Calls by Eigen and by the standard library are also detected."""
+        """Checks that no library of hapbench calls an elementary function of the C library, because the last digits of
+        its results differ between versions of the C library. Calls by Eigen and by the C++ standard library are also
+        detected."""
         archives = sorted(
             p for p in Path(BUILD).rglob("libhapbench_*.a") if "test_support" not in p.name
         )

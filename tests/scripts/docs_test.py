@@ -114,7 +114,7 @@ def shortened(command, folder):
     given = list(command.words[1:])
     if (
         given[0] == "plot" and "--from" in given
-    ):  # an interval of time that a shortened run does not contain
+    ):  # a shortened run does not contain the interval of time that starts at --from
         given = given[: given.index("--from")]
     runs = given[0] != "sweep" or "--vary" in given and "--row" not in given
     shorter = SHORTER.get(given[0], []) if runs else []
@@ -125,7 +125,8 @@ def shortened(command, folder):
     ):
         shorter = [*shorter, "--algorithms", "shaped_stiffness"]  # for studies over all laws
     if "--errors" in given:
-        # With --errors, the command also runs at half the spacing of the points.
+        # With --errors, the command also runs at half the spacing of the surface points. A wide spacing shortens these
+        # runs.
         shorter = [*shorter, "--set", "environment.spacing_m=4e-4"]
     if "--resolution" in given:
         shorter = [word for word in shorter if word not in ("--resolution", "0.5")]
@@ -241,8 +242,8 @@ class Generated(unittest.TestCase):
                 )
 
     def test_controls_and_pairs_are_about_the_verdicts_on_record(self):
-        """Checks that controls.json and pairs.json are about the verdicts and numbers that claims.json has now. What
-        they say about a wrong law or a pair of assumptions does not apply to a verdict that has changed since.
+        """Checks that controls.json and pairs.json contain the same verdicts as claims.json, and controls.json the same
+        numbers. Otherwise their results with a wrong law or a pair of assumptions were computed for another verdict.
         """
         ledger = {claim["id"]: claim for claim in record("claims")["claims"]}
         faults = json.loads((SOURCE / "tests/mutants/controls.json").read_text(encoding="utf-8"))
@@ -298,7 +299,8 @@ class Generated(unittest.TestCase):
 
 class Examples(unittest.TestCase):
     def test_the_force_on_a_sphere_by_python_is_that_of_the_sphere(self):
-        """Checks that the force on a sphere is K times the depth, along the line between the centres."""
+        """Checks that the force of a fixed sphere on a spherical tool is K times the depth, along the line between the
+        centres of the two spheres."""
         folder = scratch_folder(self)
         must(
             sys.executable,
@@ -313,5 +315,5 @@ class Examples(unittest.TestCase):
         distance = np.linalg.norm(position, axis=1, keepdims=True)
         known = 20000 * np.maximum(0, 0.0025 - distance) * position / distance
         self.assertGreater(np.count_nonzero(known[:, 2]), 500)
-        # The tolerance is a few rounding errors of 2.5 mm, times K.
+        # The tolerance is K times a few rounding errors of a length of 2.5 mm.
         self.assertLess(np.abs(force - known).max(), 1e-13)

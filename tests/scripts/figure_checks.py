@@ -5,8 +5,8 @@ import numpy as np
 
 from hapbench_style import fix_layout
 
-SMALLEST, LARGEST = 7, 9  # smallest and largest font size [points]
-# Largest overlap of two texts, or of a text with the border of the figure [pixels]; 100 pixels are an inch.
+SMALLEST, LARGEST = 7, 9  # smallest and largest allowed font size [points]
+# Largest allowed overlap of two texts, and of a text with the border of the figure [pixels]. 100 pixels are an inch.
 SLACK = 2.0
 
 

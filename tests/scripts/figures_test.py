@@ -11,7 +11,7 @@ from unittest import mock
 
 from fixture import PROGRAM, SOURCE, in_process, must, ran, scratch_folder
 
-# The package is in scripts/python, which the fixture adds to the path.
+# The package is in scripts/python, which the import of the module `fixture` has added to the path.
 from hapbench_figures import __main__ as command
 
 SVG = "{http://www.w3.org/2000/svg}"
@@ -35,7 +35,8 @@ RUNS = (
     ),
 )
 # Figures that together use every drawing function: subsampled marks, shaded areas, arrows, rasterised marks, limits.
-# The command draws them in every format. All other figures are drawn only as SVG, which takes a third of the time.
+# One test runs scripts/figures to draw these figures in every format. All other figures are drawn only as SVG, which
+# takes a third of the time.
 DRAWN_BY_COMMAND = "A.5,C.3,D.7,stability-z_width"
 hapbench = partial(must, PROGRAM, statuses=(0, 3))
 figures = partial(ran, SOURCE / "scripts" / "figures")
@@ -82,7 +83,7 @@ def make_results(directory):
         hapbench(verb, study, *words, "--out", directory / study)
     make_accuracy(directory / "accuracy")
     shutil.copy(REFERENCE / "claims.json", directory)
-    # The figure of the time that a step takes, as a fraction of the loop's period, is drawn only if timing.json exists.
+    # The figure of the computing time per step, divided by the period of the loop, is drawn only if timing.json exists.
     loop = directory / "step_latency" / "task2_rotate_signed_distance"
     loop.mkdir(parents=True)
     (loop / "timing.json").write_text(
@@ -91,8 +92,9 @@ def make_results(directory):
 
 
 def make_accuracy(directory):
-    """Writes results in the form of hapbench_accuracy, whose runs would take longer than all other tests. Along a
-    series of settings, the time doubles and the error halves with each setting, except the last."""
+    """Writes results in the format of the program hapbench_accuracy. Running this program would take longer than all
+    other tests. In each series of settings, the time doubles with each setting. The error halves with each setting
+    except the last, where it stays the same."""
     directory.mkdir()
     columns = (
         "error_rms_m",

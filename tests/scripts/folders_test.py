@@ -164,7 +164,7 @@ class Folders(unittest.TestCase):
     def test_beside_reproduce_only_its_own_runs_are_refused(self):
         """Checks two runs that write below the output folder of a running `reproduce`. A run into the subfolder study,
         which `reproduce` does not use, succeeds. A run into the subfolder thesis, which `reproduce` uses, is refused.
-        scripts/reproduce writes studies to such other subfolders.
+        scripts/reproduce relies on this, because it writes studies into subfolders that `reproduce` does not use.
         """
         folder = self.root / "both"
         reproduce = subprocess.Popen(

@@ -63,7 +63,8 @@ class Page(unittest.TestCase):
 
     @classmethod
     def show(cls, file):
-        """Opens the file of the page for all tests of a module. setUpModule calls this function."""
+        """Starts a browser for all tests of a module, and sets the page that each test opens. setUpModule calls this
+        function."""
         cls.url, cls.driver = file.as_uri(), started(os.environ["HAPBENCH_CHROMIUM"])
         unittest.addModuleCleanup(cls.driver.quit)
 
@@ -96,7 +97,7 @@ class Page(unittest.TestCase):
             time.sleep(0.05)
 
     def js(self, expression):
-        """Evaluates a JavaScript expression and returns its value; awaits a promise."""
+        """Evaluates a JavaScript expression and returns its value. If the value is a promise, waits for its result."""
         return self.driver.execute_script(f"return ({expression})")
 
     def complaints(self):

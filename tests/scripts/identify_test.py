@@ -24,9 +24,9 @@ HANDLE = (M, B, C, DELAY_S, 0.0, 0.0)
 
 
 def played(time, force, finer, spring=0.0, stribeck=(0.0, 1.0)):
-    """Returns positions at `time`, integrated in small steps with the mean speed of each step. Dry friction stops the
-    handle within a step. `finer`: number of small steps per sample. `stribeck`: (relative increase of dry friction at
-    rest, speed up to which friction is increased [m/s])."""
+    """Returns positions at `time`, integrated in small steps with the mean speed of each step. Dry friction can stop
+    the handle within a small step. `finer`: number of small steps per sample. `stribeck`: (relative increase of dry
+    friction at rest, Stribeck speed [m/s]). Above the Stribeck speed, the increase vanishes."""
     x = v = 0.0
     trajectory = [x]
     arrivals = time + DELAY_S
@@ -159,7 +159,7 @@ class Identify(Logs):
         held = [holds for one in ones for holds in one["holds"].values()]
         self.assertGreaterEqual(
             sum(held), 27
-        )  # of 30 intervals at 95 %; fewer have a probability of 1/16, and the seeds are fixed
+        )  # of 30 intervals at 95 %; the probability of fewer than 27 is 1/16, but the seeds are fixed
 
     def test_what_the_log_does_not_determine_has_no_value(self):
         time = np.arange(2000) * 1e-3
@@ -403,7 +403,7 @@ class Design(unittest.TestCase):
                 time, values = design(kind, force, travel, 1000.0, 3.0, mass)
                 self.assertLessEqual(np.abs(values).max(), force * (1 + 1e-12), kind)
                 self.assertGreater(np.abs(values).max(), 0.1 * force, kind)
-                # Free mass under held forces by the trapezoidal rule, which is exact for held forces.
+                # Integrates the motion of a free mass by the trapezoidal rule, which is exact for held forces.
                 speed = np.concatenate([[0.0], np.cumsum(values[:-1])]) * 1e-3 / mass
                 position = np.concatenate([[0.0], np.cumsum(0.5 * (speed[1:] + speed[:-1]))]) * 1e-3
                 self.assertLessEqual(np.ptp(position), travel * (1 + 1e-9), kind)

@@ -26,8 +26,8 @@ class Command(Given):
             "new", "stroke", "--from", self.root / "stroke.csv", "--out", self.root / "stroke.json"
         )
         hapbench("validate", self.root / "stroke.json")
-        # With a shift of a millimetre, the edge of the tool is deeper in the surface than half of its width. The
-        # outcome is then went_through.
+        # The shift by -1 mm in z moves the edge of the tool deeper into the surface than half of the tool's width, so
+        # that the outcome is went_through.
         done = json.loads(
             hapbench(
                 "run",
@@ -155,8 +155,8 @@ class Command(Given):
                 is_over = process.poll() is not None
                 process.send_signal(signals.SIGINT)
                 errors = process.communicate()[1]
-                # A shell reports either status as 130. Directly after the start, the handler of Ctrl-C is not yet
-                # installed, and the signal itself ends the process.
+                # Directly after the start, the handler of Ctrl-C is not yet installed, and the signal itself ends the
+                # process. Later, the handler ends the process with the status 130. A shell reports both as 130.
                 self.assertIn(process.returncode, (130, -signals.SIGINT), errors)
                 self.assertNotIn("Traceback", errors)
                 self.assertLessEqual(errors.count("\n"), 1, errors)

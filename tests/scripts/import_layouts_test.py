@@ -30,8 +30,8 @@ class Layouts(Given):
         return "\n".join(found["warnings"]), found
 
     def assert_tip(self, data, columns, warned="", **options):
-        """Asserts that the imported tool points in the true direction, and that the warnings contain the text
-        `warned`."""
+        """Asserts that the imported tool points in the direction of TURNS, and that the warnings contain the text
+        `warned`. If `warned` is empty, asserts that there are no warnings."""
         stroke, found = self.report(data, f"time=t,position=x,{columns}", **options)
         down = [0, 0, -1]
         np.testing.assert_allclose(stroke.turn.apply(down), self.TURNS.apply(down), atol=1e-6)
@@ -71,12 +71,12 @@ class Layouts(Given):
                 "position=a",
                 'do not say which columns go with "a"; allowed: px=...,py=...,pz=..., or position=2 for',
             ),
-            (self.PLAIN, "position=y", "not its first by name; allowed: position=x"),
-            (self.PLAIN, "position=x,px=x", "is named as a whole and by px"),
+            (self.PLAIN, "position=y", "not its first component by name; allowed: position=x"),
+            (self.PLAIN, "position=x,px=x", "its columns are given by position and by px"),
             (self.PLAIN, "position=x,force=x", "column 2 x is also named for position"),
             (turned, "position=x,orientation=q0", "--orientation is missing; allowed: axis, quat_"),
             (turned, "position=x,orientation=5", "--orientation is missing"),
-            (turned, "position=x,qw=q3,qx=q0", "qy: is missing beside others"),
+            (turned, "position=x,qw=q3,qx=q0", "qy: is missing; --columns names other"),
         ):
             self.assertIn(problem, self.refusal(data, f"time=t,{columns}"))
         self.assertIn(
@@ -88,7 +88,7 @@ class Layouts(Given):
         data = table("t,x,vx,y,z", self.TIME, self.POSITIONS[:, [0, 0, 1, 2]])
         _, found = self.report(data, "time=1,position=2")
         self.assertEqual(self.columns(found, "position"), [2, 3, 4])
-        self.assertIn("by their names it would be 2 x, 4 y, 5 z", found["warnings"][0])
+        self.assertIn("by their names the order would be 2 x, 4 y, 5 z", found["warnings"][0])
 
     def test_a_quaternion_is_read_by_the_names_of_its_columns(self):
         xyzw = self.TURNS.as_quat()
@@ -103,7 +103,7 @@ class Layouts(Given):
         contradicted = "was read by the names of its columns (qx, qy, qz, qw)"
         self.assert_tip(last, "orientation=qx", contradicted, orientation="quat_wxyz")
         self.assertIn(
-            "by their names it would be 8 qw, 5 qx, 6 qy, 7 qz",
+            "by their names the order would be 8 qw, 5 qx, 6 qy, 7 qz",
             self.report(last, "time=t,position=x,orientation=5", orientation="quat_wxyz")[1][
                 "warnings"
             ][0],
@@ -202,8 +202,8 @@ class Layouts(Given):
             warned, _ = self.assert_positions(data, columns)
             self.assertIn(warning, warned)
             self.assertEqual(bool(warning), bool(warned), warned)
-        # The header has two lines: groups and components. The names of columns join both lines, because neither line
-        # names every column differently.
+        # The header has two lines: groups and components. In each line, a name occurs several times. The name of a
+        # column therefore joins the names of both lines.
         named = "Tip,Tip,Tip,Hand,Hand,Hand\nx,y,z,x,y,z\n"
         data = (
             "Time,"
@@ -215,7 +215,7 @@ class Layouts(Given):
         self.assertEqual(self.columns(found, "position"), [2, 3, 4])
         # For an unknown unit, the message requests the option --scale.
         self.assertIn(
-            'the unit "counts" is unknown: --scale position=...',
+            'the unit "counts" is unknown: give the unit with --scale position=...',
             self.refusal("t,x,y,z\ns,counts,counts,counts\n" + rows, "time=t,position=x"),
         )
         # A header of several lines needs numbers below it. Otherwise only the first line is a header.
@@ -251,7 +251,7 @@ class Layouts(Given):
             (b"#ROSBAG V2.0\n", "a ROS bag"),
             (
                 self.PLAIN.encode() + b"\0\1\2" + self.PLAIN.encode(),
-                "line 102: has a zero byte: it is no text",
+                "line 102: has a zero byte, so the file is not a text",
             ),
             (
                 self.PLAIN.replace(",", "|"),
@@ -284,7 +284,7 @@ class Layouts(Given):
         days = table("t,x,y,z", 46354.25 + self.TIME / 86400, self.POSITIONS, number="%.17g")
         _, found = self.report(days, "time=t,position=x")
         self.assertIn(
-            "are the times days, as those of spreadsheets and MATLAB? (with --scale time=86400",
+            "are the times in days, as in spreadsheets and MATLAB? (with --scale time=86400",
             found["warnings"][0],
         )
         of_day = "t,x,y,z\n" + "".join(
@@ -409,7 +409,7 @@ class Layouts(Given):
         self.assertEqual(
             self.refusal("\n".join(lines), "time=t,position=x"),
             'rec.csv, line 11: column 4 z: got "nan"; allowed: a finite number (30 rows, the last: line 40); '
-            "--skip-bad-rows leaves bad rows out",
+            "--skip-bad-rows skips bad rows",
         )
 
     def test_a_log_of_rostopic_is_read_by_its_names(self):
@@ -455,7 +455,7 @@ class Layouts(Given):
         self.assert_positions(self.PLAIN.replace("z\n", "z [-]\n", 1).replace("x", "x [-]"))
         counts = millimetres.replace("mm", "counts")
         self.assertIn(
-            'column 2 x [counts]: the unit "counts" is unknown: --scale position=...',
+            'column 2 x [counts]: the unit "counts" is unknown: give the unit with --scale position=...',
             self.refusal(counts, "time=t,position=x"),
         )
         self.assert_positions(counts, scale="position=0.001")
@@ -517,8 +517,9 @@ class Layouts(Given):
             self.assertAlmostEqual(found["rate_Hz"], 1000 / rows, delta=1e-6)
             np.testing.assert_allclose(stroke.position, moved(time[::rows]), atol=1e-9)
             self.assertIn(f"each pose is repeated in {rows} rows", found["warnings"][0])
-        # In the first log, the rate of the log is not a multiple of the rate of the measurement. If a jump were divided
-        # by the time of a single row, the speed would be too high. In the second log, the tool rests for some time.
+        # In the first log, positions are measured at 60 Hz and logged at 1000 Hz, which is not a multiple of 60 Hz. The
+        # speed is the change between two measurements, divided by the time between them. Divided by the time between
+        # two rows, it would be too high. In the second log, the tool rests for some time.
         held = np.floor(60 * time) / 60
         _, found = self.report(table("t,x,y,z", time, 40 * moved(held)), "time=t,position=x")
         self.assertAlmostEqual(found["rows_per_held_sample"], 1000 / 60, delta=0.1)
@@ -530,14 +531,15 @@ class Layouts(Given):
             table("t,x,y,z", time, moved(held)), "time=t,position=x", set="held_rows=keep"
         )
         self.assertEqual(len(kept.time), 1200)
-        # A clock with jitter: samples are repeated in 3, 4 or 5 rows.
+        # If the clock has jitter, each sample is repeated in 3, 4 or 5 rows.
         lengths = np.random.default_rng(7).choice([3, 4, 5], 300, p=[0.2, 0.6, 0.2])
         held = time[np.repeat(np.cumsum(lengths) - lengths, lengths)[:1200].clip(max=1199)]
         _, found = self.report(
             table("t,x,y,z", time[: len(held)], moved(held)), "time=t,position=x"
         )
         self.assertAlmostEqual(found["rows_per_held_sample"], 4.0, delta=0.1)
-        # Neither coarse positions nor a constant speed in encoder steps are held samples.
+        # Coarse positions are equal in successive rows, but they are not held samples. The same is true for a constant
+        # speed at which the position increases by one encoder step after several rows.
         for positions in (np.round(moved(time), 4), np.round(np.outer(time, [0.0025, 0, 0]), 5)):
             _, found = self.report(table("t,x,y,z", time, positions), "time=t,position=x")
             self.assertEqual((found["rows_per_held_sample"], found["samples"]), (1, 1200))
@@ -550,7 +552,7 @@ class Layouts(Given):
             (1, False, ""),
             (-1, False, "--set force_by_tool=true"),
             (-1, True, ""),
-            (1, True, "leave out force_by_tool=true"),
+            (1, True, "omit force_by_tool=true"),
         ):
             _, found = self.report(
                 table("t,x,y,z,fx,fy,fz", self.TIME, self.POSITIONS, sign * force),

@@ -45,7 +45,8 @@ class Recordings(Given):
             self.assertAlmostEqual(
                 report["smoothing"]["position_rms_m"], np.sqrt(np.mean(moved**2)), delta=1e-13
             )
-            # The reference smooths the components of quaternions with consistent sign, and normalises them again.
+            # The expected rotations: quaternions with consistent signs, whose components are smoothed and then
+            # normalised.
             quaternions = Slerp(time, turns)(np.minimum(grid, time[-1])).as_quat()
             signs = np.cumprod(
                 np.sign(np.concatenate([[1], np.sum(quaternions[1:] * quaternions[:-1], axis=1)]))
@@ -88,7 +89,8 @@ class Recordings(Given):
             "in other units? (--scale time=1e-06)",
         )
         self.assertEqual(self.refusal(even, scale="time=1e-6"), "")
-        # An interval four times as long as the median interval is not yet a gap, but this interval exceeds max_gap.
+        # The last interval is four times the median interval. This alone would not make it a gap, but it also exceeds
+        # max_gap.
         slow = "0,0,0,0\n0.2,0.001,0,0\n0.4,0.002,0,0\n1.2,0.003,0,0\n"
         self.assertEqual(
             self.refusal(slow),
@@ -165,7 +167,7 @@ class Recordings(Given):
 
     def test_bad_rows_are_refused_with_their_lines(self):
         start, line = "t,x,y,z\n0,0,0,0\n", "rec.csv, line 3: "
-        fix = "; --skip-bad-rows leaves bad rows out"
+        fix = "; --skip-bad-rows skips bad rows"
         number = "; allowed: a finite number"
         for rows, problem in (
             ("0.1,nan,0,0\n", line + f'column 2 x: got "nan"{number}'),
@@ -211,7 +213,7 @@ class Recordings(Given):
                 "line 1: got a quaternion of norm 0.9; allowed: 1 within 0.001",
             ),
             ("quat_wxyz", "0.9991,0,0,0", None),
-            ("axis_angle", "0,0,0,1", "got a turn's axis of norm 0"),
+            ("axis_angle", "0,0,0,1", "got a rotation axis of norm 0"),
             ("axis_angle", "0,0,0,0", None),
             ("matrix", "1,0,0,0,1,0,0,0,-1", "not a rotation"),
             ("axis", "0,0,0", "axis of length 0"),
@@ -325,7 +327,10 @@ class Recordings(Given):
         stroke, found = self.report(buttons, "", preset="hapi_binary")
         self.assertEqual((stroke.time[1], stroke.force, stroke.has_roll), (0.25, None, False))
         self.assertEqual(
-            sum("as the preset names them: left out" in warning for warning in found["warnings"]),
+            sum(
+                "with the names of the preset: the stroke has no" in warning
+                for warning in found["warnings"]
+            ),
             2,
             "neither orientation nor force",
         )
@@ -335,7 +340,7 @@ class Recordings(Given):
             preset="hapi_binary",
         )
         self.assertEqual(len(cut.time), 2)
-        self.assertIn("behind sample 2 are 29 bytes", found["warnings"][2])
+        self.assertIn("after sample 2 follow 29 bytes", found["warnings"][2])
 
     def test_what_is_no_log_is_refused(self):
         for number in ("9" * 400, "NaN", "Infinity"):

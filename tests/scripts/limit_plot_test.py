@@ -109,8 +109,9 @@ class Limits(Given):
         self.assertIn("nothing to draw: no level has an error above 0", plotted(folder, expected=2))
 
     def test_the_program_finds_knees(self):
-        """Checks that the program finds the knee of a front. In logarithms to base 10, the points are (0, 0), (1, -3),
-        (2, -3.5), (3, -4): the second point is farthest below the chord between the ends."""
+        """Checks that the program finds the knee of a Pareto front of cost and error. The points of the front have the
+        decimal logarithms (0, 0), (1, -3), (2, -3.5) and (3, -4). The second point is farthest below the chord between
+        the first and the last point."""
         bent = hapbench("plot", "--knee", "1:1", "1000:1e-4", "10:1e-3", "100:3.2e-4")
         self.assertEqual(bent, "2\n")
         self.assertEqual(
@@ -190,7 +191,8 @@ class Limits(Given):
         )
 
     def over_field(self):
-        """Computes limits on a user's device and on a preset, over the damping. Returns the folder."""
+        """Computes limits for several values of the damping, on a user's device and on a preset device. Returns the
+        folder of the results."""
         own = self.root / "mine.json"
         own.write_text('{"type": "impedance", "handle_mass_kg": 0.1, "viscous_N_s_per_m": 0.5}')
         return made(
@@ -302,8 +304,8 @@ class Limits(Given):
         plt.close(figure)
 
     def test_a_field_of_texts_is_an_axis(self):
-        """Checks limits over a field of texts, with and without devices. The texts on the axis have the order of the
-        table."""
+        """Checks the picture of limits over a field whose values are texts, with and without devices. The texts on the
+        axis have the order of the table."""
         folder = self.over_field()
         names = {}
 

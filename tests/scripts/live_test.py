@@ -39,7 +39,7 @@ class Live(Page):
         self.wait_for(READY)
 
     def move(self, displacement, rows):
-        """Moves the hand by the given displacement [m] and rotation [rad] over `rows` rows."""
+        """Moves the hand by the given displacement [m] and rotation [rad] during `rows` time steps."""
         self.js(
             f"(async () => {{ const p = live.pointer; live.aim(p.map((x, i) => x + "
             f"{list(displacement)}[i])); await live.stepRows({rows}); }})()"
@@ -141,7 +141,7 @@ class Live(Page):
             self.choose(menu, "shaped_stiffness" if "select" in menu else "0")
 
     def test_every_bundled_scene_is_the_program_s(self):
-        """Checks a thousand rows of each bundled scene. WebAssembly must compute the same bits as the program."""
+        """Checks a thousand time steps of each bundled scene. WebAssembly must compute the same bits as the program."""
         short = "time.steps=1000"
         names = {}
         scenarios = SOURCE / "scenarios" / "library"
@@ -166,7 +166,7 @@ class Live(Page):
                 statuses=(0, 3),
             )
         )
-        # A scene with several trials has several runs and is skipped.
+        # Skips scenes with several trials, whose steps add up to more than 1000.
         single = {
             name: run["state_hash"]
             for name, run in zip(names, runs, strict=True)

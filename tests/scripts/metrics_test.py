@@ -27,10 +27,10 @@ SCENES = {
     "incline_dry": (INSIDE,),
 }
 ROUNDING = (
-    1e-9  # sums of at most some thousand terms, and a filter with a memory of some hundred samples
+    1e-9  # rounding of sums of some thousand terms, and of a filter over some hundred samples
 )
 BIN = 0.0079  # half a bin of the histogram of force_step_p99_N, by its definition
-IN_NO_FILE = "in no file"
+IN_NO_FILE = "written to no file"
 
 
 def table(file):
@@ -88,7 +88,7 @@ class HighPass:
 
 
 def high_passed(signal, dt):
-    """Returns the high-passed signal, with the filter in the steady state of the first sample. Returns None if the
+    """Returns the high-passed signal. The filter starts in the steady state for the first sample. Returns None if the
     sampling rate is too low for the filter."""
     if 1.0 / dt <= 60.0:
         return None

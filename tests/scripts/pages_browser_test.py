@@ -102,10 +102,11 @@ class OfThesis(EveryPage, Page):
     PARTS = ("summary", "ledger", "replay", "figures")
 
     def test_the_points_in_the_tool_are_the_recorded_ones(self):
-        """Compares the recorded number of points in the tool with the points that the page finds in the tool, in some
-        rows of all recordings. The page rounds positions to half a quantisation step, and the pose to single precision.
-        Only points within three quantisation steps of the tool's surface are uncertain; they give a smallest and a
-        largest number. If the page draws only a part of the points, the recorded number may exceed the largest number.
+        """Compares the recorded number of points in the tool with the points that the page finds in the tool, in every
+        seventh row of all recordings. In the page, positions have rounding errors of up to half a quantisation step,
+        and poses have single precision. Only points within three quantisation steps of the tool's surface are
+        uncertain; they give a smallest and a largest number. If the page draws only a part of the points, the recorded
+        number may exceed the largest number.
         """
         for scene in range(2):
             self.choose("#replay-scene", scene)

@@ -231,8 +231,8 @@ class Moments(unittest.TestCase):
         settled = np.arange(502) > 1
         low, high = settled_range([(settled, force, force)])
         self.assertTrue(0.7 < low < 0.9 and 1.1 < high < 1.3)
-        # The whole range is shown in three cases: the peak is not far above the settled range, there is no settled
-        # contact, or the run bounces to the end.
+        # The axis shows the whole range in three cases: the peak is not far above the range of the settled contact,
+        # there is no settled contact, or the tool bounces until the end of the run.
         self.assertIsNone(settled_range([(settled, np.minimum(force, 3), np.minimum(force, 3))]))
         self.assertIsNone(settled_range([(settled & False, force, force)]))
         hammering = np.where(settled & (np.arange(502) % 2 > 0), 10.0, force)
@@ -247,8 +247,8 @@ class ModelErrors(unittest.TestCase):
     """Tests the picture of laws that are compared with a reference force."""
 
     def drawn(self, displacement, failed=()):
-        """Returns the panels for two laws with these displacements [m], given as texts of the table. The laws in
-        `failed` have no errors."""
+        """Returns the panels for two laws. `displacement`: texts in the table for the displacement [m] of each law. The
+        cells for the errors of the laws in `failed` are empty."""
         laws = ("mean", "proxy")
         errors = [
             {

@@ -1,5 +1,5 @@
-"""Tests pip install ./scripts/python in a virtual environment, with the build of the tests. Arguments: the program, the
-folder of the built package."""
+"""Tests `pip install ./scripts/python` in a virtual environment. pip uses the build folder of the tested program.
+Arguments: the program, the folder of the built package."""
 import os
 import shutil
 import sys

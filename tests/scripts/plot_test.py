@@ -58,7 +58,7 @@ class Plot(Given):
         plt.close(figure)
         for name in ("$a$ and $b$", r"$\bad{$", "$x$"):
             self.assertIn(f">{name}</text>", drawn_as)
-        # Tick labels of the logarithmic axis are formulas.
+        # The tick labels of the logarithmic axis are formulas. Their source text must not appear in the picture.
         self.assertNotIn("mathdefault", drawn_as)
 
     def test_a_span_of_time_and_a_peak_that_is_cut_off(self):

@@ -229,7 +229,8 @@ def even(depths):
 
 
 class TheEndOfTheInterpreter(Scratch):
-    """Tests threads that wait for the interpreter while it shuts down. A waiting thread would abort the process."""
+    """Tests threads that wait for the Python interpreter while the interpreter shuts down. If hapbench did not handle
+    such a thread, the thread would abort the process."""
 
     def script(self, text):
         done = python("-c", LAW_OF_A_SCRIPT + text)

@@ -27,7 +27,7 @@ METRICS = "force_max_N,force_step_p99_N,inside_max_m"
 
 
 def setUpModule():
-    """Computes two scenes with four laws and four seeds. Some runs of the drill in the hole fail."""
+    """Runs two scenes with four laws and four seeds each. Some runs of the peg in the hole fail."""
     make_root()
     made(
         "many",
@@ -72,7 +72,7 @@ class Rankings(WithRuns):
                 value = getattr(found, name)
                 self.assertEqual(value is None, row[name] == "", row)
                 if value is not None:
-                    # The program adds the four numbers in another order.
+                    # The program adds the values of the four seeds in another order.
                     self.assertAlmostEqual(
                         value, float(row[name]), delta=1e-14 + 1e-12 * abs(value)
                     )

@@ -89,8 +89,8 @@ class Replays(Given):
 
 class Thrown(Given):
     def test_the_axis_belongs_to_the_other_runs(self):
-        """Checks largest_shown() for several cases: peaks of the runs, True for each failed run, and the expected
-        largest peak that determines the axis."""
+        """Checks largest_shown(), which returns the largest peak that the axis must show. Each case below has the peaks
+        of the runs, True for each run that failed, and the expected result."""
         fine = [False] * 4
         for peaks, failed, largest in (
             ([3, 5, 45, 14000], fine, 45),

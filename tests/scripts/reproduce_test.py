@@ -142,8 +142,8 @@ class Reproduce(unittest.TestCase):
         self.assertNotIn("drawn", self.run_with(NOTHING, "--only", "T4")[1])
 
     def test_a_signal_ends_its_parts(self):
-        # The shell is replaced by sleep, because a child process would outlive the shell and write while the folder is
-        # removed.
+        # In the dummy program, `exec` replaces the shell by `sleep`. A child process would outlive the shell and write
+        # while the folder is removed.
         self.put("build/release/bin/hapbench", "#!/bin/sh\n: >began\nexec sleep 50\n")
         process = subprocess.Popen(
             [self.root / "scripts" / "reproduce"],

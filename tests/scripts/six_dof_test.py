@@ -103,8 +103,9 @@ class Problem:
         each program (least distance programming of Lawson and Hanson)."""
 
         def derivative(function, x, h=1e-5):
-            """Returns the derivative by central differences. A step of 1e-5 (mm or rad) has an error of 1e-10 times the
-            third derivative, and 1e-11 of rounding."""
+            """Returns the derivative by central differences with the step h [mm or rad]. At h = 1e-5, the truncation
+            error is about 1e-10 times the third derivative, and the rounding error is about 1e-11.
+            """
             step = h * np.eye(9)
             return np.stack([(function(x + d) - function(x - d)) / (2 * h) for d in step], axis=-1)
 

@@ -46,8 +46,8 @@ class Sweeps(Given):
         )
 
     def test_what_matters_in_a_sample(self):
-        """Checks the influence of fields on the first force of an oscillating spring, which depends only on the
-        start."""
+        """Checks the influence of fields on the largest force of an oscillating spring. This is the force at the start,
+        which the seed does not change."""
         folder = made(
             "sampled",
             "sweep",
@@ -128,9 +128,9 @@ class Sweeps(Given):
         )
 
     def test_first_order_indices_of_a_function_that_is_known(self):
-        """Compares Sobol indices with the analytic values of Ishigami's function (Sobol and Levitan 1999). Its third
-        variable has an effect only together with the first. The last variable is varied logarithmically, and a list of
-        texts adds to the function."""
+        """Compares Sobol indices with the analytic values for Ishigami's function (Sobol and Levitan 1999) plus a term
+        that depends on a field of texts. The third variable of Ishigami's function has an effect only together with
+        the first variable."""
         random, n, pi = np.random.default_rng(7), 1000, np.pi
         x = random.uniform(-pi, pi, (3, n))
         texts = [["low", "middle", "high"][i] for i in random.integers(0, 3, n)]
@@ -150,8 +150,8 @@ class Sweeps(Given):
         ]
         for (column, coordinate), variance in zip(columns, own):
             found = sensitivity(column, coordinate, y)
-            # The fit with six cosines misses 0.1 % of sin(x). For independent points, the standard error by the
-            # jackknife is close to the true error.
+            # Six cosines represent sin(x) only approximately, which lowers the index by about 1e-3. For independent
+            # points, the standard error from the jackknife is close to the true error.
             self.assertLess(abs(found.first_order - variance / total), 3 * found.error + 1e-3)
             self.assertLess(found.error, 0.035)
         self.assertIsNone(sensitivity(texts[:10], None, y[:10]))

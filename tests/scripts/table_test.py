@@ -79,7 +79,7 @@ class Tables(unittest.TestCase):
         for words, message in (
             (("run", "tap_wall", "--table", "html"), 'allowed: "markdown", "latex", "csv"'),
             (("run", "tap_wall", "--table", "csv", "--json"), "--json"),
-            (("describe", "mean", "--table", "csv"), "allowed: with a list, such as claims"),
+            (("describe", "mean", "--table", "csv"), "allowed: the name of a list, such as claims"),
             (("validate", "tap_wall", "--table", "csv"), "--table"),
         ):
             done = ran(PROGRAM, *words, cwd=printed_tables.ROOT)

@@ -30,7 +30,8 @@ std::size_t random_size(Random& random, std::size_t largest) {
 }
 
 Mat3 random_rotation(Random& random) {
-  // A normalised Gaussian quaternion is uniform on the sphere S^3. Two pairs of Box-Muller give its four components.
+  // A normalised Gaussian quaternion is uniform on the sphere S^3. Its four components are two pairs of numbers, each
+  // from one Box-Muller transform.
   const double a = std::sqrt(-2.0 * std::log(1.0 - random.uniform()));
   const double b = std::sqrt(-2.0 * std::log(1.0 - random.uniform()));
   const Vec3 p = random.direction_in_plane();
@@ -50,7 +51,8 @@ Gradients fill(std::size_t n, Draw draw) {
   return gradients;
 }
 
-/// Returns 10^-k with k uniform in 0 … 12: the angles at which nearly degenerate sets may cause errors.
+/// Returns 10^-k [rad] with k uniform in 0 … 12. Gradients at so small angles form nearly degenerate sets, which may
+/// cause errors.
 double small_angle(Random& random) {
   return std::pow(10.0, random.uniform(-12.0, 0.0));
 }
@@ -158,8 +160,8 @@ Gradients cone(Random& random, std::size_t n) {
               [&] { return Vec3(frame * (std::sqrt(1.0 - z * z) * random.direction_in_plane() + z * Vec3::UnitZ())); });
 }
 
-/// Returns an orthonormal frame and other gradients. At the optimum for epsilon = 0, every ratio is 1, and so every
-/// contact is on the boundary between active and inactive.
+/// Returns an orthonormal frame and other gradients. At the optimum of exact_shaping for epsilon = 0, every stiffness
+/// ratio is 1, and so every contact is on the boundary between active and inactive.
 Gradients orthonormal_and_more(Random& random, std::size_t n) {
   const Mat3 frame = random_rotation(random);
   std::size_t k = 0;

@@ -31,8 +31,8 @@ struct GradientDistribution {
 };
 
 /// Returns the distributions: random, parallel, opposite, nearly parallel (angles down to 1e-12), duplicated,
-/// planar, coplanar, axis-aligned and clustered gradients, and gradients at the boundary of the cone of
-/// exact_shaping.
+/// planar, coplanar, axis-aligned and clustered gradients, and gradients for which contacts of exact_shaping are on the
+/// boundary between active and inactive.
 std::span<const GradientDistribution> gradient_distributions();
 
 /// Calls f(contacts, name of the distribution) for random sets of all gradient_distributions(), with at most 300

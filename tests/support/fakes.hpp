@@ -69,8 +69,8 @@ class FakeAlgorithm final : public ForceAlgorithm {
   Calls* calls_;
 };
 
-/// Keeps the record of every step. In the kept records, `rendered` is null, because the contact buffer does not
-/// outlive the step.
+/// Keeps the record of every step in `rows`, and its number of rendered contacts in `rendered`. In the kept records,
+/// the pointer StepRecord::rendered is null, because the contact buffer does not outlive the step.
 class Recorder final : public Observer {
  public:
   explicit Recorder(bool wants_ratio = false) : wants_ratio_(wants_ratio) {}

@@ -24,7 +24,7 @@ std::vector<SurfacePoint> random_shell(Random& random, double size);
 /// or a move far away.
 ToolPose next_pose(const ToolPose& pose, Random& random, double size, double step);
 
-/// The search that runs use and a brute-force search, over the same shell.
+/// Two contact searches over the same shell: the search of a simulation run, and a search by brute force.
 class SearchPair {
  public:
   SearchPair(const std::vector<SurfacePoint>& points, double cell_size, const Cylinder& tool)
@@ -59,8 +59,9 @@ struct WalkTotals {
   std::uint64_t poses = 0, contacts = 0, lists_rebuilt = 0;
 };
 
-/// Moves random tools, make_tool(random, size of the shell), over random shells, with cases(1'000'000) poses in
-/// total. At each pose, expects the search that runs use to find the same contacts as brute force.
+/// Moves random tools over random shells, with cases(1'000'000) poses in total. The tools are created by
+/// make_tool(random, size of the shell). At each pose, expects the search of a simulation run to find the same
+/// contacts as a search by brute force.
 template <class MakeTool>
 void expect_agreement_with_brute_force(Random random, const MakeTool& make_tool, WalkTotals& totals) {
   const std::size_t shells = cases(2000);

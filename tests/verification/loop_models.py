@@ -16,8 +16,8 @@ def radius(A):
 
 
 def held(rate, inputs, t):
-    """Returns the matrices P and Q of the exact solution z(t) = P z(0) + Q u of z' = rate z + inputs u, with inputs u
-    that are constant over the time t [s]."""
+    """Returns the matrices P and Q of the exact solution z(t) = P z(0) + Q u of z' = rate z + inputs u. `rate` and
+    `inputs` are matrices, and the vector u is constant over the time t [s]."""
     n, m = rate.shape[0], inputs.shape[1]
     joint = np.zeros((n + m, n + m))
     joint[:n, :n], joint[:n, n:] = rate, inputs

@@ -21,11 +21,12 @@ RANDOM = np.random.default_rng(85)
 # for a contact with a spring. `limit` bisects eigenvalues to 1e-11. Rounding changes an eigenvalue of multiplicity two
 # by the square root of the machine precision, 1e-8.
 SPRINGS_AGREE = 1e-7
-# The same for a contact with a surface. The derivative of a rendered force is a difference quotient with an error of
-# 1e-7. The limit depends on the derivative about linearly.
+# Largest allowed relative difference between these two limits for a contact with a surface. The derivative of a
+# rendered force is a difference quotient with an error of 1e-7. The limit depends on the derivative about linearly.
 SURFACES_AGREE = 1e-5
-# Runs have a stiffness K below and above the limit by the fraction BESIDE. Let n be the number of steps in which the
-# amplitude changes by the factor GROWN, plus 100. A run has 3 n steps. If n exceeds MAX_STEPS, the run is skipped.
+# One run has a stiffness K below the limit by the fraction BESIDE, and another run above the limit by this fraction.
+# Let n be the number of steps in which the amplitude changes by the factor GROWN, plus 100. A run has 3 n steps. If n
+# exceeds MAX_STEPS, the run is skipped.
 BESIDE, GROWN, MAX_STEPS = 0.05, 100.0, 200_000
 
 
@@ -147,9 +148,10 @@ def sides_of_flat_tip(radius_of_tip, spacing=0.0005):
 
 
 def slope_of_flat_tip(K, F, radius_of_tip):
-    """Returns dF/dz [N/m] of the mean force of all points under a flat tip, at the depth z to which the force F [N]
-    presses the tip. The depth of a point at the distance rho from the axis is min(z, r - rho), with the radius r of the
-    tip: the smaller of the distances to the bottom and to the side of the tip."""
+    """Returns dF/dz [N/m] of the mean force of all points under a flat tip, at the depth z [m] to which the force F [N]
+    presses the tip. The depth of a point is the smaller of its distances to the bottom and to the side of the tip:
+    min(z, r - rho), where rho is the point's distance from the axis and r is the radius of the tip.
+    """
     side = sides_of_flat_tip(radius_of_tip)
     low, high = 0.0, radius_of_tip
     for _ in range(200):
@@ -159,8 +161,8 @@ def slope_of_flat_tip(K, F, radius_of_tip):
 
 
 def check_surfaces(folder, faults):
-    """Checks the limit of a flat tip, whose contact stiffness is smaller than K, and of a drag, whose loop contains the
-    damping of the hand along the normal."""
+    """Checks two kinds of limits. The first is for a flat tip, whose contact stiffness is smaller than K. The second is
+    for a hand of type drag, whose damping along the normal is in the loop."""
     for F in (0.5, 0.8):
         scene = pressed("impedance", {"type": "force", "z_N": -F}, "flat", 0.004)
         scene["device"] = {

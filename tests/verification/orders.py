@@ -162,9 +162,9 @@ GAP, BOUNCES = 4e-4, 32  # initial distance from the spring [m], number of start
 
 
 def stiffness_of_bounce(phase):
-    """Returns the stiffness [N/m] of the spring for one start. It differs between the starts, so that the bounces end
-    at different fractions of a step. `phase`: fraction of a step by which the bounce begins later.
-    """
+    """Returns the stiffness [N/m] of the spring for one starting time of the bounce. The stiffness differs between the
+    starting times, so that the bounces end at different fractions of a step. `phase`: fraction of a step by which the
+    bounce begins later."""
     return K * (1.0 + 0.4 * (phase * 0.6180339887 * BOUNCES % 1.0))
 
 
@@ -216,7 +216,7 @@ def cases(laws):
         if name != "impedance":  # the device pulls the handle, which lags behind the virtual tool
             yield Case(
                 "device",
-                f"admittance; {name}",
+                f"device admittance; hand {name}",
                 1,
                 scene(
                     "leapfrog",
@@ -231,7 +231,7 @@ def cases(laws):
         device = {"type": "impedance", "handle_mass_kg": M, "viscous_N_s_per_m": 6.0}
         yield Case(
             "device",
-            f"impedance; {name}",
+            f"device impedance; hand {name}",
             1,
             scene(B=0.0, hand=hand, device=device),
             driven(K, 6.0, **force),
@@ -239,7 +239,7 @@ def cases(laws):
         )
         yield Case(
             "device",
-            f"impedance, elastic transmission; {name}",
+            f"device impedance, elastic transmission; hand {name}",
             1,
             scene(B=0.0, hand=hand, device=device | {"transmission": MOTORS}),
             geared(K, 6.0, **force),
@@ -250,7 +250,7 @@ def cases(laws):
         device = {"type": "impedance", "handle_mass_kg": M, "viscous_N_s_per_m": 40.0}
         yield Case(
             "delay",
-            f"{1e3 * tau:g} ms, {samples:g} samples of 1 ms",
+            f"{1e3 * tau:g} ms, {samples:g} sample{'' if samples == 1.0 else 's'} of 1 ms",
             1,
             scene(device=device),
             delayed_spring(K, 40.0, tau),
@@ -371,7 +371,7 @@ def main():
     text = PAGE.read_text(encoding="utf-8")
     if write:
         lines = [
-            "| part | case | formal | observed | error at 1 ms | at 1/32 ms | |",
+            "| part | case | formal | observed | error at 1 ms | at 1/32 ms | result |",
             "|---|---|---|---|---|---|---|",
         ]
         lines += table_of(rows)

@@ -39,7 +39,7 @@ SHARE = 0.06
 # depends on the derivative about linearly. Newton's method finds an equilibrium to 1e-10 m, which changes the slope of
 # a round tip by up to 1e-10 / 1e-5.
 AGREE = 3e-5
-# An eigenvalue within this distance of 1 belongs to a mode that moves freely. Rounding changes an eigenvalue of
+# An eigenvalue within this distance of 1 belongs to a mode without restoring force. Rounding changes an eigenvalue of
 # multiplicity two by the square root of the machine precision.
 FREE = 1e-6
 # DURATION_S: duration of a run [s]. CUTOFF_HZ: cutoff of the filter for vibration. MAX_M_PER_S: largest velocity of
@@ -65,8 +65,8 @@ RULES_OF_LOW_VIBRATION = {"buzz", "pop", "shake", "bounces", "chatter", "energy"
 
 
 class Contact:
-    """Points of a plane under a tip that is pressed in by z [m]: depths, rendered force, and the derivative of the
-    force."""
+    """Contact between the points of a plane and a tip that is pressed into the plane by z [m]. Computes the depths, the
+    rendered force, and the derivative of the force."""
 
     def __init__(self, scene):
         tool, plane = scene["tool"], scene["environment"]
@@ -306,8 +306,8 @@ class Motion:
         return signal.sosfilt(high, v - v[0], axis=0)
 
     def vibration(self):
-        """Returns the rms of the handle's velocity above 30 Hz [m/s]. The first quarter of the time after the first
-        touch is excluded."""
+        """Returns the rms of the handle's velocity above 30 Hz [m/s], computed from the handle's positions. The first
+        quarter of the time after the first touch is excluded."""
         begins = int(np.argmax(self.touches))
         moved = self.fast_part(self.handle)
         judged = moved[begins + (len(moved) - begins) // 4 :]
@@ -321,7 +321,8 @@ class Motion:
         return amplitude[3] > MAX_M_PER_S and bool(np.all(np.diff(amplitude) > 0))
 
     def is_stable(self):
-        """Returns True or False by the rule of stability; None if the motion is near a threshold of the rule."""
+        """Returns True or False by the rule with which `limit` judges stability. Returns None if the motion is near a
+        threshold of the rule."""
         if not self.completes or not self.touches.any():
             return False
         if self.is_scripted:
@@ -506,8 +507,8 @@ def hand_in(text):
 
 
 def check_binding(scene, bench, law, zeta):
-    """Checks the constraint by which `tune` explains its recommendation, with a run or with the loop. Returns a fault
-    or None. `law`: answer of `tune` for the law. `zeta`: damping ratio."""
+    """Checks, by a run or by eigenvalues of the loop, the constraint with which `tune` explains its recommendation.
+    Returns a fault or None. `law`: answer of `tune` for the law. `zeta`: damping ratio."""
     why, binding = law["why"], law["binding"]
     with (bench.folder / "tune" / "tune_trials.csv").open(encoding="utf-8") as file:
         trials = [

@@ -49,12 +49,12 @@ class ContactArray {
 /// Precondition: the interpreter lock is held.
 void stop_work_by(const pybind11::error_already_set& error);
 
-/// Returns true from a Python error until the last call that it stopped has returned. Precondition: the
-/// interpreter lock is held.
+/// Returns true if a Python error has stopped all calls and at least one of these calls has not yet returned.
+/// Precondition: the interpreter lock is held.
 bool is_work_stopped();
 
-/// Runs `call` while holding the interpreter lock, unless work is stopped. An exception becomes a Python error
-/// and stops all work. Returns true if `call` was run and returned without an exception.
+/// Runs `call` while holding the interpreter lock. If is_work_stopped(), returns false and does not run `call`. An
+/// exception of `call` becomes a Python error and stops all work. Returns true if `call` returned without an exception.
 template <class Call>
 bool runs_in_python(const Call& call) noexcept {
   const pybind11::gil_scoped_acquire held;

@@ -49,8 +49,8 @@ constexpr auto kPollInterval = 50ms;
 /// forever.
 constexpr auto kPatience = 2s;
 
-/// Number of calls that are computing, and the Python error that ends them; null if there is none. Both are
-/// guarded by the interpreter lock. The error is a bare pointer because no interpreter exists any more when the
+/// Number of calls that are computing, and the Python error that ends these calls, or null if there is no error. Both
+/// are guarded by the interpreter lock. The error is a bare pointer because no interpreter exists any more when the
 /// process destroys static objects.
 int active_calls = 0;
 PyObject* python_error = nullptr;
@@ -58,9 +58,9 @@ PyObject* python_error = nullptr;
 /// Label, completed work and total work of a progress report; the total is 0 before the first report.
 using ProgressState = std::tuple<std::string, std::uint64_t, std::uint64_t>;
 
-/// Counts a call that computes, for its lifetime. A Python error in one call stops all calls. When the last
-/// call ends, the error is cleared and work may start again. Precondition of constructor and destructor: the
-/// interpreter lock is held.
+/// A call from Python that computes. `active_calls` counts the existing objects of this class. A Python error in one
+/// call stops all calls. When the last call ends, the error is cleared and work may start again. Precondition of
+/// constructor and destructor: the interpreter lock is held.
 class ActiveCall {
  public:
   ActiveCall() { ++active_calls; }
@@ -81,8 +81,8 @@ void raise_python_error() {
   throw py::error_already_set();
 }
 
-/// Calls `work` on a thread of its own and waits for it with the interpreter lock released. Several Python
-/// threads may call this at once. While it waits, it handles signals and reports progress 20 times a second.
+/// Runs `work` on a new thread and waits for its end with the interpreter lock released. While supervise() waits, it
+/// handles signals and reports progress 20 times a second. Several Python threads may call supervise() at once.
 /// `progress` is None for progress bars on a terminal, False for no progress, or a function of (label, done,
 /// total). Throws the exception of `work`. An error of a Python law, of the progress function or of a signal
 /// handler (such as KeyboardInterrupt) stops the work of all threads and is raised. Precondition: the
@@ -91,7 +91,8 @@ void supervise(const py::object& progress, const std::function<void(const Progre
   const ActiveCall counted;
   const bool has_function = PyCallable_Check(progress.ptr()) != 0;
   std::mutex mutex;
-  ProgressState reported, delivered;  // last report of the work, under the mutex; last report to Python
+  // `reported`: last report of `work`, guarded by `mutex`. `delivered`: last report that was passed to Python.
+  ProgressState reported, delivered;
   const auto last_report = [&] {
     const std::lock_guard lock(mutex);
     return reported;
@@ -205,7 +206,7 @@ py::dict run(const std::string& scenario, const std::vector<std::string>& overri
   return result;
 }
 
-/// The file that commands name as the program: the file that the Python package sets, by default the
+/// Executable file for ProgramContext::program. The Python package sets it; until then, it is the file of the Python
 /// interpreter.
 std::filesystem::path& program_file() {
   static std::filesystem::path file = file_of_this_process();
@@ -234,7 +235,7 @@ int run_main(const std::vector<std::string>& words) {
   return status;
 }
 
-/// Observer that keeps the last step with its contacts.
+/// Observer that keeps the latest step with its contacts.
 class LastRow final : public Observer {
  public:
   explicit LastRow(std::size_t capacity) : contacts(capacity) {}

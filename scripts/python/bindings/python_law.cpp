@@ -163,7 +163,7 @@ class PythonLaw {
   py::object callable_;
   /// An argument of the law: an array of the contacts or a number.
   struct Argument {
-    std::size_t shown = 0;
+    std::size_t shown = 0;  ///< index in kShown; the size of kShown if the argument is a number
     std::optional<ContactArray> array = {};
     py::object number = {};
   };

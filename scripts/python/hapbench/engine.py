@@ -20,8 +20,8 @@ try:
     from . import _hapbench
 except ImportError as error:
     raise ImportError(
-        "hapbench computes with its compiled module, which is not beside this package; "
-        "hapbench.load works without it. To compile it, in the source tree: "
+        "the compiled module of hapbench, which computes, is not in the folder of this package; "
+        "hapbench.load works without the module. To compile the module, in the source tree: "
         "pip install ./scripts/python, or scripts/build --python && "
         "export PYTHONPATH=$PWD/build/release/lib/python3/dist-packages"
     ) from error
@@ -167,8 +167,9 @@ def limit(
     out: OutputFolder = None,
     progress: Progress = None,
 ) -> "Report":
-    """Search the stability limit of a field, as `hapbench limit` does, for each value of other fields (`over`, in the
-    syntax of --over). Returns a Report with the tables `limit` and `limit_runs`."""
+    """Search the stability limit of a field, as `hapbench limit` does. `over`: other fields and their values, in the
+    syntax of --over; the limit is searched for each combination of these values. Returns a Report with the tables
+    `limit` and `limit_runs`."""
     words = [
         "limit",
         *(word for path, values in (over or {}).items() for word in ("--over", f"{path}={values}")),
@@ -234,8 +235,9 @@ def algorithms() -> list[str]:
 def load_plugin(file: str | os.PathLike[str]) -> None:
     """Load a module with hapbench's C interface, as the option --module does.
 
-    A force law joins the other laws. A source of contacts may then be used by scenarios that name its file. Raises
-    ScenarioError if the file is not a module, and while another thread computes."""
+    If the module is a force law, all commands then know the law. If the module is a source of contacts, scenarios that
+    name its file may then use it. Raises ScenarioError if the file is not a module, or if another thread computes.
+    """
     command("--module", os.fspath(file), "describe", "--quiet")
 
 
@@ -295,15 +297,16 @@ class Simulation(_hapbench.Simulation):
 
 
 class Renderer(_hapbench.Renderer):
-    """The force of a scenario in a haptic loop of your own: Python interface of hapbench_renderer.h, which documents
-    it.
+    """The force of a scenario in a haptic loop of your own. This class is the Python interface of hapbench_renderer.h;
+    the comments in that header are the full documentation.
 
       renderer = hapbench.Renderer("drag_molar", {"time.step_s": 0.001}, max_force_N=3)
       out = renderer.step(time.monotonic_ns(), position, velocity_m_per_s=velocity)
       out["force_N"], out["status"]
 
     `mode`: "impedance" or "admittance". `world_from_device`, `handle_from_tip`: (position [m], quaternion w, x, y, z).
-    `torque` computes out["torque_N_m"]. `allow_modules` allows libraries that the scenario names. Raises ScenarioError.
+    `torque`: True to compute out["torque_N_m"]. `allow_modules`: True to load libraries that the scenario names. Raises
+    ScenarioError.
 
     `step` returns a dict: force_N, torque_N_m, set_position_m, set_velocity_m_per_s, gain, dt_s, call, status
     ("WAITING", "RAMPING", "ON", "CLAMPED", "STALE", "FAULT"), contacts, limited. `period_s` is the time between two

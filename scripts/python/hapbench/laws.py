@@ -45,8 +45,8 @@ def force_law(
     The function returns the weights c_i of the springs, either one for each contact or one for all contacts. The force
     is f = -K Σ c_i d_i u_i, with the depths d_i and the gradients u_i, and the stiffness tensor is S = Σ c_i u_i u_iᵀ.
     Alternatively, the function returns a tuple of the force [N] and the symmetric 3 × 3 tensor S in units of K.
-    Damping and friction are computed with S. The energy and the moment of such a force are computed as if one spring
-    of stiffness K in the middle of the contacts rendered it.
+    Damping and friction are computed with S. If the function returns a tuple, the energy and the moment of the force
+    are computed as if one spring of stiffness K in the middle of the contacts rendered this force.
 
     A class can replace the function. Each run then creates an object of the class and calls it, so that a law can have
     a state.
@@ -98,7 +98,7 @@ def _arguments(name, law, specified):
     for parameter in given:
         if parameter.kind not in (parameter.POSITIONAL_ONLY, parameter.POSITIONAL_OR_KEYWORD):
             raise TypeError(
-                f"force law {name!r}: argument {parameter.name!r} must be one that is given by its place"
+                f"force law {name!r}: argument {parameter.name!r} must be a positional argument"
             )
         if parameter.name not in (*_ARGUMENTS, *specified):
             raise TypeError(
@@ -107,7 +107,9 @@ def _arguments(name, law, specified):
             )
     unused = set(specified) - {parameter.name for parameter in given}
     if unused:
-        raise TypeError(f"force law {name!r}: parameter {min(unused)!r} is none of its arguments")
+        raise TypeError(
+            f"force law {name!r}: parameter {min(unused)!r} is not an argument of the law"
+        )
     return [parameter.name for parameter in given]
 
 

@@ -1,5 +1,5 @@
-"""Classes for results: a run, a folder of runs, and single files in a folder. This module does not need the compiled
-module."""
+"""Classes that read results of the program: Run (one run), Folder (a folder of results) and Files (single files below a
+folder). Importing them does not need the compiled module hapbench._hapbench."""
 import html
 import json
 import math
@@ -132,11 +132,14 @@ class Run(_WithTables):
     """Results of one run.
 
     `summary`, `scenario` (with every default filled in) and `timing` are dicts: the contents of summary.json,
-    scenario.effective.json and timing.json. The recorded tables are attributes: `trajectory`, and if the scenario
-    requests them `contacts`, `stiffness_tensor`, `ratios`, `energy`, `ideal_trajectory`, `force_reference`, `six_dof`,
-    `targets`. The mapping `tables` also contains them, by name. If a scenario has several trials, each element of
-    `trials` holds the tables of one trial. `folder` is None for a run in memory. `unmet` lists the expectations of the
-    scenario that a run in memory did not meet.
+    scenario.effective.json and timing.json. The recorded tables are attributes. The table `trajectory` is always
+    recorded; the tables `contacts`, `stiffness_tensor`, `ratios`, `energy`, `ideal_trajectory`, `force_reference`,
+    `six_dof` and `targets` are recorded if the scenario requests them. The mapping `tables` has the same tables by
+    name. If a scenario has several trials, each element of `trials` holds the tables of one trial.
+
+    `folder` is the folder from which the run was read, or None if hapbench.run() has computed the run in memory.
+    `unmet` lists the expectations of the scenario that a run in memory did not meet; it is None for a run from a
+    folder.
     """
 
     def __init__(
@@ -182,7 +185,7 @@ class Run(_WithTables):
 
     @property
     def state_hash(self) -> str | None:
-        """Hash of the bit patterns of position, velocity and force in every row. Identical runs have equal hashes."""
+        """Hash of the bit patterns of position, velocity and force in every step. Identical runs have equal hashes."""
         return self.summary.get("state_hash")
 
     def plot(
@@ -231,10 +234,11 @@ class Run(_WithTables):
 class Folder(_WithTables):
     """Results in a folder that a command such as sweep, compare or limit wrote.
 
-    `tables` contains the CSV files below the folder by path, except the files of single runs. `runs` contains the runs
-    below the folder by path. `json` contains the JSON files in the folder by name. `folder.sweep` is the table of
-    sweep.csv. A comparison of several scenarios has one table for each scenario; `folder.comparison` joins these tables
-    and adds a column with the name of the scenario.
+    `tables` maps relative paths (without .csv) to the tables of the CSV files below the folder, except the files of
+    single runs. `runs` maps relative paths to the runs below the folder. `json` maps names (without .json) to the
+    contents of the JSON files in the folder. `folder.sweep` is the table of sweep.csv. A comparison of several
+    scenarios has one table for each scenario; `folder.comparison` concatenates these tables and adds a column with the
+    scenario.
     """
 
     def __init__(self, folder: str | os.PathLike[str]) -> None:
@@ -260,7 +264,8 @@ class Folder(_WithTables):
             file.parent.relative_to(self.folder).as_posix(): load_run(file.parent) for file in files
         }
         for run in found.values():
-            # The run keeps this Folder alive, because the files may be deleted together with the Folder.
+            # The files of the run may be in a temporary folder that is deleted together with this Folder object. The
+            # run therefore keeps a reference to this object.
             run.part_of = self
         return found
 
@@ -304,7 +309,7 @@ def load(folder: str | os.PathLike[str]) -> "Run | Folder":
     folder = Path(folder)
     if not folder.is_dir():
         raise ResultError(
-            f"{folder}: is not a folder; allowed: one that run, compare, sweep, limit … wrote"
+            f"{folder}: is not a folder; allowed: a folder that run, compare, sweep, limit … wrote"
         )
     if (folder / SUMMARY).is_file():
         return load_run(folder)
@@ -353,8 +358,8 @@ def _tables_of(folder, described=None):
 
 
 def _columns_of(file):
-    """Returns the descriptions of columns that `hapbench describe` prints for a file of this name. Returns an empty
-    list without the compiled module."""
+    """Returns the descriptions that `hapbench describe` prints of the columns of `file`; they depend only on the file's
+    name. Returns an empty list if the compiled module cannot be imported."""
     try:
         from .engine import columns_of
     except ImportError:
@@ -414,8 +419,8 @@ class Files:
         return self._read(path, _columns)
 
     def records(self, path):
-        """Returns the rows of a table as dictionaries of texts, also if fields are no numbers or are empty. Raises
-        ResultError if there are no rows."""
+        """Returns each row of a table as a dict from column name to text. A text may be empty and need not be a number.
+        Raises ResultError if there are no rows."""
         rows = self._read(path, read_records)
         if not rows:
             raise ResultError(f"{self.directory / path}: no rows")

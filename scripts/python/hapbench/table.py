@@ -1,4 +1,4 @@
-"""A table of results. The unit of a column follows from the name of the column."""
+"""A table of results. If the unit of a column is not given, it follows from the name of the column."""
 import html
 import textwrap
 from collections.abc import ItemsView, Iterable, Iterator, KeysView, Mapping, ValuesView
@@ -50,12 +50,12 @@ def unit_of(name: str) -> str:
 
 
 class Table(Mapping[str, Column]):
-    """Columns by name: numpy arrays of float64, in which an empty field is NaN. Some tables of sweeps have columns of
-    texts.
+    """A mapping from names to columns. A column is a numpy array of float64, in which NaN stands for an empty field.
+    Tables of sweeps may also have columns that are arrays of texts.
 
-    `units` and `meanings` have an entry for each column whose unit or meaning is known. `table["time_s"]` and
-    `table.time_s` are the same column. `len(table)` is the number of rows, `to_pandas()` returns a DataFrame. A
-    notebook shows the first rows with units.
+    `units` has an entry for each column; the unit is "" if it is unknown. `meanings` has an entry for each column whose
+    meaning is known. `table["time_s"]` and `table.time_s` are the same column. `len(table)` is the number of rows.
+    `to_pandas()` returns a DataFrame. A notebook shows the first rows with units.
     """
 
     def __init__(
@@ -177,8 +177,9 @@ class Table(Mapping[str, Column]):
 
 
 def joined(tables: Mapping[str, Table], column: str, name: str) -> Table:
-    """Concatenates the rows of several tables. The first column of the result, named `column`, holds the key of each
-    row's table. If a table lacks a column, its rows have NaN in this column."""
+    """Concatenates the rows of several tables to a table with the name `name`. The result has an additional first
+    column `column`: for each row, the key in `tables` of the table from which the row comes. If a table lacks a column
+    of another table, its rows have NaN in this column."""
     names = list(dict.fromkeys(column_name for table in tables.values() for column_name in table))
     keys = [key for key, table in tables.items() for _ in range(len(table))]
     columns: dict[str, Column] = {column: np.array(keys, dtype=object)}

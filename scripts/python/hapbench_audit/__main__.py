@@ -24,24 +24,25 @@ NOTES = [
     'from a sensor). A log of one axis has one position and one force. Units in names, such as "x '
     '[mm]", are applied.',
     "Fields of --set: force_by_tool=true (the log has the force of the tool on the object; audit "
-    "reverses its sign), touch_N (force from which a row is in contact; default: any force), "
+    "reverses its sign), touch_N (a row with a larger force is in contact; default: any force), "
     'sample_rate_Hz (for a log without times), and those of "hapbench import stroke --help".',
     "Energy: the sum of f . dp, with the force of a row held until the next row. Positive work is "
     "energy that the engine gives to the hand; the largest sum from the start to any row is the "
     "net created energy (energy_mJ). If the log begins in contact, the energy stored there is "
-    'subtracted, which needs a stiffness. "Without holding": the same if the force changes '
+    'subtracted, which needs a stiffness. "Without holding" is the same sum for a force that changes '
     "linearly between rows.",
     "Motion: record several taps, presses to several depths at several speeds, and releases. A constant press shows no "
     "stiffness.",
-    "Contacts: from touch to release. The first 0.05 s are a landing, the rest is settled contact, as in `run`.",
-    "Stiffness: regression of the force on position and velocity, along the normal of the "
-    "surface, over delays of whole rows; the weighted median of the contacts. A number that the "
-    "log does not determine is left out, and the text below the table names what the log lacks.",
+    "Contacts: each contact lasts from touch to release. Its first 0.05 s are a landing, the rest is settled contact, "
+    "as in `run`.",
+    "Stiffness: a regression of the force on position and velocity along the normal of the surface, for delays of "
+    "whole rows. The result is the weighted median of the contacts. If the log does not determine a number, audit "
+    "omits the number, and the text below the table names what the log lacks.",
     "Expectations: bounds on numbers of the audit, such as energy_mJ=1, "
     "force_rms_above_30Hz_N=0.1 or stiffness_N_per_m=900:1100. A number that the log does not "
     "determine does not meet its expectation.",
-    "Files: audit.json, audit.svg and audit.html in results/out/audit_LOG. They replace earlier ones.",
-    "Exit status: 0 also with a diagnosis; 2 bad input; 3 an expectation is not met.",
+    "Files: audit.json, audit.svg and audit.html in results/out/audit_LOG. They replace earlier files.",
+    "Exit status: 0 success, also if audit finds problems; 2 bad input; 3 an expectation is not met.",
 ]
 EXAMPLES = [
     "hapbench audit log.csv",
@@ -96,13 +97,11 @@ def command_line():
         action="append",
         default=[],
     )
-    line.flag(
-        "--skip-bad-rows", "leave out invalid rows and list them, instead of refusing the log"
-    )
+    line.flag("--skip-bad-rows", "skip invalid rows and list them, instead of rejecting the log")
     line.texts(
         "--expect",
         "<metric=max,...>",
-        "exit status 3 unless each number is known and at most MAX, or within MIN:MAX",
+        "end with exit status 3 if a number is unknown, above MAX or outside MIN:MAX",
     )
     line.text("--out", "<dir>", "folder of the results (default: results/out/audit_LOG)", type=Path)
     line.add_output_options()

@@ -50,8 +50,8 @@ def loop_interval(log):
 
 
 def energy_by_contact(log, every):
-    """Returns the created energy per contact [J] and per second in contact [W], and the contact that created the most
-    energy. Contacts with unknown created energy are left out."""
+    """Returns the created energy (see created()) per contact [J] and per second in contact [W], and the contact with
+    the largest created energy, for the JSON. Contacts with unknown created energy are left out."""
     known = [one for one in every if one["created_J"] is not None]
     seconds = sum(one["rows"] for one in known) * log.interval
     created = sum(one["created_J"] for one in known)
@@ -85,8 +85,8 @@ def each_contact(log, contacts):
 
 def with_springs(log, contacts, every):
     """Sets `spring` of each contact in `every`. Returns the spring of the whole log for the JSON, or None if the log
-    does not determine a stiffness. If no contact determines a stiffness and no contact contradicts a spring, the spring
-    is fitted to all contact rows of the longest sequence of contacts (Contacts.stretches)."""
+    does not determine a stiffness. If no contact determines a stiffness and contradicting() is 0, the spring of the log
+    is fitted to all rows in contact of the longest sequence of contacts (Contacts.stretches)."""
     evidences = [
         evidence_of_run(log, contacts, np.arange(first, after)) if after - first >= FEWEST else None
         for first, after in contacts.runs.tolist()
@@ -168,9 +168,9 @@ def doubts(log, audit):
 
 
 def disagreement(springs):
-    """Returns a list with a warning if no stiffness lies in the stiffness intervals of more than three quarters of the
-    contacts. Otherwise returns an empty list. `springs`: springs of the contacts that determine a stiffness.
-    """
+    """Returns a list with a warning if the contacts have different stiffnesses: no stiffness is within the intervals of
+    more than three quarters of the contacts. Otherwise returns an empty list. `springs`: springs of the contacts that
+    determine a stiffness."""
     if len(springs) < 2:
         return []
     ends = np.array([one["stiffness_interval"] for one in springs])
@@ -211,7 +211,7 @@ def missing(log, audit, device):
         turned = float((log.turn[0].inv() * log.turn).magnitude().max())
         if turned > 0.01:
             found.append(
-                f"energy of rotation: the tool turns by up to {turned:.3g} rad, and the log has no torque"
+                f"energy of rotation: the tool rotates by up to {turned:.3g} rad, and the log has no torque"
             )
     if audit["metrics"]["force_mean_in_contact_N"] is None and audit["contacts"]:
         found.append("vibration: there is less than 1/30 s of contact after the landings")
@@ -226,8 +226,9 @@ def missing(log, audit, device):
 
 
 def missing_of_spring(audit):
-    """Returns a text for the first of stiffness, damping and delay that the log does not determine. The text names the
-    test that would determine the quantity."""
+    """Returns a list with one text about the first of stiffness, damping and delay that the log does not determine. The
+    text names the test that would determine the quantity. The list is empty if the log determines all three.
+    """
     if audit["stiffness"] is None and audit["contacts"]:
         # Reports the reason of the contact with the longest travel, because this contact is the closest to determining
         # a stiffness.

@@ -7,7 +7,7 @@ import numpy as np
 from .log import LONG_INTERVALS
 
 SETTLING = 0.05  # duration of a landing [s]; equals the default of metrics.settling_s of a scenario
-# If at least this fraction of the rows has zero force, every row with a force counts as contact.
+# If at least this fraction of the rows has zero force, every row with a non-zero force counts as contact.
 SOME_ZEROS = 0.01
 # The release threshold is at least FAR times the rms noise. The touch threshold is higher than the release threshold by
 # 2 FAR times the rms noise of one force component.

@@ -1,4 +1,5 @@
-"""Compares the rendered stiffness with the linear limit of a device, which the program computes."""
+"""Compares the stiffness that a log shows with the linear limit of a device: the largest stable stiffness by linear
+analysis. The program computes this limit."""
 import json
 
 import numpy as np
@@ -8,9 +9,9 @@ MAX_DELAYS = 5  # largest number of delays for which the limit is computed
 
 
 def device_limit(device, interval, contact):
-    """Returns the comparison of a contact's stiffness with the linear limit of a device, for the JSON. The control loop
-    has the period `interval` [s] and the damping and delay of the contact. Returns None if the contact has no
-    stiffness.
+    """Returns the comparison of the stiffness of the spring `contact` with the linear limit of a device, for the JSON.
+    The analysed control loop has the period `interval` [s], and the damping and the delay of this spring. Returns None
+    if `contact` is None, which means that the log determines no stiffness.
 
     If the log does not determine damping or delay, `linear_limit_N_per_m` is None. `linear_limit_interval` is the range
     of the limit over the dampings and delays that the log allows, computed for at most MAX_DELAYS of these delays.

@@ -12,8 +12,10 @@ from .force import CUTOFF, reversals
 from .normal import main_direction
 from .text import HAMMERS, expected_text
 
-AT_LIMIT = 0.999  # fraction of the log's largest force from which a force may be saturated
-CONSTANT = 0.9  # fraction of saturated rows from which the force counts as constant instead
+# Smallest force that can be saturated, as a fraction of the largest force of the log.
+AT_LIMIT = 0.999
+# If at least this fraction of the rows in contact is saturated, the force counts as constant and not as limited.
+CONSTANT = 0.9
 FLAT = 20  # smallest number of saturated rows for which the largest force counts as a limit
 # If the rms vibration exceeds this fraction of the mean force, the force counts as vibrating. Equals kMaxBuzz of the
 # program.
@@ -137,17 +139,17 @@ def against_buzz(audit, ratio):
     half_rate = 0.5 * audit["clock"]["rate_Hz"]
     if buzz and buzz[0]["frequency_Hz"] > 0.9 * half_rate:
         return (
-            "a shorter time step, or an implicit contact: the force alternates from row to row, as that of an "
-            "integrator at its stability limit does"
+            "a shorter time step, or an implicit contact: the force alternates from row to row, as under an "
+            "integrator at its stability limit"
         )
     if ratio is not None and ratio > rules()["edge"]["threshold"]:
-        return 'what the rule "edge" says'
+        return 'the advice of the rule "edge"'
     if stiffness and stiffness["delay_interval_s"][0] > 0.0:
         lost = stiffness["stiffness_N_per_m"] * stiffness["delay_interval_s"][0]
         return f"a shorter delay: {lag_text(stiffness)}, which acts like a damping of {-lost:.3g} N s/m"
     encoder = encoder_share(audit, audit["metrics"]["force_mean_in_contact_N"])
     if (encoder or 0.0) > rules()["encoder"]["threshold"]:
-        return 'what the rule "encoder" says'
+        return 'the advice of the rule "encoder"'
     lost = audit["metrics"]["contacts_lost_per_s"] or 0.0
     if lost > HAMMERS:
         text = (
@@ -174,7 +176,7 @@ def against_pop(log, contacts, audit):
     if caused is not None and caused > 0.5 * (force["settled_force_step_max_N"] or math.inf):
         return (
             f"a higher rate, slower motion or a smaller stiffness: the tool moves by {1e3 * moved:.3g} mm in one row, "
-            f"of which the stiffness makes {caused:.3g} N"
+            f"which changes the force by {caused:.3g} N through the stiffness"
         )
     if k > 0 and contacts.in_contact[k] and not contacts.in_contact[k - 1]:
         return (
@@ -197,7 +199,7 @@ def against_pop(log, contacts, audit):
             return sentence + (
                 ": forces that fade in and out with depth, or contacts that are kept from step to step"
                 if part > 0.5
-                else f": look at normals and depths of the contacts there (the tool moves by {1e3 * moved:.3g} mm "
+                else f": check the normals and depths of the contacts there (the tool moves by {1e3 * moved:.3g} mm "
                 "in the row of the largest step)"
             )
     if (force["contacts_lost_per_s"] or 0.0) > HAMMERS:
@@ -206,8 +208,8 @@ def against_pop(log, contacts, audit):
             "restitution or more damping, and a force that starts at zero at touch"
         )
     return (
-        f"look at the contacts at that time, where the tool moves by {1e3 * moved:.3g} mm in a row; a log with a "
-        "column of their number shows whether they change there"
+        f"check the contacts at that time, when the tool moves by {1e3 * moved:.3g} mm in one row; a log with the "
+        "number of contacts shows whether the contacts change at that time"
     )
 
 
@@ -229,10 +231,10 @@ def share_of_largest(log, row):
 
 
 def motion_at(log, stiffness, row):
-    """Returns the motion that can cause the force step at `row`: (largest displacement from one row to the next [m],
-    largest force change that the stiffness causes by such a displacement [N]). Considers `row` and the rows before it,
-    as many as the longest delay that the log allows and one held position last. The force change is None if
-    `stiffness` is None."""
+    """Returns the motion that can cause the force step at `row`: (largest displacement between successive rows [m],
+    largest change of the spring force by a displacement between successive rows [N]). The rows end at `row` and cover
+    the longest delay that the log allows, plus the duration of one held position. The change of the spring force is
+    None if `stiffness` is None."""
     delay = 0 if not stiffness else round(stiffness["delay_interval_s"][1] / log.interval)
     held = 1 if log.held is None else round(log.held.rows)
     steps = np.diff(log.position[max(row - delay - held, 0) : row + 1], axis=0)
@@ -263,7 +265,8 @@ def reversals_per_s(log, contacts, audit):
 
 def encoder_share(audit, mean):
     """Returns the force that one resolution step of the position causes through the damping, divided by the mean force.
-    Returns None if the damping is not known and positive, or if the position has full precision."""
+    Returns None if the damping is unknown or not positive, or if the position has no resolution step (full
+    precision)."""
     stiffness, step = audit["stiffness"], audit["clock"]["position_resolution_m"]
     damping = stiffness and stiffness.get("damping_N_s_per_m")
     if not damping or damping <= 0.0 or not step:
@@ -307,7 +310,7 @@ def saturated_share(log, contacts, stiffness):
 
 def against_chatter(vibration):
     if (vibration or 0.0) > HAS_BUZZ:
-        return 'what the rule "buzz" says: the vibration is larger than the force'
+        return 'the advice of the rule "buzz": the vibration is larger than the force'
     return "friction without a jump at zero speed, and contact normals that do not flip"
 
 
@@ -330,7 +333,10 @@ def against_energy(audit):
         enough = stiffness["stiffness_N_per_m"] * (
             stiffness["delay_interval_s"][1] + 0.5 * interval
         )
-        return f"a shorter delay: {lag_text(stiffness)}; damping of more than {enough:.3g} N s/m would pay for it"
+        return (
+            f"a shorter delay: {lag_text(stiffness)}; damping of more than {enough:.3g} N s/m would "
+            "compensate for it"
+        )
     is_of_hold = energy["net_created_path_J"] < 0.1 * energy["net_created_J"]
     if is_of_hold:
         return (
@@ -343,7 +349,7 @@ def against_energy(audit):
             + ": the contact is passive along the path, and holding each force until the next row creates the energy"
         )
     if stiffness and (stiffness.get("damping_N_s_per_m") or 0.0) < 0.0:
-        return "the contact has negative damping: look for a filter or a delay in its velocity"
+        return "the contact has negative damping: check its velocity for a filter or a delay"
     if stiffness and stiffness["delay_interval_s"][1] == 0.0:
         return (
             "a passivity controller, or contacts whose force follows from the position alone: the energy appears along "
@@ -356,5 +362,5 @@ def against_energy(audit):
     )
     return (
         f"the energy appears along the path too: a delay of the force{allowed} creates it, or contacts, weights or an "
-        "internal state that change the force while the tool moves; taps and quick presses show which"
+        "internal state that change the force while the tool moves; a log with taps and quick presses shows the cause"
     )

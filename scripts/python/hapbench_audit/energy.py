@@ -37,9 +37,10 @@ def work(force, displacement):
 
 
 def stored_at(log, contacts, row, spring):
-    """Returns the energy [J] in the contact's spring at a row. The energy is 0 if the log contains the touch. The log
-    does not contain the touch if a row in contact is the first row of the log or the first row after a gap of the
-    clock. Returns None if the log does not contain the touch and the stiffness is unknown."""
+    """Returns the energy [J] that is stored in the spring of a contact at `row`, which is the first row of the contact
+    or of the log. If `row` is not in contact, or if the log contains the touch, the energy is 0. The log does not
+    contain the touch if `row` is in contact and is the first row of the log or the first row after a gap of the clock.
+    Returns None if the log does not contain the touch and the stiffness is unknown."""
     if not contacts.in_contact[row] or (row > 0 and not contacts.gap[row - 1]):
         return 0.0
     stiffness = (spring or {}).get("stiffness_N_per_m", 0.0)
@@ -47,8 +48,9 @@ def stored_at(log, contacts, row, spring):
 
 
 def created(given, stored):
-    """Returns the created energy [J]: the maximum over time of the work given to the hand minus the stored energy at
-    the start, and at least 0. Returns None if the stored energy is unknown. `given`: accumulated work [J].
+    """Returns the created energy [J]: the largest value of `given` minus `stored`, but at least 0. Returns None if
+    `stored` is None. `given`: work on the hand, accumulated from the start up to each row [J]. `stored`: energy in the
+    spring at the start [J].
     """
     return None if stored is None else float(max(given.max() - stored, 0.0))
 

@@ -8,15 +8,18 @@ from scipy.signal import sosfilt
 from .contacts import SETTLING
 
 CUTOFF = 30.0  # cutoff of the high-pass filter [Hz]; equals kVibrationCutoff of the program
-MIN_SETTLED = 1.0 / CUTOFF  # shortest total time of settled contact with metrics [s]
+# Smallest total time of settled contact for which its metrics are computed [s].
+MIN_SETTLED = 1.0 / CUTOFF
 STEP_SHARE = 0.1  # force steps above this fraction of the mean force are counted
 MAX_PEAKS = 3  # largest number of spectral peaks that are reported
-# Smallest amplitude of a peak, as a fraction of the amplitude of the strongest peak.
+# Smallest amplitude of a reported peak, as a fraction of the amplitude of the strongest peak.
 SMALLEST_PEAK = 0.1
-LOWEST_PEAK = 10.0  # lowest frequency of a peak [Hz]; voluntary motion of a hand is slower
-# Relative tolerance of the frequencies that count as multiples of another frequency.
+LOWEST_PEAK = 10.0  # lowest frequency of a reported peak [Hz]; voluntary motion of a hand is slower
+# A frequency counts as a multiple of another frequency if its distance from the exact multiple is at most this fraction
+# of the frequency.
 HARMONIC = 0.02
-MIN_PEAK = 0.01  # smallest amplitude of the strongest peak, as a fraction of the mean force
+# If the amplitude of the strongest peak is below this fraction of the mean force, no peak is reported.
+MIN_PEAK = 0.01
 SHORTEST_SPECTRUM = 64  # smallest number of rows from which a spectrum is computed
 # Smallest number of periods of an oscillation in the rows of longest_stretch(). The middle third of these rows then
 # contains two periods.

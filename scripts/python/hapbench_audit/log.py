@@ -44,7 +44,7 @@ USUAL = {
 ALONE = {"position": "position pos x y z", "force": "force f", "velocity": "velocity vel v"}
 ALONE["measured"] = "measured measuredforce forcemeasured"
 TOUCH = "touch_N="  # prefix of the field touch_N in --set
-EXTRA = ("velocity", "measured", "contacts")  # quantities that the imports do not read
+EXTRA = ("velocity", "measured", "contacts")  # quantities that `hapbench import` does not read
 ALL = [name for name in QUANTITIES] + list(EXTRA)
 
 
@@ -59,10 +59,10 @@ class Log:
     measured: np.ndarray | None = None  # force of a sensor: x, y, z in each row [N]
     contacts: np.ndarray | None = None  # number of contacts in each row
     axes: int = 3  # 1 for a log of one axis
-    # Columns that were read, by quantity, in the format of `import stroke`.
+    # Columns that were read: a dict from quantity to columns, in the format of Columns.used() of hapbench_import.
     columns: dict = field(default_factory=dict)
     columns_not_read: list = field(default_factory=list)
-    scales: dict = field(default_factory=dict)  # factors to SI units by quantity
+    scales: dict = field(default_factory=dict)  # dict from quantity to its factor to SI units
     notes: list = field(default_factory=list)
     quantum_m: np.ndarray | None = (
         None  # resolution of each position component [m]; 0: full precision
@@ -110,8 +110,9 @@ def read_log(options):
 
 
 def layout_of(options):
-    """Returns (Options of `import stroke` that read the log; names of the columns that the user gave, by quantity of
-    EXTRA; force above which a row is in contact [N], or None)."""
+    """Returns (Options of `import stroke` that read the log; dict from the quantities of EXTRA that the user specified
+    to their columns; force above which a row is in contact [N], or None if the user did not specify this force).
+    """
     touches = [word for word in options.set if word.startswith(TOUCH)]
     extra = [word for word in options.columns if word.partition("=")[0] in EXTRA]
     requested = SimpleNamespace(
@@ -133,7 +134,7 @@ def layout_of(options):
 
 
 def touch_of(word):
-    """Returns the force [N] in a word such as "touch_N=0.1". Fails if it is no number >= 0."""
+    """Returns the force [N] in a word such as "touch_N=0.1". Fails if the force is not a number >= 0."""
     force = finite_number(word.removeprefix(TOUCH).encode("utf-8", "surrogateescape"))
     if not force >= 0.0:
         fail(f"--set: got {quoted(word)}; allowed: touch_N=FORCE, a number >= 0")
@@ -141,9 +142,10 @@ def touch_of(word):
 
 
 def log_of_table(table, columns, scale, force_by_tool, touch):
-    """Returns the Log of a mapping from column names to arrays, such as a Table or a pandas.DataFrame. `columns` and
-    `scale`: column and factor to SI units by quantity, like the options of the command line. `force_by_tool`: true if
-    the forces act on the object. `touch`: Log.touch [N]."""
+    """Returns the Log of a mapping from column names to arrays, such as a Table or a pandas.DataFrame. `columns`: dict
+    from quantity to column. `scale`: dict from quantity to its factor to SI units. Both dicts have the meaning of the
+    option of the same name. `force_by_tool`: true if the forces act on the object. `touch`: Log.touch [N].
+    """
     requested = SimpleNamespace(
         log=None,
         columns=[f"{quantity}={column}" for quantity, column in columns.items()],
@@ -182,8 +184,8 @@ def is_large(values):
 
 
 def log_of(recording, options, wanted):
-    """Returns the Log of a recording. `options`: Options of `import stroke`. `wanted`: names of the columns that the
-    user gave, by quantity of EXTRA."""
+    """Returns the Log of a recording. `options`: Options of `import stroke`. `wanted`: dict from the quantities of
+    EXTRA that the user specified to their columns."""
     recording, axes = with_usual_columns(recording, options)
     read = read_samples(recording, options)
     samples, kept = read.samples, read.kept
@@ -200,7 +202,7 @@ def log_of(recording, options, wanted):
         scale = 1.0 if quantity != "measured" else read.scales.get("force", 1.0)
         values = np.column_stack([scale * recording.column(column)[kept] for column in found])
         if not np.isfinite(values).all():
-            read.notes.append(f"{quantity}: not a number in some rows: left out")
+            read.notes.append(f"{quantity}: not a number in some rows: skipped")
             continue
         extra[quantity] = values
         used[quantity] = [
@@ -230,7 +232,7 @@ def log_of(recording, options, wanted):
     )
     if read.rows_left_out:
         log.notes.append(
-            f"{read.rows_left_out} bad rows were left out, the first: "
+            f"{read.rows_left_out} bad rows were skipped, the first: "
             f"{read.left_out[0][0]}: {read.left_out[0][1]}"
         )
     log.quantum_m, log.quantum_N = quanta(log.position), quanta(log.force)
@@ -391,8 +393,8 @@ def of_one_axis(usual):
 
 
 def alone_columns(names, options, parts):
-    """Returns, by quantity, the column of each quantity of `parts` that the options name. The value is None if the
-    quantity has three columns instead of one."""
+    """Returns a dict from each quantity of `parts` that the options name to its column. The value is None if the
+    quantity has three columns (x, y and z) and not a single column."""
     found = {
         quantity: names.find(
             "", options.columns[quantity], ("_x", ".x", "x", "[0]", "_0", ".0", "0")

@@ -1,6 +1,6 @@
-"""Models of a contact's force, and their least-squares fits. A model is a spring and a damper at the position and the
-velocity `delay` rows earlier. Models differ in the delay and in the method by which the engine may compute the
-velocity."""
+"""Models of the force in a contact, and their least-squares fits. By a model, the force in a row is the sum of a spring
+force and a damping force, which depend on the position and on the velocity `delay` rows earlier. Models differ in the
+delay, and in the assumed method by which the engine computes the velocity."""
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -20,7 +20,7 @@ LONGEST_MEMORY = 1000  # largest lag of the autocorrelation of residuals [rows]
 LOW_PASSES = (1, 2, 4, 8, 16)  # time constants of a filtered velocity [rows]
 LOW_PASS = "low-pass "  # prefix of the kinds of filtered velocities
 EVEN = "even "  # prefix of the kinds of velocities that assume a constant time step
-# Prefix of the kinds of velocities in a control loop that runs at a lower rate than the positions of the log.
+# Prefix of the kinds of velocities that a control loop computes at a lower rate than the rate of the logged positions.
 LOOP = "loop "
 # Number of rows before the fitted rows that a Motion contains: the longest delay, plus the rows over which the initial
 # state of a filter decays.
@@ -28,14 +28,14 @@ BEFORE = MAX_DELAY + 10 * max(LOW_PASSES)
 BLOCKS = 10  # number of blocks of the jackknife
 # Largest number of values of one array that are processed together, so that they fit in the processor's cache.
 AT_ONCE = 20_000
-# Smallest fraction of a column of a fit's matrix that is linearly independent of the other columns. If the fraction is
-# smaller, the columns count as collinear.
+# The columns of a fit's matrix count as collinear if the part of a column that is linearly independent of the other
+# columns is smaller than this fraction of the column.
 COLLINEAR = 1e-9
 
 
 @dataclass(frozen=True, order=True)
 class Model:
-    delay: int  # [rows]
+    delay: int  # delay of the force behind position and velocity [rows]
     kind: str  # how the velocity is computed; a key of speeds()
 
 
@@ -140,29 +140,30 @@ class Motion:
 
     def delays_of(self, kind):
         """Returns the delays [rows] of the models with the velocity `kind`. A forward difference represents an implicit
-        step and has the delay 0 only. With a delay of d rows, its velocity would equal the velocity of a backward
-        difference with a delay of d - 1 rows."""
+        step and has the delay 0 only. The velocity of a forward difference with a delay of d rows would equal the
+        velocity of a backward difference with a delay of d - 1 rows."""
         return np.arange(1 if kind.endswith("forward") else self.max_delay + 1)
 
     def models(self):
-        """Returns all models: each velocity with each of its delays."""
+        """Returns all models: one for each kind of velocity and each of the delays_of() this kind."""
         return [
             Model(delay, kind) for kind in self.speeds for delay in self.delays_of(kind).tolist()
         ]
 
     def usable(self):
-        """Returns True for rows whose delayed row exists for every delay. The first row is never a delayed row, because
-        its velocity would need an earlier row."""
+        """Returns for each fitted row True if the row d rows earlier exists for every delay d up to `max_delay`. Row 0
+        does not count as such a row, because its velocity would need an earlier row."""
         return self.rows > self.max_delay
 
     def known(self, delay):
-        """Returns True for usable rows whose delayed row is not affected by missing rows."""
+        """Returns for each fitted row True if it is usable() and the row `delay` rows earlier is not affected by
+        missing rows."""
         return self.usable() & ~self.unknown[np.maximum(self.rows - delay, 0)]
 
     def columns(self, model, with_sign=False):
-        """Returns (matrix, force) of the rows known(), each column minus its mean. The columns of the matrix are the
-        delayed position, the delayed velocity, and, if `with_sign` is true, the sign of the delayed velocity.
-        """
+        """Returns (matrix, force) of the least-squares fit of a model to the rows known(). The columns of the matrix
+        are the delayed position, the delayed velocity, and, if `with_sign` is true, the sign of the delayed velocity.
+        The mean of each column and of the force is subtracted."""
         keep = self.known(model.delay)
         before = self.rows[keep] - model.delay
         x, v, f = self.position[before], self.speeds[model.kind][before], self.force[keep]
@@ -174,7 +175,7 @@ class Motion:
 
 
 def without_clock(kind):
-    """Returns (prefix of the kind: EVEN, LOOP or an empty text; kind without the prefix)."""
+    """Splits the kind of a velocity into (prefix, rest). The prefix is EVEN, LOOP or an empty text."""
     clock = next((one for one in (EVEN, LOOP) if kind.startswith(one)), "")
     return clock, kind.removeprefix(clock)
 
@@ -238,17 +239,18 @@ def differences(rates, sample, clock):
 
 def five_point(rates):
     """Returns the derivative at each sample k by the difference formula of fourth order. With the sampling period T,
-    the formula is (8 (x_(k+1) - x_(k-1)) - (x_(k+2) - x_(k-2))) / (12 T). `rates`:
-    (x_(k+1) - x_k) / T."""
+    the formula is (8 (x_(k+1) - x_(k-1)) - (x_(k+2) - x_(k-2))) / (12 T). `rates`: (x_(k+1) - x_k) / T.
+    """
     padded = np.concatenate([rates[:1], rates[:1], rates, rates[-1:], rates[-1:]])
     return (7.0 * (padded[1:-2] + padded[2:-1]) - padded[:-3] - padded[3:]) / 12.0
 
 
 def neighbours_of(model, kinds):
-    """Returns the models with the same delay and a neighbouring approximation of the velocity. The neighbours of a
-    filtered velocity have the next smaller time constant (0 is the backward difference) and the next larger one. The
-    central and the five-point difference are neighbours of each other. The velocity of an engine may lie between two
-    neighbours."""
+    """Returns the models that have the same delay as `model` and a neighbouring kind of velocity. The velocity that the
+    engine computes may lie between the velocities of two neighbours. The neighbours of a filtered velocity are the
+    velocities with half and with twice its time constant; for the smallest time constant, the backward difference
+    replaces the velocity with half the time constant. The central and the five-point difference are neighbours of each
+    other. `kinds`: all kinds of velocities of the log."""
     clock, kind = without_clock(model.kind)
     constant = low_pass_of(kind)
     if constant:
@@ -273,8 +275,8 @@ class Residual:
 
 
 def residuals_of(motion):
-    """Returns the Residual of each Model, without models whose columns are collinear. Several delays are computed
-    together."""
+    """Returns a dict from Model to Residual, without the models whose columns are collinear. Several delays are
+    computed together, because this is faster."""
     keep = motion.usable()
     rows, force = motion.rows[keep], motion.force[keep]
     if len(rows) < FEWEST:
@@ -430,7 +432,8 @@ def memory(residual):
     lags = min(len(residual) // 4, LONGEST_MEMORY)
     if power == 0.0 or lags < 2:
         return 1.0
-    # The autocorrelations follow from the power spectrum. Padding with zeros prevents the two ends from overlapping.
+    # The autocorrelations are the inverse transform of the power spectrum. Padding with zeros prevents the products of
+    # the last residuals with the first residuals, which a circular correlation would contain.
     size = next_fast_len(len(residual) + lags, real=True)
     spectrum = np.abs(rfft(residual / np.sqrt(power), size)) ** 2
     correlations = irfft(spectrum, size)[1:lags]

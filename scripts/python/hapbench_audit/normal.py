@@ -7,7 +7,8 @@ from scipy.optimize import least_squares
 
 from .models import Motion, residuals
 
-FEWEST_COUNTS = 10  # smallest travel of the tool, in steps of the position's resolution
+# Smallest travel of the tool from which a direction of motion is computed, in steps of the position's resolution.
+FEWEST_COUNTS = 10
 # Largest unexplained fraction of the variance of the force at which the model counts as the exact law of the engine.
 EXACTLY = 1e-9
 TILTS = 8  # largest number of iterations of the search for the normal
@@ -21,7 +22,7 @@ BLOCKS = 10  # number of residuals of normal_by_friction() that count as indepen
 # A second normal is better than a first normal if its unexplained fraction is less than this factor times the
 # unexplained fraction of the first normal.
 AS_GOOD = 0.5
-# Fraction of the median speed below which the direction of sliding is uncertain.
+# If the speed is below this fraction of the median speed, the direction of sliding is uncertain.
 SLOW = 0.2
 MAX_FRICTION = 1.0  # largest coefficient of friction
 # Largest error of a normal that counts as known, as the tangent of an angle. Such an error changes a stiffness by
@@ -33,7 +34,8 @@ MAX_EVALUATIONS = 50  # largest number of evaluations in the search by friction
 
 
 def main_direction(force):
-    """Returns the unit vector along which the sum of squared forces is largest, with the sign of the mean force."""
+    """Returns the unit vector along which the sum of squared forces is largest. The mean force has a positive component
+    along this vector."""
     _, vectors = np.linalg.eigh(force.T @ force)
     direction = vectors[:, -1]
     return direction if (force @ direction).sum() >= 0.0 else -direction
@@ -115,8 +117,9 @@ def normal_by_friction(log, rows, direction):
 
 
 def sliding_velocity(log, rows):
-    """Returns the velocities of the rows [m/s]. Without velocities in the log, they are position differences divided by
-    a time in which the position moves by many steps of its resolution. Returns None if the position moves too little.
+    """Returns the velocities of the rows [m/s]. If the log has no velocities, each velocity is a difference of two
+    positions divided by the time between them; this time is so long that the position typically changes by more than
+    FEWEST_COUNTS steps of its resolution. Returns None if the position changes too little.
     """
     if log.velocity is not None:
         return log.velocity[rows]
@@ -135,10 +138,11 @@ def sliding_velocity(log, rows):
 
 
 def gradient_of(log, rows, normal, space, model):
-    """Returns (direction, Model). The direction is the unit vector of the gradient of the force component along
-    `normal`, with the sign of `normal`. Returns (None, None) if there are fewer than FEWEST_NEW usable rows, if the
-    tool hardly moves, or if the gradient is zero. `space`: three Motions, along the x, y and z axes. `model`: Model of
-    the fit. If `model` is None, the best Model is searched."""
+    """Returns (direction, Model). The direction is the unit vector along the gradient of the force component along
+    `normal`. Its sign is such that its component along `normal` is positive. Returns (None, None) if there are fewer
+    than FEWEST_NEW usable rows, if the tool hardly moves, or if the gradient is zero. `space`: three Motions, along the
+    x, y and z axes. `model`: Model of the fit. If `model` is None, the Model with the smallest residual is used.
+    """
     keep = space[0].usable()
     force = (log.force[rows] @ normal)[keep]
     some = np.linspace(0, keep.sum() - 1, min(keep.sum(), MAX_ROWS)).astype(int)
@@ -159,7 +163,8 @@ def gradient_of(log, rows, normal, space, model):
         residual = force - columns / sizes @ slopes
         best = min(best, (float(residual @ residual), one, slopes / sizes), key=lambda it: it[0])
     _, model, slopes = best
-    # Components along which the tool does not move keep their values in `normal`.
+    # Along an axis on which the tool hardly moves, the component of the gradient is unknown. The direction then has the
+    # component of `normal`.
     gradient, size = normal.copy(), np.linalg.norm(slopes[::2])
     if not size > 0.0:
         return None, None

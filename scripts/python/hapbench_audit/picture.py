@@ -20,7 +20,8 @@ class Drawing:
         self.time = log.time
 
     def panels(self):
-        """Returns (title, draw(ax, colours)) for each panel that the log allows."""
+        """Returns (title, function draw(ax, colours)) of each panel. A panel is omitted if the log does not determine
+        its contents."""
         found = [("force over time", self.force), ("energy given to the hand", self.energy)]
         if self.audit["stiffness"]:
             found.append((self.spring_title(), self.spring))
@@ -123,7 +124,8 @@ class Drawing:
 
 
 def energy_curve(log, contacts):
-    """Returns the work of the held force on the tool since the start, by row [mJ]."""
+    """Returns for each row the work on the tool since the start of the log [mJ], if each force acts until the next
+    row."""
     return 1e3 * np.concatenate([[0.0], np.cumsum(Port(log, contacts).held)])
 
 

@@ -34,12 +34,13 @@ UNLIKELY = 5.0
 # at the sampling period T = 1 ms.
 SAMPLED = 2e-3
 MAX_TRIED = 60  # largest number of models in the search for a model without negative damping
-CERTAIN = 20.0  # largest log-likelihood difference that one contact contributes
-# Relative differences between the mean square residuals of two models up to this value do not count, because the
-# residuals are not white noise.
+# Largest log-likelihood difference that one contact contributes to the comparison of a model with the best model.
+CERTAIN = 20.0
+# Two models count as equally good if their mean square residuals differ by at most this fraction, because residuals are
+# not white noise.
 SIMILAR = 0.1
-# The sampling error of a velocity explains a mean square residual of at most this factor times the mean square residual
-# of the best model.
+# The sampling error of a velocity can explain at most a mean square residual of this factor times the mean square
+# residual of the best model.
 MAX_EXCUSED = 2.0
 NEGLIGIBLE = (
     1e-12  # fraction of the variance of the force that counts as rounding error of the computation
@@ -49,7 +50,8 @@ NEGLIGIBLE = (
 TYPICAL = 10.0
 DRY_GAIN = 0.7  # dry friction must reduce the sum of squared residuals below this fraction
 DRY_SHARE = 0.02  # smallest dry friction, as a fraction of the mean force
-AT_LIMIT = 0.999  # fraction of the largest force from which a force may be limited
+# Smallest force that may be cut off by a limit, as a fraction of the largest force of the log.
+AT_LIMIT = 0.999
 
 
 @dataclass
@@ -114,7 +116,8 @@ def pushing(log, rows):
 
 
 def evidence_of_rows(log, rows, given=None):
-    """Returns the Evidence of these rows along the normal of the surface, or along a `given` direction."""
+    """Returns the Evidence of `rows` along the direction `given`. If `given` is None, the direction is the normal of
+    the surface."""
     force = log.force[rows]
     direction = main_direction(force) if given is None else given
     motion, other = Motion(log, rows, direction), None
@@ -177,9 +180,10 @@ def likelihoods(motion, found, best):
     """Returns for each Model the log-likelihood of the best Model minus the log-likelihood of this Model.
 
     If rounding and sampling explain the residual of a model, the model counts as equally good as the best model,
-    although its sum of squares may be larger. If the engine itself renders the rounded positions, rounding causes no
-    residual. The effects of rounding and sampling are therefore multiplied by `share`: the mean square residual of the
-    best model, divided by the mean square that rounding and sampling can cause; at most 1.
+    although its residual may be larger than the residual of the best model. If the engine itself renders the rounded
+    positions, rounding causes no residual. The effects of rounding and sampling are therefore multiplied by `share`:
+    the mean square residual of the best model, divided by the mean square that rounding and sampling can cause; at
+    most 1.
     """
     smallest = found[best]
     floor = NEGLIGIBLE * smallest.total
@@ -279,10 +283,10 @@ def well_explained(evidences):
 
 
 def with_shared_normal(log, evidences):
-    """Returns the evidences. Two normals are candidates for all contacts, because most logs have one flat surface: the
-    normal of the contact whose force a spring explains best, and the normal that follows from the friction in all
-    contacts. A contact uses a candidate if this candidate leaves less of the contact's force unexplained than the
-    contact's own normal does."""
+    """Returns the evidences after a search for a normal that several contacts share, because most logs have one flat
+    surface. Two normals are candidates for all contacts: the normal of the contact whose force a spring explains best,
+    and the normal that follows from the friction in all contacts. A contact uses a candidate if this candidate leaves
+    less of the contact's force unexplained than the contact's own normal does."""
     known = [one for one in evidences if one is not None and one.likelihood]
     if log.axes == 1 or len(known) < 2:
         return evidences
@@ -318,8 +322,8 @@ class Estimate:
 
 
 def numbers_of(log, evidence, models):
-    """Returns the estimates of one contact, with intervals that cover all `models`. If the contact determines no
-    stiffness, `why` is the reason."""
+    """Returns a dict with the estimates of one contact. Their intervals cover all `models`. If the contact does not
+    determine a stiffness, the entry `why` of the dict is the reason."""
     usable = [model for model in models if model in evidence.likelihood]
     unbounded = unbounded_by(evidence, usable)
     if unbounded is not None:
@@ -376,9 +380,9 @@ def numbers_of(log, evidence, models):
 
 
 def unbounded_by(evidence, models):
-    """Returns the best Fit if one of the models allows a stiffness of zero; otherwise None. The search ends at the
-    first model of this kind, because further models cannot bound the stiffness. Returns None if the contact has dry
-    friction."""
+    """If one of the models allows a stiffness of zero, returns the Fit of the best model; otherwise None. The search
+    ends at the first model that allows a stiffness of zero, because further models cannot narrow the interval. Returns
+    None if the contact has dry friction. `models`: best model first."""
     best = None
     for model in models:
         fit = fit_of(evidence.motion, model)
@@ -418,8 +422,9 @@ def widened(motion, fit, with_sign):
 
 
 def likely(fits):
-    """Returns the first fit with positive stiffness and without negative damping. If no fit meets both conditions,
-    returns the first fit. Negative damping is an effect of a delay that the model lacks."""
+    """Returns the first fit with a positive stiffness and without a significantly negative damping. If no fit meets
+    both conditions, returns the first fit. A delay that the model lacks causes a negative damping.
+    """
     return next(
         (fit for fit in fits if fit.stiffness > 0.0 and fit.damping + fit.halves[1] >= 0.0), fits[0]
     )
@@ -462,8 +467,8 @@ def damping_half(log, evidence, fit):
     )
     if log.velocity is not None or q == 0.0:
         return half
-    # With the resolution q, a difference of two rounded positions has the variance q^2/6, and the covariance q^2/12
-    # with the position.
+    # With the resolution q, the rounding error of a difference of two positions has the variance q^2/6, and the
+    # covariance q^2/12 with the rounding error of the position.
     bias = (
         abs(fit.damping) * (q / interval) ** 2 / 6.0 + abs(fit.stiffness) * q**2 / 12.0 / interval
     )

@@ -94,7 +94,8 @@ def energy_rows(energy):
     worst = energy["worst_contact"]
     if worst is None:
         return rows
-    if worst["created_J"] < worst["error_J"]:  # the mean of the contacts is not known then
+    # If the largest created energy is below its error, the mean over the contacts is not known.
+    if worst["created_J"] < worst["error_J"]:
         return rows
     return [
         *rows,
@@ -175,8 +176,8 @@ def stiffness_rows(audit):
 
 
 def few_text(known, count):
-    """Returns a text with the number `known` of contacts that determine the stiffness, if it is positive and less than
-    half of the number `count` of all contacts. Otherwise returns an empty text."""
+    """If the number `known` of contacts that determine the stiffness is positive and less than half of the number
+    `count` of all contacts, returns a text with both numbers. Otherwise returns an empty text."""
     return f", from {known} of {counted(count, 'contact')}" if 1 <= 2 * known < count else ""
 
 
@@ -271,7 +272,8 @@ def ratios_text(device):
 
 
 def expected_text(audit):
-    """Returns the prediction of the linear loop beside the measured value."""
+    """Returns a text with the frequency of the oscillation that the linear analysis predicts and the frequency in the
+    log."""
     buzz, lost = audit["buzz"], audit["metrics"]["contacts_lost_per_s"] or 0.0
     text = f"expect a buzz near {audit['device']['expected_frequency_Hz']:.0f} Hz; the log "
     if not buzz:

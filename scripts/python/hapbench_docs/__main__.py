@@ -20,13 +20,14 @@ from .manuals import (
 )
 
 GALLERY = ROOT / "results" / "reference" / "gallery"
-# Matches consecutive command lines in a manual whose last command plots, and the picture below them.
+# Matches consecutive lines of commands in a manual, and the picture from the gallery below these lines. The last
+# command draws the picture.
 ILLUSTRATED = re.compile(r"((?:^    hapbench .*\n)+)\n!\[[^]]*\]\([^)]*/gallery/(\w+\.svg)\)", re.M)
 
-DESCRIPTION = """Renews what is generated in the manuals: sessions (commands with their output),
+DESCRIPTION = """Renews the generated blocks of the manuals: sessions (commands with their output),
 the tables of the ledger and of its robustness, from results/reference, and, with --gallery, the
-pictures of commands. Needs the built program. Measured times are left as they are. Exit status 1 if
---check finds something to renew."""
+pictures of commands. Needs the built program. Keeps measured times. The exit status is 1 if --check
+finds a block that is not current."""
 
 
 def arguments(words):
@@ -41,13 +42,15 @@ def arguments(words):
     parser.add_argument(
         "--tables",
         action="store_true",
-        help="the tables from results/reference only, which need no program",
+        help="renew only the tables from results/reference, which need no program",
     )
     parser.add_argument(
-        "--gallery", action="store_true", help="also the pictures of results/reference/gallery"
+        "--gallery",
+        action="store_true",
+        help="also renew the pictures of results/reference/gallery",
     )
     parser.add_argument(
-        "--check", action="store_true", help="write nothing; show what is not current"
+        "--check", action="store_true", help="write nothing; show the blocks that are not current"
     )
     return parser.parse_args(words)
 

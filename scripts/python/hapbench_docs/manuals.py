@@ -1,6 +1,6 @@
-"""Functions for the manuals: their files, their commands, their links, and their generated blocks between `<!--
-generated: NAME -->` and `<!-- /generated -->`. A generated block is a session (a command and its output), or a table
-from results/reference, such as the ledger (claims.json) and its robustness."""
+"""Functions for the manuals: their files, their commands, their links, and their generated blocks. A generated block
+stands between `<!-- generated: NAME -->` and `<!-- /generated -->`. It is a session (a command and its output), or a
+table that is made from files in results/reference, such as the ledger claims.json."""
 import csv
 import datetime
 import json
@@ -32,7 +32,7 @@ TASKS = {
     "D3": "turning, 3 mm high",
     "D4": "turning, 4 mm high",
 }
-# Matches a line of the form that Program.provenance() returns.
+# Matches a result of Program.provenance(), followed by a full stop.
 STAMP = re.compile(r"hapbench \d[\w.]*, \d{4}-\d\d-\d\d, [^\n]+\.")
 PAIR = re.compile(r"success(?: rate)? (.+?) vs ([^;(]+)")
 
@@ -126,8 +126,8 @@ def renewed(text, makers):
 
 
 def session(old, program, directory):
-    """Returns a session: a command and its output, followed by version, date and processor. `old`: the current block,
-    whose first command is executed."""
+    """Executes the first command in the block `old` and returns the new block: a session, which is the command and its
+    output, followed by version, date and processor. `old`: the current content of the block."""
     line = next(
         (line.strip() for line in old.splitlines() if line.strip().startswith("$ hapbench ")), None
     )
@@ -179,7 +179,8 @@ def experiments(_old=""):
 
 
 def robustness(_old=""):
-    """Returns a table of the assumptions that decide verdicts, with the claims that each assumption decides."""
+    """Returns a table with a row for each assumption that decides the verdict of a claim. The row lists these
+    claims."""
     claims = read("claims.json")["claims"]
     what = {entry["id"]: entry["what"] for entry in read("assumptions.json")["assumptions"]}
     decided = {}
@@ -204,7 +205,7 @@ def controls(_old=""):
             names = changes.setdefault(case["id"], [])
             if case["verdict"] != case["recorded"][0]:
                 names.append(f"`{control['name']}` ({case['verdict']})")
-    lines = ["| claim | verdict | changes | with |", "|---|---|---|---|"]
+    lines = ["| claim | verdict | changes | controls (new verdict) |", "|---|---|---|---|"]
     for claim in read("claims.json")["claims"]:
         if claim["id"] in changes:
             names = changes[claim["id"]]
@@ -217,12 +218,12 @@ def controls(_old=""):
 
 def pairs(_old=""):
     """Returns a table with a row for each claim that several assumptions decide. The row groups the pairs of these
-    assumptions by the verdict after both assumptions of a pair were changed: the recorded verdict, the verdict after
-    only one of them was changed, or another verdict. The pairs of the second group are counted; the pairs of the other
-    groups are listed.
+    assumptions by the verdict of the claim when both assumptions of the pair are changed. This verdict is the recorded
+    verdict (first group), the verdict when only one assumption of the pair is changed (second group), or another
+    verdict (third group). The row has the number of pairs in the second group, and lists the pairs of the other groups.
     """
     lines = [
-        "| claim | verdict | pairs | recorded verdict | verdict of one of both | another verdict |",
+        "| claim | verdict | pairs | recorded verdict | verdict of one assumption alone (count) | another verdict |",
         "|---|---|---|---|---|---|",
     ]
     for claim in read("pairs.json")["claims"]:
@@ -322,8 +323,9 @@ class Program:
         return done.stdout
 
     def stamped(self, text, old):
-        """Returns the text with its provenance below. Returns the old block if its text differs only in run times, its
-        provenance matches STAMP, and its version is the version of the program."""
+        """Returns the text, with its provenance in a last line. Returns the block `old` unchanged instead if three
+        conditions are met: its text differs from `text` only in run times, its provenance matches STAMP, and its
+        version is the version of the program."""
         known, _, stamp = old.strip("\n").rpartition("\n\nPrinted by ")
         is_current = STAMP.fullmatch(stamp) and stamp.startswith(f"{self.version()}, ")
         if is_current and same_but_for_times(text, known):
@@ -370,7 +372,7 @@ def processor():
     )
 
 
-# Functions that make tables without running the program.
+# Functions that make a table without running the program, by the name of the generated block.
 MAKERS = {
     "main_results": main_results,
     "experiments": experiments,

@@ -87,28 +87,28 @@ FIGURES = catalogue()
 def arguments(argv):
     parser = Arguments(
         prog="scripts/figures",
-        description="Draws the figures of the thesis with our data, and ours, as SVG, PDF and "
-        "PNG. A figure whose data is missing is skipped, with a message.",
+        description="Draws the figures of the thesis with data of hapbench, and the figures of this project, as "
+        "SVG, PDF and PNG. If the data of a figure is missing, the command skips the figure and prints a message.",
     )
     parser.add_argument(
-        "results", nargs="?", metavar="RESULTS_DIR", help="results as scripts/reproduce leaves them"
+        "results", nargs="?", metavar="RESULTS_DIR", help="results that scripts/reproduce wrote"
     )
     parser.add_argument("--out", metavar="DIR", help="directory of the figures and of figures.json")
     parser.add_argument(
         "--only",
         metavar="ID,…",
-        help="draw these; an id stands for those that begin with it and a hyphen, too",
+        help="draw only these figures; A.4 also selects figures such as A.4-root-locus",
     )
     parser.add_argument(
         "--record",
         metavar="DIR",
-        help="also copy the SVGs of the thesis's figures, and of ours that lie there, "
-        "into DIR, with figures.md, a page of them all",
+        help="also copy the SVGs of the figures of the thesis into DIR, renew the figures of this project that "
+        "DIR already has, and write figures.md, a page with all these figures",
     )
     parser.add_argument("--list", action="store_true", help="list the figures")
     chosen = parser.parse_args(argv)
     if not chosen.list and not (chosen.results and chosen.out):
-        parser.error("needed are RESULTS_DIR and --out DIR, or --list")
+        parser.error("RESULTS_DIR and --out DIR are required, or --list")
     return chosen
 
 
@@ -121,14 +121,14 @@ def selection(only):
         found = [f for f in FIGURES if f.id == id_ or f.id.startswith(id_ + "-")]
         if not found:
             raise InputError(
-                f"--only: no figure {id_!r}; there are {', '.join(f.id for f in FIGURES)}"
+                f"--only: no figure {id_!r}; allowed: {', '.join(f.id for f in FIGURES)}"
             )
         chosen += [f for f in found if f not in chosen]
     return chosen or FIGURES
 
 
 def draw(figure, results, directory):
-    """Draws one figure and writes its files. Returns the entry of the figure in figures.json."""
+    """Draws one figure and writes its files into `directory`. Returns the figure's entry for figures.json."""
     drawing, values = figure.draw(results)
     files = [f"{figure.stem}.{kind}" for kind in FORMATS]
     for kind, name in zip(FORMATS, files):
@@ -176,8 +176,10 @@ def measured(figure, claims):
 
 
 def record(directory, page, drawn, claims):
-    """Copies the drawn figures into the directory `page`. Writes figures.md about all figures in this directory, and
-    rows.json with the measured numbers of the claims that they draw."""
+    """Copies those figures of `drawn` into the directory `page` that redraw a figure of the thesis, or of which the
+    directory already has an older drawing. Writes figures.md about the copied figures, and rows.json with the measured
+    numbers of the claims that the copied figures draw. `drawn`: entries of figures.json by identifier.
+    """
     text, rows = PAGE, {}
     for figure in FIGURES:
         on_record = page / f"{figure.stem}.svg"
@@ -222,7 +224,7 @@ def run(chosen):
         record(directory, Path(chosen.record), index, Files(chosen.results).json(LEDGER)["claims"])
     if skipped:
         print(
-            'figures: "scripts/reproduce --figure ID" makes what a figure needs, and draws it',
+            'figures: "scripts/reproduce --figure ID" computes the data of a figure and draws the figure',
             file=sys.stderr,
         )
     for line in bad:

@@ -24,7 +24,7 @@ STROKES = (
         {"lw": 3.2, "alpha": 0.35},
     ),
 )
-# This depth model is not in the thesis. The figure is therefore also drawn without it.
+# This depth model is not in the thesis. The figure is therefore drawn with this model and without this model.
 CONTINUOUS = (
     "run_beyond/corner_continuous_normal_projection",
     "continuous_normal_projection",
@@ -156,9 +156,11 @@ def corner(results):
         axes[0, 1].plot(x, 1e3 * rows["depth_max_m"], **line, label=label)
         axes[0, 2].plot(x[1:], change, **line)
     axes[0, 0].set(title="force", ylabel="model force [N]")
-    axes[0, 1].set(title="greatest depth", ylabel="depth [mm]")
+    axes[0, 1].set(title="largest depth", ylabel="depth [mm]")
     axes[0, 2].set(title="change in one step", ylabel="|Δ model force| [N]")
-    style.plt.setp(axes[0], xlabel="tip's way towards the wall [mm]")
+    style.plt.setp(axes[0], xlabel="displacement of the tip\ntowards the wall [mm]")
     axes[0, 1].legend(loc="upper left", handlelength=1.5, fontsize=6.5, borderaxespad=0.1)
-    remark = ", and also with continuous normal projection (brown), whose curve nearly covers it"
+    remark = (
+        "; it also does with continuous normal projection (brown curve, nearly on the wide curve)"
+    )
     return style.lettered(figure, axes[0]), {"continuous": remark if ours else ""}

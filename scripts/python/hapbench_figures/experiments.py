@@ -16,7 +16,7 @@ MEASURES = (
     ("force", "model_force_N", "model force [N]", 1),
     ("speed", "speed_m_per_s", "velocity [mm/s]", 1e3),
 )
-# The two targets of each task: position, claim, title.
+# The two targets of each task: (number of the position in the field `place` of targets.csv, claim, title of the panel).
 TARGETS = {
     "vertical": ((1, "D1", "side target (0.52 mm)"), (0, "D2", "central target")),
     "rotational": ((0, "D3", "target at 3 mm"), (1, "D4", "target at 4 mm")),
@@ -26,8 +26,8 @@ METHODS = ((DP, "DP"), (HS, "HS"))
 
 
 def subject_means(records, target, column):
-    """Returns the mean of a column over the targets of each subject at one target position; NaN for a subject without a
-    value."""
+    """Returns for each subject the mean of a column over the subject's targets at the position `target`; NaN if the
+    subject has no value there."""
     selected = [row for row in records if row["place"] == str(target)]
     subjects = numbers(selected, "subject")
     values = numbers(selected, column)
@@ -39,7 +39,8 @@ def subject_means(records, target, column):
 
 
 def significance(first, second):
-    """Returns a text with the result of the paired t-test. Only subjects with both values are used."""
+    """Returns a text with the result of the paired t-test of two values of each subject. Subjects with a NaN in `first`
+    or `second` are not used."""
     both = np.isfinite(first) & np.isfinite(second)
     difference = (first - second)[both]
     if len(difference) < 2 or np.ptp(difference) == 0:
@@ -48,9 +49,9 @@ def significance(first, second):
             if len(difference) and not difference.any()
             else "same difference in all"
         )
+    # Imported here, because this import takes a quarter of the start time and few figures need it.
     from scipy.stats import (
         ttest_rel,
-        # Imported here, because this import takes a quarter of the start time and few figures need it.
     )
 
     t, p = ttest_rel(first[both], second[both])
@@ -69,7 +70,8 @@ def published_test(claim):
 
 
 def questionnaires(results):
-    """Returns the figure of the efforts that the thesis publishes (Fig. D.6). The ledger stores them as claim D5."""
+    """Returns the figure of the efforts that the thesis publishes (Fig. D.6). The ledger stores these efforts as claim
+    D5."""
     results.json("claims.json")
     figure, axes = style.panels(1, 2, 2.2, gridspec_kw={"width_ratios": [2, 1]})
     effort, relative = axes[0]

@@ -105,9 +105,9 @@ def settings_of(results, beginnings, column, scale, per):
 
 
 def knee(settings):
-    """Returns the setting at the knee of the front of run time and error. The program finds the knee in the same way as
-    `hapbench plot` for a folder of `hapbench converge --over`. Returns None if the front is straight or has fewer than
-    four settings."""
+    """Returns the setting at the knee of the Pareto front of run time and error. The program finds the knee as
+    `hapbench plot` does for a folder of `hapbench converge --over`. Returns None if the front is straight or has fewer
+    than four settings."""
     points = [f"{setting.time!r}:{setting.error!r}" for setting in settings]
     found = output_of_program("finds the knee of a front", "plot", "--knee", *points).strip()
     return settings[int(found)] if found else None
@@ -151,8 +151,8 @@ def draw_panel(ax, results, title, beginnings, column, label, scale, per):
 
 
 def draw_series(ax, name, settings, look, joined):
-    """Draws the settings of a series, joined by a line. A setting whose name has no number, such as "exact", has a mark
-    outside of the line."""
+    """Draws a mark for each setting of a series. If `joined` is true, a line joins the marks, except the marks of
+    settings whose names have no number, such as "exact"."""
     label = name.replace("_", " ")
     ordered = [s for s in settings if joined and any(map(str.isdigit, s.short))]
     alone = [s for s in settings if s not in ordered]

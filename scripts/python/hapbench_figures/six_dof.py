@@ -47,8 +47,8 @@ def look(law):
 
 
 def rows_of(results):
-    """Returns each run of the study as a dict: scene, law, the values of the field six_dof, index, and metrics by short
-    names."""
+    """Returns a dict for each run of the study, with the keys `scene`, `law` and `index` (number of the run), the
+    fields of the object six_dof in the scenario, and the metrics without the prefix "six_dof."."""
     rows = []
     for index, record in enumerate(results.records(f"{STUDY}/sweep.csv")):
         fields = json.loads(record["six_dof"])
@@ -86,10 +86,9 @@ def chosen(rows, **wanted):
 
 
 def ratio_of_closed_form(grip, matched):
-    """Returns the force of the proxy divided by the force that a device with force and torque renders, for one
-    contact. `grip`: distance
-    of the grip from the force point [m]. `matched`: true for a proxy that is matched to a hand with its grip at the
-    force point, false for a proxy that does not rotate."""
+    """Returns the force of the proxy divided by the force that a device with force and torque renders, for one contact.
+    `grip`: distance of the grip from the force point [m]. `matched`: true for a proxy that is matched to a hand with
+    its grip at the force point, false for a proxy that does not rotate."""
     series = 1 / COUPLING + 1 / HAND
     turning = 1 / COUPLING_ROTATION + 1 / HAND_ROTATION if matched else 0.0
     with_torque = series + (LEVER - grip) ** 2 / HAND_ROTATION + LEVER**2 / COUPLING_ROTATION
@@ -152,8 +151,9 @@ def draw_error(ax, rows):
 
 
 def draw_grip(ax, rows):
-    """Draws the force error of the proxies over the grip distance at the edge of a plane, and the closed form for one
-    contact."""
+    """Draws the relative force error of the proxies over the distance of the grip from the force point, in the scene
+    with the edge of a plane. Marks are measured errors; lines are errors by the closed form for one contact.
+    """
     grips = np.linspace(-0.012, 0.012, 49)
     for law in ("proxy", "matched_proxy"):
         style_of, label = look(law)

@@ -23,7 +23,8 @@ def draw_path(ax, rows, look):
 
 
 def settling(rows):
-    """Returns the time after which the mass stays within 0.05 mm of the origin [ms], or None."""
+    """Returns the time after which the mass stays within 0.05 mm of the origin [ms], or None if the mass is not there
+    at the end."""
     far = np.hypot(rows["px_m"], rows["py_m"]) > 5e-5
     if far[-1]:
         return None
@@ -32,8 +33,9 @@ def settling(rows):
 
 
 def paths(results, kind):
-    """Returns the figure of the mass's path with each algorithm, beside the path with stiffness shaping, and no values
-    for the caption. `kind`: "limited" or "unlimited"."""
+    """Returns the figure, and an empty dict because the caption has no values. Each panel draws the path of the mass
+    with one algorithm and, for comparison, the path with stiffness shaping. `kind`: "limited" or "unlimited".
+    """
     figure, axes = style.panels(2, 4, 4.3, sharex=True, sharey=True)
     proposed = results.table(f"thesis/springs_{kind}_shaped_stiffness/trajectory.csv")
     names = [

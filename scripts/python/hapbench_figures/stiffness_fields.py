@@ -119,8 +119,8 @@ def fields_over_tilt(results):
 
 
 def own_scale(tensor):
-    """Returns (half width of the panel, ticks): the scale of all panels, or a larger scale if k(e) does not fit into
-    it."""
+    """Returns (half width of the panel, ticks): the common scale REACH and TICKS if the curve k(e) fits into it,
+    otherwise a larger scale."""
     greatest = np.linalg.eigvalsh(tensor)[-1]
     if greatest < REACH:
         return REACH, TICKS

@@ -47,7 +47,7 @@ NOTES = [
     "Design: force (largest, default 1 N), travel (of the handle, default 0.05 m), mass (smallest "
     "possible, default 0.05 kg), rate (default 1000 Hz), duration (default 5 s).",
     "Files: LOG_device.json, for --device of limit, tune and audit, and a picture of the residual "
-    "next to it; or the signal, signal_KIND.csv. They replace earlier ones. A log that cannot be "
+    "next to it; or the signal, signal_KIND.csv. They replace earlier files. A log that cannot be "
     "used gives exit status 2.",
 ]
 EXAMPLES = [
@@ -104,9 +104,7 @@ def command_line():
         "<sign>",
         "decimal sign: comma, point or auto (default: auto; found from the numbers)",
     )
-    line.flag(
-        "--skip-bad-rows", "leave out invalid rows and list them, instead of refusing the log"
-    )
+    line.flag("--skip-bad-rows", "skip invalid rows and list them, instead of rejecting the log")
     line.texts(
         "--design",
         "<kind,name=n,...>",
@@ -212,7 +210,7 @@ def identify(options, out):
         ]
         for name, one in parameters.items()
     ]
-    table.append(["residual [m]", f"{found.rms:.3g}", "", ""])
+    table.append(["residual [m rms]", f"{found.rms:.3g}", "", ""])
     return table, parameters | {
         "confidence": 0.95 if found.trusted else None,
         "step_s": log.step,
@@ -231,7 +229,7 @@ def identify(options, out):
 
 def parameters_of(log, found):
     """Returns the value and the interval of each parameter by name, in the order of UNITS. The value is None if the log
-    does not determine it. An infinite end of an interval is None."""
+    does not determine the parameter. An infinite end of an interval is None."""
     parameters = {
         name: {"value": None if name in found.undetermined else value, "interval": ends}
         for name, value, ends in zip(NAMES, found.values.tolist(), found.intervals.tolist())
@@ -267,20 +265,21 @@ def parameters_of(log, found):
 
 
 def value_text(name, one, largest_force):
-    """Formats a parameter for the printed table. An offset that is not significantly different from 0 and negligible
-    beside the largest force is printed as zero within its error."""
+    """Formats a parameter for the printed table. If the offset has no value and its interval is within +- NEGLIGIBLE
+    times the largest force, the offset is printed as zero, with the larger end of the interval as error.
+    """
     if one["value"] is not None:
         return f"{one['value']:.4g}"
     if name == "offset_N" and None not in one["interval"]:
         size = max(map(abs, one["interval"]))
         if size <= NEGLIGIBLE * largest_force:
-            return f"zero within {size:.1g}"
+            return f"zero within {size:.4g}"
     return "not identifiable"
 
 
 def unless_wide(value, interval):
-    """Returns a parameter without a value if its interval is wider than the value. The interval is still printed,
-    because it excludes some values."""
+    """Returns value and interval of a parameter as a dict. If the interval is wider than the value, the value is None.
+    The interval is kept, because it excludes some values."""
     low, high = interval
     return {
         "value": value if high - low <= abs(value) or low == high else None,
@@ -309,7 +308,7 @@ def refuse_units(options, log, problem, found=None):
         fail(
             f"{problem}, but the residual of {found.rms:.3g} m (rms) is more than noise, and other units do not "
             "explain the log. Is a hand or a spring on the handle, or is the clock wrong? If the units s, N and m are "
-            "right, --scale time=1 writes the device all the same",
+            "right, --scale time=1 writes the device file anyway",
             options.log,
         )
     advice = advice or "No usual units explain the log."
@@ -332,7 +331,7 @@ def units_text(options, log, found):
 
 
 def given_scales(options):
-    """Returns the factors of --scale by quantity."""
+    """Returns a dict from quantity to its factor in --scale."""
     pairs = (word.partition("=") for word in options.scale)
     return {name: float(value) for name, _, value in pairs}
 
@@ -359,13 +358,13 @@ def warnings_of(parameters, found, log):
             f"the residual of {found.rms:.3g} m is larger than noise: the device has a property that "
             "the model lacks, such as a hand on the handle, elasticity or friction that depends on "
             "the position; see the picture. The parameters are therefore fitted to pieces of "
-            "0.2 s, and their intervals come from leaving out one twelfth of the log at a time. "
+            "0.2 s, and their intervals come from fits that each omit one twelfth of the log. "
             f"{UNTRUSTED}"
         )
     elif not found.trusted:
         warnings.append(
             f"the residual of {found.rms:.3g} m is not white: its slow part is larger than noise and encoder explain, "
-            "as with friction that depends on the speed, or with times that are not those of the samples. "
+            "as with friction that depends on the speed, or with times that differ from the sampling times. "
             f"{UNTRUSTED}"
         )
     return warnings

@@ -9,12 +9,12 @@ from .model import NAMES, Simulator
 
 MASS, VISCOUS, DRY, DELAY, OFFSET, SPEED = range(len(NAMES))
 TWO_SIDED = float(norm.ppf(0.975))
+# SCORED: duration of the first part of the log, on which starting values are compared [s]. PIECE, SHORT_PIECE: lengths
+# of the pieces of a Cost [s].
 SCORED, PIECE, SHORT_PIECE = (
     20.0,
     0.5,
     0.2,
-    # SCORED: duration of the first part of the log, on which starting values are scored [s]. PIECE, SHORT_PIECE:
-    # lengths of the pieces of Cost [s].
 )
 KEPT, DISTINCT, BLOCKS = 8, 3, 12
 LONGEST = 20.0  # largest delay in the search [samples]
@@ -29,14 +29,14 @@ WINDOWS = (0.005, 0.02, 0.05, 0.2)
 # Thresholds for the result of slow_part() [standard deviations]: above the first, the intervals are widened; above the
 # second, they are not trusted.
 WIDENED, DISTRUSTED = 1.5, 4.0
-# Smallest decrease of the sum of squares, in units of the variance of the noise, for which a non-zero initial speed is
-# fitted.
+# A non-zero initial speed is fitted if it decreases the sum of squared residuals by more than this factor times the
+# mean square residual.
 FROM_REST = 12.0
 
 
 @dataclass
 class Fit:
-    values: np.ndarray  # in the order of NAMES
+    values: np.ndarray  # values of the parameters, in the order of NAMES
     intervals: np.ndarray  # 95 % intervals, one row [low, high] for each value
     # Measured minus simulated position of each sample [m]; NaN for missing samples.
     residual: np.ndarray
@@ -47,7 +47,7 @@ class Fit:
     misfit: bool
     # True if noise and encoder error explain the residual and its slow part, so that the intervals are 95 % intervals.
     trusted: bool
-    # Names of the parameters that the log does not determine, with the reason.
+    # For each parameter that the log does not determine: its name and the reason.
     undetermined: dict = field(default_factory=dict)
 
 
@@ -154,7 +154,8 @@ def least_squares(cost, start, scale, steps, tolerance, held=()):
 
 
 def fit(log):
-    """Returns the Fit of the handle's parameters: the simulated positions are closest to the logged positions."""
+    """Returns the Fit of the handle's parameters. With the fitted parameters, the simulated positions are closest to
+    the logged positions, in the sense of least squares."""
     with Simulator(log.time, log.force) as simulate:
         return _fit(log, simulate)
 
@@ -220,8 +221,8 @@ def _fit(log, simulate):
 
 
 def _wide_intervals(intervals, x, step, peak, fast):
-    """Returns the reason, by index, for each parameter whose interval is too wide to report a value. `peak`: largest
-    force [N]. `fast`: largest speed [m/s]."""
+    """Returns a dict with an entry for each parameter whose interval is too wide to report a value. Key: index of the
+    parameter. Value: reason. `peak`: largest force [N]. `fast`: largest speed [m/s]."""
     half = 0.5 * np.diff(intervals)[:, 0]
     return {
         i: f"its interval is wider than +- {limit}"
@@ -246,8 +247,8 @@ def _search(first, whole, log, position, scale):
         if all(_differs(one.x, other.x, scale) for other in distinct):
             distinct.append(one)
     found = min(_refined(whole, distinct[:DISTINCT], scale), key=lambda one: one.squares)
-    # Searches again from this minimum with half and twice its dry friction, and without offset. Only candidates whose
-    # sum of squares may be smaller are refined on the whole log.
+    # Searches again from two more starts: the parameters of this minimum, but without offset and with half or twice the
+    # dry friction. A result is refined on the whole log only if its sum of squares may be smaller.
     again = np.array([found.x, found.x])
     again[:, OFFSET], again[:, DRY] = 0.0, found.x[DRY] * np.array([0.5, 2.0])
     reached = np.sum(first(found.x) ** 2)
@@ -260,8 +261,8 @@ def _search(first, whole, log, position, scale):
 
 
 def _intervals(cost, log, found, scale, residual, memory, noise, spread):
-    """Returns (intervals, reason for each undetermined parameter by index, Strokes of the handle). `spread`:
-    half-widths of the intervals if they are known, otherwise None."""
+    """Returns (intervals, dict from the index of each undetermined parameter to the reason, text about the Strokes of
+    the handle). `spread`: half-widths of the intervals if they are known, otherwise None."""
     units = _units(scale, found.x)
     positions = cost.simulated(found.x)
     J = np.vstack(
@@ -334,8 +335,8 @@ class Strokes:
 
 
 def _degenerate(J, strokes):
-    """Returns the reason, by index, for each parameter that has no effect on the positions, or whose change other
-    parameters can compensate."""
+    """Returns a dict with an entry for each parameter that has no effect on the positions, and for each parameter whose
+    change other parameters can compensate. Key: index of the parameter. Value: reason."""
     sizes = np.sqrt(np.mean(J**2, axis=1))
     felt = np.flatnonzero(sizes > 1e-12 * sizes.max())
     undetermined = {
@@ -396,8 +397,8 @@ def _by_pieces(cost, found, scale):
 
 
 def without_blocks(cost, found, scale):
-    """Returns the half-widths of the 95 % intervals by a jackknife: each fit omits one of BLOCKS blocks of the log. It
-    assumes only that the residuals of all blocks have the same statistics."""
+    """Returns the half-widths of the 95 % intervals by a jackknife: each fit omits one of BLOCKS blocks of the log. The
+    jackknife assumes only that the residuals of all blocks have the same statistics."""
     units = _units(scale, found.x)
     J, residual = cost.sensitivities(found.x, units, np.ones(len(NAMES), bool), central=True), cost(
         found.x
@@ -449,9 +450,9 @@ def slow_part(log, cost, x, residual):
 
 
 def without_unknown_start(log):
-    """If the handle moves at the start of a log that is not short, returns the log without its first LONGEST positions,
-    because delayed forces from before the log still act on the handle at these samples. The fitted initial speed
-    accounts for these forces. Otherwise returns the log.
+    """If the handle moves at the start of the log and the log has at least 20 LONGEST samples, returns the log with NaN
+    as its first LONGEST positions. Delayed forces from before the log, which are unknown, still act on the handle at
+    these samples. The fitted initial speed accounts for these forces. Otherwise returns the log unchanged.
     """
     speed = first_speed(log.position[np.isfinite(log.position)][:200], log.step, log.encoder_step)
     if speed == 0.0 or len(log.time) < 20.0 * LONGEST:
@@ -499,8 +500,8 @@ def profile(cost, found, scale, i, spread, variance):
     return ends
 
 
-# Starting values. The sum of squares over a long log has many local minima, so that the search starts from several
-# different values.
+# The following functions compute starting values. The sum of squares over a long log has many local minima, so that the
+# search starts from several different values.
 
 
 def noise_of(position):

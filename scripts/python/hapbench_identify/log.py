@@ -19,17 +19,17 @@ FEWEST = 50  # smallest number of samples
 
 @dataclass
 class Log:
-    time: np.ndarray  # [s], increasing; includes the times of missing samples
+    time: np.ndarray  # times of all samples [s], increasing; includes the times of missing samples
     force: np.ndarray  # force commanded at this time and held until the next time [N]
-    position: np.ndarray  # [m]; NaN for missing samples
+    position: np.ndarray  # position at each time [m]; NaN for missing and for repeated samples
     step: float  # mean interval of the times, without gaps [s]
     encoder_step: float  # encoder step [m]; 0 if the positions are not multiples of any length
     warnings: list
     knows_forces: bool = True  # false if the forces of missing rows are interpolated
-    # Columns that were read, by quantity, in the form of `import stroke`.
+    # Columns that were read: a dict from quantity to columns, in the format of Columns.used() of hapbench_import.
     columns: dict | None = None
     columns_not_read: list | None = None
-    scales: dict | None = None  # factors to SI units by quantity
+    scales: dict | None = None  # dict from quantity to its factor to SI units
 
 
 def read_log(options):
@@ -69,7 +69,7 @@ def read_log(options):
     faults = recording.faults(bad)
     if faults and not options.skip_bad_rows:
         location, problem = faults[-1]
-        faults[-1] = (location, f"{problem}; --skip-bad-rows leaves bad rows out")
+        faults[-1] = (location, f"{problem}; --skip-bad-rows skips bad rows")
         raise Faults(faults[:MAX_FAULTS])
     kept = [row for row in range(len(time)) if row not in bad]
     if len(kept) < FEWEST:
@@ -82,7 +82,7 @@ def read_log(options):
     log = log_of(time[kept], force[kept], position[kept])
     if faults:
         log.warnings.insert(
-            0, f"{len(bad)} bad rows were left out, the first: {faults[0][0]}: {faults[0][1]}"
+            0, f"{len(bad)} bad rows were skipped, the first: {faults[0][0]}: {faults[0][1]}"
         )
     log.warnings[:0] = notes + recording.notes
     log.columns = {
@@ -112,7 +112,7 @@ def _bad_rows(recording, time, force, position):
 
 def log_of(time, force, position):
     """Returns the Log with the times of missing samples inserted. The forces of missing samples are interpolated
-    linearly, which is accurate if the signal changes little between samples. Their positions are NaN. If the log
+    linearly, which is accurate if the force changes little between samples. Their positions are NaN. If the log
     repeats a position in several rows, the position counts only in the first of these rows and is NaN in the other
     rows."""
     warnings, held = [], hold_of(position)

@@ -17,23 +17,24 @@ KINDS = {
 IDENTIFIABLE_FRICTION = 0.6
 # Largest frequency of a force signal [Hz]; higher frequencies contain little information about mass and friction.
 HIGHEST = 100.0
-# Frictions for which design() limits the travel. Key: viscous friction divided by mass [1/s]. Value: dry frictions as
-# fractions of the largest force.
+# Frictions of the simulations by which design() limits the travel. Key: viscous friction divided by mass [1/s]. Value:
+# dry frictions as fractions of the largest force.
 DRY_SHARES = {
     0.0: np.linspace(0.0, IDENTIFIABLE_FRICTION, 61),
     1.0: np.linspace(0.0, IDENTIFIABLE_FRICTION, 13),
     10.0: np.linspace(0.0, IDENTIFIABLE_FRICTION, 13),
 }
 TRAVEL_USED = (
-    # Fraction of the travel that a signal may use. For frictions between the simulated frictions, the travel can be up
-    # to 6 % longer.
+    # Fraction of the allowed travel that the simulated handle may use. With a friction between the simulated frictions,
+    # the travel can be up to 6 % longer.
     0.9
 )
 
 
 class Simulator(subprocess.Popen):
-    """A process of the program that simulates the handle under the forces of a log, used in a `with` statement. A fit
-    needs some thousand simulations."""
+    """A process of the program that simulates the handle under the forces of a log. A fit needs some thousand
+    simulations, which one process computes. A Simulator is used in a `with` statement, which ends the process.
+    """
 
     def __init__(self, time, force):
         program = the_program()

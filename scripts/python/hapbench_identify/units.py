@@ -24,8 +24,8 @@ def is_likely(mass, encoder_step):
 
 
 def turned_round(log, found):
-    """Returns the fit with the opposite sign of the force, if this fit explains the log and the fit `found` does not.
-    Otherwise returns None."""
+    """Returns the fit with the opposite sign of the force if this fit is much better than the fit `found`, and `found`
+    has a misfit or an implausible mass. Otherwise returns None."""
     if not found.misfit and _within(found.values[MASS], ACCEPTED):
         return None
     other = fit(_scaled(log, 1.0, 1.0, -1.0))
@@ -39,9 +39,10 @@ def is_usual(log, mass):
 
 
 def likely_units(log, found=None):
-    """Returns a list of at most three (text, factors by quantity), beginning with the smallest change. The factors
-    change units, and the sign of the force, so that the log describes a plausible handle. `found`: fit of the unscaled
-    log, or None."""
+    """Returns at most MAX_REPORTED likely explanations of the log, each as (text, factors by quantity). With the
+    factors, which change units and the sign of the force, the log describes a plausible handle. Only explanations that
+    change the fewest units are returned, beginning with the mass that is closest to 0.1 kg. `found`: fit of the
+    unscaled log, or None."""
     times = [one for one in TIMES if _within(one * log.step, STEPS)] or [1.0]
     positions = [
         one
@@ -65,8 +66,8 @@ def likely_units(log, found=None):
 
 def _unit_mass(log, time, position, found):
     """Returns (sign of the force, mass of the handle [kg] if all numbers were in s, N and m). The mass is proportional
-    to force * time^2 / position. If `found` is None or a misfit, the log is fitted with the units `time` and `position`
-    and with both signs of the force."""
+    to force * time^2 / position. If `found` is a Fit without a misfit, its mass is returned. Otherwise the log is
+    fitted with the units `time` and `position` and with both signs of the force."""
     if found is not None and not found.misfit:
         return 1.0, found.values[MASS]
     signs = {sign: fit(_scaled(log, time, position, sign)) for sign in (1.0, -1.0)}

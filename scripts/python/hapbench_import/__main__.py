@@ -19,24 +19,24 @@ from hapbench_command import (
 from .options import DECIMALS, FORMATS, ORIENTATIONS, PRESETS, list_of_presets, options_of
 
 NOTES = [
-    "Columns: time, position, orientation and force, each given by its first column, or single "
-    "ones: px, py, pz, qw, qx, qy, qz, mfx, mfy, mfz. A name also takes the columns of the other "
-    "components, by their names (x, y, z); a number, counted from 1, takes the columns after it.",
+    "Columns: time, position, orientation and force, each given by its first column; or single components: px, py, pz, "
+    "qw, qx, qy, qz, mfx, mfy, mfz. The name of a first column also selects the other components, by their names (x, "
+    "y, z). A column number, counted from 1, also selects the columns after it.",
     'Units in column names, such as "x [mm]", are applied; --scale overrides them.',
     "Orientation: none, axis (direction out of the tip), quat_wxyz, quat_xyzw, axis_angle (axis, "
-    "angle) or matrix (r11, r12 ... r33, row by row). It turns the tool's frame into the frame of "
-    "the scene.",
+    "angle) or matrix (r11, r12 ... r33, row by row). The orientation rotates the tool's frame into "
+    "the frame of the scene.",
     "Fields of --set: sample_rate_Hz (for a file without times), tip_axis (direction out of the "
     "tip in the tool's frame, default 0,0,-1), shift (added to the positions [m]), "
     "force_by_tool=true (the forces of the file act on the object; the command changes their "
     "sign), floats=true (hapi-binary with 4-byte numbers), max_speed, max_gap, held_rows.",
     "Held rows: if the file repeats each pose in several rows, the first row of each pose is used; "
-    "with --set held_rows=keep all rows are samples (default: thin).",
-    "Refused: invalid numbers, times that do not increase, quaternions not of unit length, jumps "
+    "with --set held_rows=keep all rows are samples (default: thin, which omits repeated rows).",
+    "Rejected: invalid numbers, times that do not increase, quaternions not of unit length, jumps "
     "faster than max_speed (default 5 m/s), gaps longer than max_gap (default 0.5 s). Each kind "
     "of fault is listed with its first row and the number of rows, nothing is written, and the "
     "exit status is 2.",
-    "Files: the stroke, a CSV file with one pose per row; it replaces an earlier one.",
+    "Files: the stroke, a CSV file with one pose per row. It replaces an earlier file.",
 ]
 EXAMPLES = [
     "hapbench import stroke",
@@ -97,7 +97,7 @@ def command_line():
         "--orientation",
         "<kind>",
         "what the orientation columns hold, see below (default: found from their names; none: "
-        "the tool does not turn)",
+        "the tool does not rotate)",
     )
     line.texts(
         "--frame",
@@ -117,8 +117,8 @@ def command_line():
     )
     line.flag(
         "--skip-bad-rows",
-        "leave out invalid rows and jumps and list them, instead of refusing the file; only a larger "
-        "--set max_gap=... accepts a longer gap",
+        "skip invalid rows and jumps and list them, instead of rejecting the file; only a larger --set max_gap=... "
+        "accepts a longer gap",
     )
     line.text(
         "--out", "<file.csv>", "stroke to write (default: FILE_stroke.csv in the current folder)"
@@ -135,7 +135,7 @@ def run(options):
         )
         return answer(
             options,
-            f"{table}\nCopy one from {PRESETS}, correct it and give it as --preset FILE.json.",
+            f"{table}\nTo adapt a preset, copy its file from {PRESETS}, edit the copy and use --preset FILE.json.",
             presets,
         )
     if not options.preset and not options.columns:

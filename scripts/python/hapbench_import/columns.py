@@ -1,4 +1,5 @@
-"""Finds the columns of a quantity by their names or numbers, without guessing, and reads units from the names."""
+"""Finds the columns of a quantity by their names or numbers, and reads units from the names. A name that does not state
+which columns belong together is not guessed."""
 import re
 from dataclasses import dataclass
 
@@ -35,7 +36,8 @@ SI = {"time": "s", "position": "m", "force": "N", "angle": "rad"}
 @dataclass
 class Unit:
     text: str  # unit as written in the name
-    # True if the ending is certainly a unit: in square brackets, or after "_" at the end of the name.
+    # True if `text` is certainly a unit: in square brackets, or after "/", "," or "_" at the end of the name. False if
+    # `text` is in round brackets.
     is_sure: bool
 
 
@@ -119,8 +121,7 @@ class Names:
         return f"{column + 1} {self.names[column]}".rstrip()
 
     def others(self, used):
-        """Returns number and name of each column that is not in `used`. `used`: the columns by quantity, from
-        Columns.used()."""
+        """Returns number and name of each column that is not in `used`, a result of Columns.used()."""
         read = {part["column"] for parts in used.values() for part in parts}
         return [self.title(i) for i in range(len(self.in_file())) if i + 1 not in read]
 
@@ -157,14 +158,15 @@ class Names:
         self.fail(quantity, f"got {quoted(word)}{near}")
 
     def indices(self, names):
-        """Returns the columns of all these names, or None if one of them is missing or not unique. Units are ignored,
-        because they stand after the component."""
+        """Returns the columns of all `names`, or None if a name is missing or names several columns. `names` have no
+        units; the names of the columns are compared without their units."""
         found = [self.bare.index(name) if self.bare.count(name) == 1 else None for name in names]
         return None if None in found or len(set(found)) < len(found) else found
 
     def nanoseconds(self, time):
-        """Returns a list with the column of nanoseconds that belongs to a column of whole seconds, such as secs and
-        nsecs of ROS; empty if there is none. `time`: list with the column of times."""
+        """If the times are in a column of whole seconds that has a column of nanoseconds, such as secs and nsecs of
+        ROS, returns a list with the column of nanoseconds. Otherwise returns an empty list. `time`: list with the
+        column of times; may be empty."""
         found = re.fullmatch(r"(|.*[._ /])secs?", self.names[time[0]]) if time else None
         for ending in ("nsecs", "nsec", "nanosec", "nanosecs") if found else ():
             if self.names.count(found[1] + ending) == 1:
@@ -172,9 +174,9 @@ class Names:
         return []
 
     def components(self, column, tokens, numbers=True):
-        """Returns the columns of all components if the names of the columns state the components and `column` is one of
-        them. Otherwise returns None. With `numbers`, names such as q0 are also accepted, although they do not state the
-        order of the components."""
+        """Returns the columns of all components if `column` is one of these columns and their names state the
+        components. Otherwise returns None. `tokens`: names of the components. With `numbers`, names such as q0 are also
+        accepted, although they do not state the order of the components."""
         name = self.bare[column]
         if not name:
             return None
@@ -211,8 +213,8 @@ _ANGLES = ("angle", "theta", "a", "Angle", "phi")
 
 
 def _between(names):
-    """Returns a list with the first name, in which a NUL character replaces the component: "axis_" and NUL for the
-    names axis_x, axis_y, axis_z."""
+    """Returns a list with one text: the first of `names`, in which a NUL character replaces the component. For the
+    names axis_x, axis_y and axis_z, the text is "axis_" and NUL."""
     at = next(i for i, pair in enumerate(zip(*names)) if len(set(pair)) > 1)
     return [names[0][:at] + "\0" + names[0][at + 1 :]]
 
@@ -222,8 +224,8 @@ def scale_text(quantity, scale):
 
 
 def scale_of(names, quantity, columns, given, notes):
-    """Returns the factor to SI units: the factor `given` by the user, or the factor of the unit in the column names, or
-    1."""
+    """Returns the factor to SI units: the factor `given` by the user. If `given` is None, returns the factor of the
+    unit in the column names, or 1 without a known unit."""
     unit = names.unit(quantity, columns)
     known = UNITS[quantity]
     factor = None if unit is None else known.get(unit.text, known.get(unit.text.lower()))
@@ -232,7 +234,7 @@ def scale_of(names, quantity, columns, given, notes):
         problem = f"column {title}: the unit {quoted(unit.text)} is unknown"
         if unit.is_sure:
             names.fail(
-                quantity, f"{problem}: --scale {quantity}=... says what it is in {SI[quantity]}"
+                quantity, f"{problem}: give the unit with --scale {quantity}=..., in {SI[quantity]}"
             )
         notes.append(f"{problem}; read as {SI[quantity]} (--scale {quantity}=...)")
     if factor is not None and given is not None and abs(given / factor - 1.0) > 1e-6:

@@ -1,8 +1,9 @@
-"""Finds the columns of each quantity and of its components in a recording, from the options."""
+"""Finds the columns of each quantity and of its components in a recording. The options name the columns."""
 from .columns import NAMED_AS, Names, scale_of
 from .options import ORIENTATIONS
 
-# Names of the components of a group of columns.
+# Key: the components of a group, named as in --columns. Value: how the names of columns state these components, such as
+# x in pos_x.
 LETTERS = {
     ("px", "py", "pz"): ("x", "y", "z"),
     ("mfx", "mfy", "mfz"): ("x", "y", "z"),
@@ -11,7 +12,7 @@ LETTERS = {
     ("qw", "qx", "qy", "qz"): ("w", "x", "y", "z"),
     ("qx", "qy", "qz", "qw"): ("x", "y", "z", "w"),
 }
-# Names of all components of orientations.
+# Components of all representations of an orientation, named as in --columns.
 PARTS = list(dict.fromkeys(sum(ORIENTATIONS.values(), ())))
 
 
@@ -51,8 +52,8 @@ class Columns:
         self._note_other_quantity()
 
     def used(self):
-        """Returns for each quantity a list of its components. Each entry has the component, and the number, name and
-        unit of its column."""
+        """Returns a dict from quantity to a list with a dict for each component: the component, and the number (from 1)
+        and the name of its column."""
         return {
             quantity: [
                 {
@@ -86,11 +87,14 @@ class Columns:
         if alone and not (group in named and not named & set(alone)):
             if group in named:
                 self.names.fail(
-                    group, f"is named as a whole and by {alone[0]}; allowed: one of them"
+                    group,
+                    f"its columns are given by {group} and by {alone[0]}; allowed: only one of the two",
                 )
             for part in parts:
                 if part not in wanted:
-                    self.names.fail(part, f"is missing beside others of {group}")
+                    self.names.fail(
+                        part, f"is missing; --columns names other components of {group}"
+                    )
             return [self._column(part) for part in parts]
         if not parts or group not in wanted:
             return []
@@ -102,7 +106,9 @@ class Columns:
         if first is None:
             if group not in self._options.optional:
                 self.names.unknown(group, wanted[group])
-            self.notes.append(f"no columns of {group} as the preset names them: left out")
+            self.notes.append(
+                f"the file has no columns of {group} with the names of the preset: the stroke has no {group}"
+            )
             return []
         found = self.names.components(first, letters)
         if by_number:
@@ -113,7 +119,7 @@ class Columns:
             if found[0] != first:
                 self.names.fail(
                     group,
-                    f"column {self.names.title(first)} is not its first by name; allowed: "
+                    f"column {self.names.title(first)} is not its first component by name; allowed: "
                     f"{group}={self.names.names[found[0]]}",
                 )
         elif found[0] != first:
@@ -137,7 +143,7 @@ class Columns:
         if by_name is not None and by_name != found:
             titles = ", ".join(map(self.names.title, found))
             self.notes.append(
-                f"columns {titles} are read as {group} in this order, as their number says; by their names it "
+                f"columns {titles} are read as {group} in this order, as their number says; by their names the order "
                 f"would be {', '.join(map(self.names.title, by_name))} "
                 f"(--columns {group}={self.names.names[by_name[0]]})"
             )
@@ -194,8 +200,8 @@ class Columns:
         kinds = ", ".join(kind for kind in ORIENTATIONS if kind != "none")
         self.names.fail(
             "orientation",
-            f"what begins at column {self.names.title(first)} is not known by its name; --orientation is missing; "
-            f"allowed: {kinds} (of Euler angles, make one of these)",
+            f"the name of column {self.names.title(first)} does not show the kind of orientation; --orientation is "
+            f"missing; allowed: {kinds} (convert Euler angles into one of these kinds first)",
         )
 
     def _refuse_unused(self):

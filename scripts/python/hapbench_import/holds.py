@@ -5,8 +5,9 @@ import numpy as np
 
 FEWEST_CHANGES = 10
 MAX_ROWS = 200  # largest number of rows that repeat one sample
-# Samples count as held if at least the fraction ALL of the distances between changes are multiples of one number of
-# rows, or if at least the fraction NEARLY_ALL of the distances are within one row of their median.
+# Samples count as held if the numbers of rows between successive changes of the value are regular: at least the
+# fraction ALL of these numbers are multiples of the same number, or at least the fraction NEARLY_ALL of these numbers
+# differ from their median by at most 1.
 ALL, NEARLY_ALL = 0.98, 0.9
 
 

@@ -55,7 +55,7 @@ class Options:
     sample_rate_Hz: float | None = None  # sampling rate of a file without times
     scale: dict = field(
         default_factory=dict
-    )  # units of "time", "position", "angle" and "force", in SI units
+    )  # for "time", "position", "angle" and "force": the factor from the recorded unit to the SI unit
     # Representation of the orientation, a key of ORIENTATIONS. None: determined from the names of the columns.
     orientation: str | None = None
     named: frozenset = frozenset()  # quantities of `columns` that the command line sets
@@ -69,14 +69,15 @@ class Options:
         (0.0, 1.0, 0.0),
         (0.0, 0.0, 1.0),
     )  # rotation from the recorded world frame to the scenario's frame
-    shift: tuple = (0.0, 0.0, 0.0)  # added to positions in the scenario's frame [m]
+    # Vector in the scenario's frame that is added to the positions [m].
+    shift: tuple = (0.0, 0.0, 0.0)
     # True if the recorded forces act on the object; they are then negated.
     force_by_tool: bool = False
     rate: float | None = None  # rate of the stroke [Hz]; None: as recorded
     # Window [samples] and order of the smoothing polynomial; None: no smoothing.
     smooth: dict | None = None
     max_speed: float = 5.0  # larger speeds between samples are errors [m/s]
-    max_gap: float = 0.5  # longer gaps are errors [s]
+    max_gap: float = 0.5  # longer times between samples are errors [s]
     skip_bad_rows: bool = False
     # "thin" omits rows that repeat a held sample; "keep" uses these rows as samples.
     held_rows: str = "thin"
@@ -135,7 +136,7 @@ def list_of_presets():
 
 
 def _presets():
-    """Returns the files of the presets by name."""
+    """Returns a dict from the name of each preset to its file."""
     return {file.stem: str(file) for file in sorted(PRESETS.glob("*.json"))}
 
 
@@ -257,8 +258,8 @@ def _scale(options, value):
 
 
 def _frame(_, words):
-    """Returns the rotation matrix for three words, such as x, -z, y. The words are the directions of the
-    recording that become the scenario's x, y and z."""
+    """Returns the rotation matrix from the recorded frame to the scenario's frame. `words`: the recorded directions
+    that become the x, y and z axes of the scenario, such as x, -z, y."""
     rows = [
         [
             0.0 if word.removeprefix("-") != letter else -1.0 if word.startswith("-") else 1.0

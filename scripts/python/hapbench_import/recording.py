@@ -9,7 +9,7 @@ from hapbench_command import fail, finite_number, nearest, plain, quoted
 
 from .text_table import has_decimal_commas, read_table, with_points
 
-LARGEST_FILE = 4 << 30  # [bytes]
+LARGEST_FILE = 4 << 30  # largest size of a file [bytes]
 # Number of columns of each field of a HAPI log.
 HAPI_FIELDS = {
     "TIME": 1,
@@ -41,14 +41,14 @@ class Recording:
         self.file, self.names, self.rows, self.row_numbers = file, names, rows, row_numbers
         self.row_word, self.notes, self._decimal = row_word, list(notes), decimal
         self.is_binary = isinstance(rows, np.ndarray)
-        # True if no note about decimal commas is needed: the user has chosen them, or a note has mentioned them.
+        # True if no note about decimal commas is needed, because the user has chosen them or the note already exists.
         self._is_comma_noted = decimal == "comma"
 
     def location(self, row):
         return f"{self.file}, {self.row_word} {self.row_numbers[row]}"
 
     def problems(self):
-        """Returns the problem of each row that has the wrong number of values, by row."""
+        """Returns a dict from the index of each row that has the wrong number of values to the problem."""
         if self.is_binary:
             return {}
         return {
@@ -100,7 +100,7 @@ class Recording:
 
     def clock(self, column, nanoseconds=None, scale=1.0):
         """Returns (origin, numbers minus the origin) for a column of times. `nanoseconds`: column of nanoseconds that
-        are added to the times, or None. The origin is the first time if there are nanoseconds, or if the times are
+        are added to the times, or None. The origin is the first time if `nanoseconds` is given, or if the times are
         integers that are too large for a double, such as nanoseconds since 1970. Otherwise the origin is 0. Times of
         day, with or without a date (ISO 8601), are converted to seconds since the first time of day. `scale`: seconds
         per unit of the times; must be 1 for times of day."""
@@ -153,7 +153,7 @@ class Recording:
             self._is_comma_noted = True
             self.notes.append(
                 f"{self.row_word} {self.row_numbers[first]}: got {self.shown(column, first)}: numbers have a decimal "
-                "comma and are read as such (--decimal comma; --decimal point refuses them)"
+                "comma and are read as such (--decimal comma; --decimal point rejects them)"
             )
         return cells
 
@@ -275,7 +275,7 @@ def _binary(data, file, floats):
     while (end := data.find(b"\0", at)) != at:
         if end < 0 or end - at > longest:
             fail(
-                f"no NUL within {longest} bytes behind field name {len(names) + 1}; allowed: a "
+                f"no NUL within {longest} bytes after field name {len(names) + 1}; allowed: a "
                 "binary HAPI log (a text log has "
                 "--format hapi)",
                 file,
@@ -290,7 +290,7 @@ def _binary(data, file, floats):
     count, rest = divmod(len(data) - end - 1, kind.itemsize)
     remark = (
         (
-            f"behind sample {count} are {rest} bytes, less than the {kind.itemsize} of a sample: "
+            f"after sample {count} follow {rest} bytes, less than the {kind.itemsize} bytes of a sample: "
             "the log was cut off, or its numbers "
             f"are {'doubles (--set floats=false)' if floats else 'floats (--set floats=true)'}"
         )

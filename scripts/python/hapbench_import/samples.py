@@ -21,14 +21,14 @@ MIN_JUMP = (
 )
 _EXPONENT_OF_FORTRAN = re.compile(rb"[+-]?(\d+\.?\d*|\.\d+)[dD][+-]?\d+")
 TIMES_OF_DAY = '"05:59:00.002" or "2026-11-28T05:59:00.002Z"'
-LENGTHS = {1e-3: "millimetres", 1e-6: "micrometres"}  # name by unit of length [m]
+LENGTHS = {1e-3: "millimetres", 1e-6: "micrometres"}  # names of units of length; key: the unit [m]
 DEGREE = math.pi / 180.0
 DOWN = np.array([0.0, 0.0, -1.0])  # axis that points out of the tip, in the tool frame
 
 
 @dataclass
 class Samples:
-    time: np.ndarray  # [s], strictly increasing
+    time: np.ndarray  # times [s], strictly increasing
     position: np.ndarray  # position of the tip [m]
     turn: Rotation  # rotation from the tool frame to the world frame
     force: np.ndarray | None  # force on the tool [N]; None if not measured
@@ -37,21 +37,23 @@ class Samples:
 
 @dataclass
 class Read:
-    """A recording after reading, with its samples."""
+    """Result of read_samples(): the samples of a recording, and properties of the recording."""
 
     samples: Samples
     recording: object
-    kept: np.ndarray  # row numbers of the samples
-    # (position in the file, problem) for the bad rows that were omitted, once for each kind of problem.
+    kept: np.ndarray  # for each sample, the index of its row in `recording`
+    # (location in the file, problem) for the bad rows that were omitted, once for each kind of problem.
     left_out: list
-    unit_deviation: float  # largest |norm - 1| of an orientation before it was normalised
+    # Largest deviation of a recorded orientation from a rotation: |norm - 1| of a quaternion or of a rotation axis, or
+    # the largest element of |M^T M - 1| of a matrix M.
+    unit_deviation: float
     notes: list  # notes for the user of the stroke
     coordinates: np.ndarray  # positions before rotation and shift [m]
     rows_left_out: int  # number of omitted rows, over all kinds of problems
     origin: float  # time of the recording minus time in `samples` [s]
     columns: dict  # Columns.used()
     columns_not_read: list  # numbers and names of the columns that were not read
-    scales: dict  # factors to SI units, by quantity
+    scales: dict  # dict from quantity to its factor to SI units
     held: object  # Hold of the samples; None if no sample is repeated in several rows
 
 
@@ -90,7 +92,8 @@ class Rows:
                 self.orientation[:, 3] *= scale
             self._check_orientation()
         forces = np.zeros(1) if self.force is None else np.linalg.norm(self.force, axis=1)
-        self.clock_problems = set(self.problems)  # rows whose time or position is missing
+        # Rows that require_likely_clock() ignores: rows with a problem other than too large a number.
+        self.clock_problems = set(self.problems)
         fits = (
             (np.linalg.norm(self.position, axis=1) < 1e6)
             & (forces < 1e9)
@@ -206,7 +209,7 @@ class Rows:
             # The identity rotation needs no axis.
             no_turn = (self.kind == "axis_angle") & (lengths == 0.0) & (values[:, 3] == 0.0)
             deviation = np.where(no_turn, 0.0, np.abs(lengths - 1.0))
-            what = "a turn's axis" if self.kind == "axis_angle" else "a quaternion"
+            what = "a rotation axis" if self.kind == "axis_angle" else "a quaternion"
             self._refuse(
                 ~(deviation <= UNIT_TOLERANCE),
                 lambda row: f"got {what} of norm {lengths[row]:.6g}; allowed: 1 within {UNIT_TOLERANCE:g}",
@@ -223,10 +226,11 @@ def _from_down_to(axes):
 
 
 def read_samples(recording, options):
-    """Reads the samples of a recording. Bad rows have a wrong number of values, a value that is not a finite number, a
-    time that does not increase, an invalid orientation, or a jump faster than max_speed. By default, bad rows are
-    refused in one message, with the first row of each kind of problem. With the option skip_bad_rows, bad rows are
-    omitted. Rows that repeat a held sample are also omitted, except with held_rows = "keep"."""
+    """Returns the Read of a recording. Bad rows have a wrong number of values, a value that is not a finite number or
+    is too large, a time that does not increase, an invalid orientation, or a jump faster than max_speed. By default, a
+    recording with bad rows is refused with one message, which has the first row of each kind of problem. With the
+    option skip_bad_rows, bad rows are omitted. Rows that repeat a held sample are also omitted, except with the
+    option held_rows = "keep"."""
     columns = Columns(recording, options)
     with np.errstate(invalid="ignore", over="ignore"):
         rows = Rows(recording, columns, options)
@@ -242,7 +246,7 @@ def read_samples(recording, options):
     faults = recording.faults(problems)
     if faults and not options.skip_bad_rows:
         location, problem = faults[-1]
-        faults[-1] = (location, f"{problem}; --skip-bad-rows leaves bad rows out")
+        faults[-1] = (location, f"{problem}; --skip-bad-rows skips bad rows")
         raise Faults(faults[:MAX_FAULTS])
     if len(kept) < 2:
         fail(
@@ -274,8 +278,9 @@ def read_samples(recording, options):
 
 
 def _held_rows(rows, options, notes):
-    """Returns the Hold of the rows without problems. Its `fresh` has an entry for every row. Returns None if samples
-    are not held, or if the option held_rows is "keep"."""
+    """Returns the Hold of the rows without problems. Its array `fresh` has an entry for every row; the entry is false
+    for rows with problems. Returns None if samples are not held, or if the option held_rows is "keep".
+    """
     usable = np.array([row not in rows.problems for row in range(len(rows.time))], bool)
     values = [rows.recorded] + ([rows.orientation] if rows.kind != "none" else [])
     held = hold_of(np.column_stack(values)[usable]) if usable.any() else None
@@ -291,7 +296,7 @@ def _held_rows(rows, options, notes):
     forces = rows.force is not None and not _is_held(rows.force[usable], held.fresh)
     notes.append(
         f"{text}; the first row of each is used"
-        + (", and the forces of the other rows are left out" if forces else "")
+        + (", and the forces of the other rows are omitted" if forces else "")
         + " (--set held_rows=keep uses all rows)"
     )
     fresh = np.zeros(len(rows.time), bool)
@@ -306,8 +311,9 @@ def _is_held(values, fresh):
 
 
 def _with_hints(rows, count):
-    """Returns the problems of the rows. If more than a third of the rows are jumps, adds the scale of length that would
-    make their speed plausible."""
+    """Returns the problems of the rows. If at least three rows and more than a third of all rows are jumps, adds to
+    their problems the scale of length that would make their speed plausible. `count`: number of all rows.
+    """
     jumps = [row for row, speed in rows.jumps.items() if row in rows.problems]
     if len(jumps) < 3 or 3 * len(jumps) <= count:
         return rows.problems
@@ -325,8 +331,9 @@ def _with_hints(rows, count):
 
 
 def _in_sequence(rows, max_speed, held):
-    """Returns the rows whose times increase and whose speed since the row before is at most `max_speed`. Records in
-    rows.problems why the other rows are rejected. Skips repeated rows of a held sample."""
+    """Returns the rows that become samples. From each returned row to the next returned row, the time increases, and
+    the position moves by at most MIN_JUMP or with at most `max_speed` [m/s]. Adds to rows.problems why other rows are
+    rejected. Skips rows that repeat a held sample."""
     kept, time, position = [], rows.time.tolist(), rows.position.tolist()
     for row in range(len(time)):
         if row in rows.problems or (held is not None and not held.fresh[row]):

@@ -78,11 +78,11 @@ def import_stroke(recording, options):
     warnings = _warnings(read, gaps, found)
     if along > 0.5:
         warnings.append(
-            "the measured force points along the tip, into the surface; a surface pushes the other way: "
+            "the measured force points along the tip, into the surface; a surface pushes in the opposite direction: "
             + (
-                "are the forces those on the tool? (leave out force_by_tool=true)"
+                "does the file have the forces on the tool? (omit force_by_tool=true)"
                 if options.force_by_tool
-                else "are the forces those of the tool on the object? (--set force_by_tool=true)"
+                else "does the file have the forces of the tool on the object? (--set force_by_tool=true)"
             )
         )
     return stroke, found | {"warnings": warnings}
@@ -187,17 +187,18 @@ def resample(samples, rate):
 
 
 def smooth(stroke, window, order):
-    """Smooths by least-squares polynomials over windows of neighbours (Savitzky and Golay 1964). A sample gets the
-    value in the middle of its window; samples at both ends get values of the first and the last window's polynomial.
-    Smooths positions and the components of quaternions, which are normalised again. Forces are measurements and are not
-    smoothed."""
+    """Smooths the positions and the components of the quaternions in `stroke` by least-squares polynomials over windows
+    of neighbouring samples (Savitzky and Golay 1964). A sample gets the value of the polynomial in the middle of its
+    window. The samples before the middle of the first window and after the middle of the last window get values of the
+    polynomial of this window. The quaternions are normalised again. Forces are measurements and are not smoothed.
+    Returns statistics of the changes for the JSON."""
     n = len(stroke.time)
     if window < 3 or window % 2 == 0 or window > 10001 or window > n:
         fail(f"smooth: got a window of {window} samples; allowed: odd, 3 ... {min(n, 10001)}")
     if order >= window or order > 20:
         fail(f"smooth: got order {order}; allowed: 0 ... {min(window - 1, 20)}")
     half = window // 2
-    # Orthogonal polynomials keep high orders accurate; scipy.signal.savgol_filter uses powers.
+    # Orthogonal polynomials keep high orders accurate. scipy.signal.savgol_filter uses powers, which are less accurate.
     basis, _ = np.linalg.qr(
         np.polynomial.chebyshev.chebvander(np.arange(-half, half + 1) / half, order)
     )
@@ -285,7 +286,7 @@ def recording_rows(found):
     rows = [
         (
             "rows",
-            f"{found['rows_read']} read, " + (f"{bad} bad rows left out" if bad else "all used"),
+            f"{found['rows_read']} read, " + (f"{bad} bad rows skipped" if bad else "all used"),
         ),
         (
             "clock",
@@ -399,9 +400,9 @@ def columns_text(columns, not_read, scales):
 
 def into_surface(stroke):
     """Returns the mean cosine of the angle between the measured force and the direction out of the tip, over the
-    samples with more than a fifth of the largest force. A positive mean indicates a force of the opposite sign, because
-    a surface pushes against the tip. Returns 0 without forces, with fewer than 10 of these samples, or if the cosine is
-    positive in at most 95 % of these samples."""
+    samples with more than a fifth of the largest force. A positive mean indicates that the force has the wrong sign,
+    because a surface pushes against the tip. Returns 0 without forces, with fewer than 10 of these samples, or if the
+    cosine is positive in at most 95 % of these samples."""
     if stroke.force is None:
         return 0.0
     sizes = np.linalg.norm(stroke.force, axis=1)
@@ -415,7 +416,7 @@ def into_surface(stroke):
 def _warnings(read, gaps, found):
     warnings = list(read.notes)
     if read.left_out:
-        warnings.append(f"{read.rows_left_out} bad rows were left out")
+        warnings.append(f"{read.rows_left_out} bad rows were skipped")
     warnings += [f"{location}: {problem}" for location, problem in read.left_out[:20]]
     warnings += [
         f"a gap of {duration:.4g} s after {read.recording.row_word} "
@@ -440,14 +441,15 @@ def _warnings(read, gaps, found):
 
 
 def _clock_warnings(found):
-    """Returns a list with at most one warning: the sampling rate or the speed is unusual. The warning names the time
-    scale that would make it usual."""
+    """Returns a list with a warning if the sampling rate or the speed is unusual, otherwise an empty list. If the times
+    are probably in another unit, the warning names the scale of time that would make the rate usual.
+    """
     rate, speed = found["rate_Hz"], found["speed_p99_m_per_s"]
     scale = found["scales"].get("time", 1.0)
     what = f"{rate:.4g} samples per second and a speed of {speed:.3g} m/s"
     if rate > USUAL_RATES[1] and any(low < found["first_time_s"] < high for low, high in DAYS):
         return [
-            f"{what} are unusual: are the times days, as those of spreadsheets and MATLAB? (with --scale time=86400 "
+            f"{what} are unusual: are the times in days, as in spreadsheets and MATLAB? (with --scale time=86400 "
             f"the rate is {rate / 86400:.4g} Hz)"
         ]
     if rate < USUAL_RATES[0] or (rate < 20.0 and 0.0 < speed < 2e-3):

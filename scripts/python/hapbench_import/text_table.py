@@ -107,14 +107,20 @@ def _utf8(data, file, notes):
         try:
             data = data.decode(encoding).encode()
         except UnicodeDecodeError:
-            fail(f"begins as {encoding.upper()}, and is none; allowed: UTF-8", file)
+            fail(
+                f"begins like {encoding.upper()}, but is not valid {encoding.upper()}; allowed: UTF-8",
+                file,
+            )
         notes.append(f"the text is {encoding[:6].upper()}; it was read as such")
     data = data.removeprefix(codecs.BOM_UTF8)
     # Zero bytes at the end come from a file that was allocated before it was written.
     zero = data.rstrip(b"\0\r\n \x1a").find(b"\0")
     if zero >= 0:
         line = data.count(b"\n", 0, zero) + 1
-        fail("has a zero byte: it is no text; allowed: a text in UTF-8", f"{file}, line {line}")
+        fail(
+            "has a zero byte, so the file is not a text; allowed: a text in UTF-8",
+            f"{file}, line {line}",
+        )
     text = data.rstrip(b"\0\x1a")
     if len(text) < len(data):
         notes.append(
@@ -186,8 +192,8 @@ def split(line, separator):
 
 
 def is_number(cell):
-    """Returns True for a number and for "nan". A number may have a decimal comma if commas do not separate cells, or if
-    the number is quoted."""
+    """Returns True for a number, "nan" and "inf". A number may have a decimal comma if commas do not separate cells, or
+    if the number is quoted."""
     return (
         not math.isnan(finite_number(cell))
         or _NOT_A_NUMBER.fullmatch(cell) is not None
@@ -196,8 +202,8 @@ def is_number(cell):
 
 
 def _sample(lines):
-    """Returns some of the first lines, and some lines further below. A file may have up to MAX_ABOVE lines above its
-    header."""
+    """Returns the first SAMPLED lines, and SAMPLED lines that lie more than MAX_ABOVE lines further below. A file may
+    have up to MAX_ABOVE lines above its header, which say nothing about the separator."""
     return lines[:SAMPLED] + lines[SAMPLED + MAX_ABOVE :][:SAMPLED]
 
 
@@ -215,8 +221,8 @@ def _separator(lines):
 
 
 def _header(words):
-    """Returns the words of a header as names. Returns an empty list if a word is a number, or if all words are empty or
-    "nan"."""
+    """Returns the words of a line as names if the line can be a header. Returns an empty list if a word is a number, or
+    if every word is empty, "nan" or "inf"."""
     named = [word for word in words if word and not _NOT_A_NUMBER.fullmatch(word)]
     if not named or any(is_number(word) and not _NOT_A_NUMBER.fullmatch(word) for word in words):
         return []
@@ -224,8 +230,8 @@ def _header(words):
 
 
 def _from_header_on(lines, separator, notes):
-    """Returns the lines from the header on. The header is directly above the first rows of numbers and has the same
-    number of cells."""
+    """Returns `lines` without the lines above the header. The header is one line or several lines directly above the
+    first rows of numbers. Its lines have as many cells as these rows, or one cell more."""
     rows = [split(line, separator) for _, line in lines[: 2 * SAMPLED + MAX_ABOVE]]
     counts = [len(row) - (not row[-1]) for row in rows]  # a separator may be at the end
     numbers = [is_row(row) for row in rows]
@@ -236,7 +242,7 @@ def _from_header_on(lines, separator, notes):
     )
     if first == len(rows):
         first = counts.index(usual)
-    # A header may have one name more than the rows have cells, namely the name of a column without values.
+    # The additional cell of a header is the name of a column without values.
     widths = (usual, usual + 1)
     while first and not numbers[first - 1] and _header(rows[first - 1]):
         above = rows[first - 1]
@@ -306,8 +312,8 @@ def _are_distinct(names):
 
 
 def _units_of(words):
-    """Returns the unit of each word in a line below the header, "" for a column without a unit. Returns an empty list
-    if a word is not a unit."""
+    """Returns the units in a line of the header if the line has only units; "" for a column without a unit. Returns an
+    empty list if a word is not a unit, or if no column has a unit."""
     words = [word.decode("utf-8", "replace").strip("[]()") for word in words]
     is_unit = [
         word in ("", "-") or any(word in known for known in UNITS.values()) for word in words
@@ -383,7 +389,8 @@ def _refuse_decimal_commas_between_commas(table, file):
 
 
 def has_decimal_commas(rows):
-    """Returns True if the commas of some cell can only be decimal commas, as in "0,002" but not in "1,234"."""
+    """Returns True if at least one cell has a comma that can only be a decimal comma, as in "0,002" but not in
+    "1,234"."""
     return any(
         _COMMA_NUMBER.fullmatch(cell) and not _THOUSANDS.fullmatch(cell)
         for row in rows

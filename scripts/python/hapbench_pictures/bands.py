@@ -1,5 +1,5 @@
-"""Draws a quantity over time for several runs of each law: the mean, in a band from the smallest to the largest
-value."""
+"""Draws a quantity over time for several runs of each law: a curve of the mean over the runs, and a band from the
+smallest to the largest value of the runs."""
 import numpy as np
 
 from .panels import cut_off_peaks, share_an_axis
@@ -8,8 +8,8 @@ SPANS = 300  # number of time spans of a curve
 
 
 def draw_bands(ax, quantity, laws, looks):
-    """Draws one mean with its band for each law. `laws`: for each law, the Samples of its runs. `looks`: look of each
-    law."""
+    """Draws the mean over the runs and the band for each law. `laws`: for each law, a list with an object Samples for
+    each run. `looks`: look of each law."""
     drawn = [
         (s, one, s.of(quantity)) for runs, one in zip(laws, looks) for s in runs if s.of(quantity)
     ]

@@ -1,4 +1,5 @@
-"""Picture of the levels of `converge`: the error of each metric over the refined field, and over the run time."""
+"""Picture of the results of `converge`. `converge` runs a scenario several times and refines one field from run to run.
+The picture shows the error of each metric over the value of this field, and over the processor time."""
 from itertools import cycle
 
 import numpy as np
@@ -16,9 +17,9 @@ ORDERS, LEVELS, TIMES = "converge.csv", "converge_levels.csv", "converge_levels_
 
 
 def draw_converge(files, sheet=SHEET):
-    """Draws the relative error of each metric in two panels: over the refined field, with a line whose slope is the
-    formal order, and over the run time. Filled marks: metrics whose order was observed. Hollow marks: metrics without
-    an observed order.
+    """Draws the relative error of each metric in two panels: over the value of the refined field, and over the
+    processor time per run. The first panel also has a line whose slope is the formal order. Metrics with an observed
+    order have filled marks and a line; metrics without an observed order have hollow marks and no line.
     """
     orders, levels, times = (
         files.records(ORDERS),

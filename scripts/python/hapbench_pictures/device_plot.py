@@ -1,4 +1,5 @@
-"""Picture of the limits of `limit --device`: one limit for each device, or limits of each device over another field.
+"""Picture of the limits of `limit --device`. Without --over, each device has one limit. With --over, each device has a
+curve of limits over the values of the last field of --over.
 Each device has one colour; the linear limit and the simulated limit have different marks."""
 import numpy as np
 from matplotlib.lines import Line2D
@@ -16,7 +17,7 @@ from .over_axes import Axis, over_axes
 LINEAR = {"marker": "s", "mfc": "white", "mew": 1.1, "ms": 4.2}
 SIMULATED = {"marker": "o", "ms": 4.2}
 # Style of a simulated limit that does not separate stable from unstable runs: there are unstable runs on its stable
-# side, or stable runs beyond it. It is not joined to other limits.
+# side, or stable runs on its unstable side. No line joins this limit to other limits.
 ALTERNATING = {"marker": "o", "mfc": "white", "mew": 1.1, "ms": 4.2, "ls": "none"}
 # Style of a limit that is larger than the searched range, because all runs up to the end of the range are stable.
 BEYOND = {"ms": 4.2, "mfc": "white", "mew": 0.9}
@@ -42,9 +43,9 @@ def looks_of(rows):
 
 
 def linear(rows):
-    """Returns the linear limit of each row: the limit of the contact loop, or if the row has no such limit, the
-    theoretical limit of bilateral springs. The value is NaN if the row has neither limit, or if the
-    limit is not positive."""
+    """Returns the linear limit of each row. If the row has no linear limit, returns its theoretical limit, which holds
+    for bilateral springs. The value is NaN if the row has neither limit, or if the limit is not positive.
+    """
     linear_limit, theory = numbers(rows, "linear_limit"), numbers(rows, "theoretical_limit")
     values = np.where(np.isfinite(linear_limit), linear_limit, theory)
     return np.where(np.isfinite(values) & (values > 0), values, np.nan)
@@ -73,7 +74,7 @@ def simulated_kinds(rows):
 
 
 def published(rows):
-    """Returns the published limit [N/m] by device, for the devices that have one."""
+    """Returns the published limit [N/m] by device. Devices without a published limit are left out."""
     return {
         device_of(row): float(row["published_N_per_m"])
         for row in rows
@@ -115,7 +116,7 @@ def panels_of(rows):
 
 
 def title_of(found):
-    """Returns the title of the limits, such as "largest stable stiffness K [N/m]"."""
+    """Returns the title of the axis on which limits are drawn, such as "largest stable stiffness K [N/m]"."""
     return f"{found.rows[0]['side']} stable {axis(found.field)}"
 
 
@@ -156,7 +157,8 @@ def draw_devices_over(found, sheet):
 
 
 def curves_of(found, rows, colour, is_variant):
-    """Returns the linear and simulated limits of one device, in the format of the argument `series` of over_axes()."""
+    """Returns curves of the linear and the simulated limits of one device: (label, x values, y values, plot style) of
+    each curve."""
     x, (separated, alternating, _) = found.along(rows), simulated_kinds(rows)
     shown = {"color": colour, "mec": colour, "lw": THIN if is_variant else 1.3}
     return [

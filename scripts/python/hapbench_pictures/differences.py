@@ -1,7 +1,8 @@
 """Compares the results A and B of two runs, or of two folders with several runs, as a regression test.
 
-Results are the outcome, the metrics and the warnings in summary.json, trajectory.csv and sweep.csv. Differences in the
-fields of the scenario are printed but do not count. Provenance, times and work counters are not compared.
+The compared results are the outcome, the metrics and the warnings of summary.json, and the tables trajectory.csv and
+sweep.csv. Differences between the fields of the scenarios are printed but are not differences of the results.
+Provenance, times and work counters are not compared.
 """
 import json
 import math
@@ -95,8 +96,8 @@ def flat(value, path=""):
 
 
 def results_of(summary):
-    """Returns the results of a summary as texts by name. Metrics are named without their section, as in the field
-    `expect`. Each warning is a separate result."""
+    """Returns the results of a summary: a text for each name. The name of an entry of the section "metrics" does not
+    contain the section, as in the field `expect`. Each warning is a separate result."""
     found = [
         pair
         for key, value in summary.items()
@@ -107,8 +108,9 @@ def results_of(summary):
 
 
 def fields_of(run):
-    """Returns the fields of a run's scenario as texts by path. A file is represented by its contents. Expectations are
-    excluded, because they do not change a run."""
+    """Returns the value of each field of a run's scenario as a text, by the path of the field. The text of a file is
+    its name and a checksum of its contents. Expectations are excluded, because they do not change a run.
+    """
     scenario = read_object(run / SCENARIO, parse_float=str, parse_int=str)
     found = dict(flat({key: value for key, value in scenario.items() if key != "expect"}))
     files = {
@@ -122,7 +124,8 @@ def fields_of(run):
 
 
 def changed(a, b):
-    """Returns the entries whose texts differ, and the entries that only `a` or only `b` has."""
+    """Compares two dicts of texts. Returns (name, text in `a`, text in `b`, difference, relative difference) of each
+    name whose texts differ. If only one of the dicts has the name, the text of the other is "-"."""
     return [
         (name, a.get(name, "-"), b.get(name, "-"), *sizes(a.get(name, "-"), b.get(name, "-")))
         for name in {**a, **b}
@@ -144,8 +147,9 @@ def sizes(a, b, largest=0.0):
 
 def of_tables(a, b):
     """Returns an entry for each column that differs: the row with the largest absolute difference, with both values.
-    The relative difference is the difference divided by the largest magnitude in the column. Another entry states
-    different numbers of rows or different names of columns."""
+    The relative difference is the difference divided by the largest magnitude in the column. If the tables
+    have different numbers of rows, a further entry states both numbers. If they have different columns, a further entry
+    states both lists of columns."""
     (names_a, rows_a), (names_b, rows_b) = read_rows(a), read_rows(b)
     found = [
         (what, one, other, NO_NUMBER, NO_NUMBER)
@@ -184,7 +188,8 @@ def of_tables(a, b):
 
 def are_equal(found, tolerance):
     """Returns True if all differences are numbers within a relative tolerance. An entry that only A or only B has is
-    always a difference. The state hash, which changes with any bit, counts only if the tolerance is 0.
+    always a difference. The state hash, which changes with any bit, counts only if the tolerance is 0. Differences of
+    the scenarios' fields do not count.
     """
     return all(
         relative <= tolerance and tolerance > 0 or (tolerance > 0 and name.startswith("state_hash"))

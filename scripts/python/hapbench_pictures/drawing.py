@@ -1,4 +1,4 @@
-"""Drawings of a page. Each drawing exists for a light and for a dark background."""
+"""Drawings in a page of `hapbench report`. A page contains each drawing for a light and for a dark background."""
 import base64
 from dataclasses import replace
 
@@ -18,8 +18,9 @@ SIZE, SCENE_SIZE = (4.0, 2.0), (4.0, 2.9)
 
 
 def drawing(size, draw, light, title, words, **labels):
-    """Returns a drawing with one pair of axes as HTML, for both backgrounds. `draw(ax, looks, paper)` draws the curves.
-    `light`: looks of the curves on a light background. `words`: description for screen readers."""
+    """Returns a drawing with one pair of axes as HTML, for both backgrounds. `draw(ax, looks, paper)` draws the curves;
+    `paper` is LIGHT or DARK. `light`: looks of the curves on a light background. `words`: description for screen
+    readers. `labels`: arguments of ax.set()."""
 
     def of(paper, shown):
         figure, ax = plt.subplots(figsize=size)
@@ -33,8 +34,9 @@ def drawing(size, draw, light, title, words, **labels):
 
 
 def on_both_grounds(draw, light, dark, title, words):
-    """Returns HTML with a drawing for each background. `draw(paper, looks)` returns a figure. `words`: description of
-    the drawing for screen readers."""
+    """Returns HTML with a drawing for each background. `draw(paper, looks)` returns a figure; `paper` is LIGHT or DARK.
+    `light`, `dark`: the looks for each background. `words`: description of the drawing for screen readers.
+    """
     images = []
     for paper, shown, name in ((LIGHT, light, "only-light"), (DARK, dark, "only-dark")):
         with plt.rc_context({**SETTINGS, **settings(paper)}):

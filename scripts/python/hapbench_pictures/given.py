@@ -23,8 +23,9 @@ NO_INPUT = ("expect", "description", "name", "source")
 
 
 def given_alone(words, files, what):
-    """Returns the folder among the arguments that contains one of `files` and no single run, or None. A folder of this
-    kind must be the only argument; otherwise raises InputError with the text `what`."""
+    """Returns the folder among the arguments `words` that contains one of `files` but is not the folder of a single
+    run. Returns None if there is no such folder. If there is one and it is not the only argument, raises InputError
+    with the text `what`."""
     found = [
         Path(word)
         for word in words
@@ -122,8 +123,8 @@ def plain(run):
 
 
 def by_seed(run):
-    """Returns the paths of the fields that differ between repetitions: the seed and, in a comparison, the start
-    (--jitter)."""
+    """Returns the paths of the fields that differ between repetitions: the seed, and in a comparison with --seeds also
+    the initial position, which --jitter changes."""
     return ("seed", "initial.position_m") if SEED_FOLDER.fullmatch(run.folder.name) else ("seed",)
 
 
@@ -151,8 +152,8 @@ def relative_folders(runs):
 
 
 def common_folder(words):
-    """Returns the deepest folder that contains all runs or logs; for a single run, the folder of the run. Returns the
-    working directory for a pipe."""
+    """Returns the deepest folder that contains all runs or logs. For a single run, returns the folder of the run. If
+    the argument is neither a file nor a folder, such as a pipe, returns the working directory."""
     path = (
         Path(os.path.commonpath([os.path.abspath(word) for word in words]))
         if len(words) > 1
@@ -175,8 +176,9 @@ def fields_of(run):
 
 
 def differing(flat):
-    """Returns the paths of the fields that differ between the runs, with a list of the values of all runs. Names,
-    descriptions and expectations are excluded."""
+    """Returns a dict: for the path of each field that differs between the runs, the list of its values in all runs.
+    Names, descriptions, sources and expectations are excluded. `flat`: for each run, the values of its fields by path.
+    """
     values = {
         path: [fields.get(path) for fields in flat]
         for path in dict.fromkeys(p for fields in flat for p in fields)
@@ -221,8 +223,8 @@ def axis(path, among=()):
 
 
 def entry(path, value, among):
-    """Returns a text with a field and its value for a legend, such as "K = 40 000 N/m"; "PATH=VALUE" if another
-    field of the legend has the same title. `among`: all fields in the legend."""
+    """Returns a text with a field and its value for a legend, such as "K = 40 000 N/m". If another field of the legend
+    has the same title, returns "PATH=VALUE" instead. `among`: all fields in the legend."""
     title, unit = title_and_unit(path)
     if is_ambiguous(path, among):
         return f"{path}={shown(value)}"

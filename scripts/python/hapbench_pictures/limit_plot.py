@@ -1,5 +1,5 @@
-"""Pictures of the limits that `limit` finds: one limit, limits over the values of another field, and limits on several
-devices."""
+"""Pictures of the limits that `limit` finds: one limit for each algorithm, limits over the fields of --over, and limits
+of several devices."""
 from textwrap import wrap
 
 import numpy as np
@@ -15,8 +15,8 @@ from .given import axis
 from .over_axes import Axis, look_of, over_axes
 
 LIMIT, LIMIT_RUNS = "limit.csv", "limit_runs.csv"
-# Limits by closed formulas and for the worst hand: columns of limit.csv and their labels. If the loop has no
-# theoretical limit, for example because of dry friction, the formulas for stability (OF_THEORY) are not drawn.
+# Columns of limit.csv and their labels: the linear limit for the worst hand, and limits by closed formulas. If a row
+# has no theoretical limit, for example because of dry friction, the limits of OF_THEORY are not drawn.
 KNOWN = {
     "worst_hand_limit": "linear limit, worst hand",
     "passive_colgate_schenkel": "passive (Colgate, Schenkel)",
@@ -68,7 +68,7 @@ class Limits:
         return np.array([names.index(row[field]) for row in rows], float)
 
     def axis(self):
-        """Returns the axis of the last field of --over."""
+        """Returns the Axis on which the picture shows the last field of --over."""
         texts = [row[self.over[-1]] for row in self.rows]
         return Axis.of(
             axis(self.over[-1]), self.along(self.rows) if all(map(is_number, texts)) else texts
@@ -101,8 +101,8 @@ class Limits:
         ]
 
     def theories(self):
-        """Returns the distinct curves of the theoretical limit of all algorithms: (values of the last field of --over,
-        limits)."""
+        """Returns the curves of the theoretical limit: (values of the last field of --over, limits). If several
+        algorithms have the same limits, their curve is returned once."""
         found = {}
         for name in self.algorithms:
             rows = [row for row in self.rows if row["algorithm"] == name]
@@ -124,8 +124,8 @@ class Limits:
         return sorted(groups.values(), key=len)
 
     def draw_classes(self, ax, algorithm):
-        """Draws the class of every run of an algorithm's search over the last field of --over, and the limits as
-        lines."""
+        """Draws a mark for each run of an algorithm, with the colour of the run's class. The x axis is the last field
+        of --over, the y axis the searched field. Also draws the limits as lines."""
         runs, rows = (
             [row for row in of if row["algorithm"] == algorithm] for of in (self.runs, self.rows)
         )

@@ -107,12 +107,13 @@ def summary(scenes, runs):
 
 
 NOTE = (
-    "<p class=note>Mean ± standard deviation over the seeds in which no law failed that succeeds at all; seeds agree "
-    "if the deviation is at most 0.1 % of the mean. In bold the rank, where the metric has a better direction and the "
-    "numbers can be told apart: 1 + the number of laws that are better by more than 0.1 % and by more than both "
-    "errors. "
-    "A law with failed runs ranks behind the others by their number. Digits follow the error of the number; ≤ stands "
-    "for a number that is not larger than its error, which has no rank unless runs failed.</p>"
+    "<p class=note>Each entry is mean ± standard deviation over seeds. A seed counts if no law failed with it, except "
+    "laws that fail with every seed. Seeds agree if the deviation is at most 0.1 % of the mean. The rank is in bold: "
+    "1 + the number of laws that are better by more than 0.1 % and by more than both errors. There is no rank if the "
+    "metric has no better direction or if the numbers do not differ by more than their errors. "
+    "Laws with failed runs rank behind the other laws, in the order of their number of failed runs. Digits follow the "
+    "error of the number; ≤ stands for a number that is not larger than its error, which has a rank only if runs "
+    "failed.</p>"
 )
 
 
@@ -220,8 +221,8 @@ def seeds_section(scenes):
 
 
 def between(scene, metric):
-    """Yields a sentence for each other law: its difference from the law with the smallest mean, over the seeds in which
-    both laws have the metric."""
+    """Yields a sentence for each law except the law with the smallest mean: the difference between the two laws, over
+    the seeds for which both laws have the metric."""
     laws = {law.label: law.values(metric) for law in scene.laws if len(law.values(metric)) > 1}
     best = min(laws, key=lambda label: np.mean(list(laws[label].values())), default=None)
     errors = {label: of.error for label, of in scene.entries(metric).items()}

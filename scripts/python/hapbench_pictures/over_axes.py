@@ -1,5 +1,5 @@
-"""Plots results over fields: curves, and classes of runs over two axes. limit_plot, tuning_plot, convergence_plot and
-sweep_plot use these functions."""
+"""Plots results over the values of fields: curves of numbers over one field, and marks for the classes of runs over two
+fields. limit_plot, tuning_plot, convergence_plot and sweep_plot use these functions."""
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,7 +12,8 @@ MAX_TICKS = 12
 
 @dataclass
 class Axis:
-    """One axis of a plot: the numbers on it, or for texts their positions and names."""
+    """One axis of a plot. For numbers, `values` are the numbers and `names` is empty. For texts, `names` are the
+    distinct texts and `values` are their positions on the axis."""
 
     title: str
     values: np.ndarray
@@ -30,8 +31,8 @@ class Axis:
 
     @classmethod
     def of(cls, title, values, log=None):
-        """Creates an axis for numbers (array) or texts (list). `log`: None selects a logarithmic axis by the range of
-        the numbers."""
+        """Creates an axis for numbers (array) or texts (list). `log`: true for a logarithmic axis. If `log` is None,
+        the axis is logarithmic if spread_logarithmically() returns True for the numbers."""
         if isinstance(values, list):
             names = tuple(dict.fromkeys(values))
             return cls(title, np.array([names.index(value) for value in values], float), names)

@@ -12,16 +12,16 @@ from hapbench_style import LINE, curve, equal_curves, note, reduced, striped
 from .given import shown
 from .quantities import settled_range
 
-# Colours of text, background, grid, solid, and surface of the solid, on paper and on the dark page.
+# Colours for a white and for a dark background, in this order: text, background, grid, solid, surface of the solid.
 LIGHT = ("#1d2126", "#ffffff", "#e6e6e6", "#EFE8DC", "#8C7A58")
 DARK = ("#e7e9ea", "#1c2024", "#383e44", "#4a4438", "#b5a27c")
 THIN = 0.6  # line width of the single runs of a group of runs [points]
 SPANS = 600  # number of time spans of a curve; a page hardly shows more
 # The runs share a linear axis if the largest peak of a run is at most this factor times the smallest peak of a run.
 LARGEST_RATIO = 30
-# A run does not influence the axis if its peak is above a gap between two consecutive sorted peaks whose ratio exceeds
-# THROWN_RATIO. A failed run does not influence the axis if its peak exceeds FAILED_RATIO times the largest peak of the
-# runs that did not fail.
+# The peaks of the runs are sorted. If a peak exceeds THROWN_RATIO times the previous peak, and at least half of the
+# peaks are smaller, the run with this peak and the runs with larger peaks do not influence the axis. A failed run does
+# not influence the axis if its peak exceeds FAILED_RATIO times the largest peak of the runs that did not fail.
 THROWN_RATIO, FAILED_RATIO = 100, 5
 ROUNDING = (
     1e-9  # fraction of a value that an axis must span; a smaller span shows rounding errors only
@@ -33,8 +33,8 @@ PATH_COLUMNS, AXIS_COLUMNS = ("px_m", "py_m", "pz_m"), ("axis_x", "axis_y", "axi
 SNAPSHOTS = (0.35, 0.5, 0.7, 0.95)  # opacity of the tool at four equally spaced times
 PATH_MARKS = "circle: start; square: end; triangle: first touch"
 TOOL_OUTLINES = "outlines: the tool at four times"
-# The tool is drawn only in rows in which the component of its axis in the plane is at least this value. The axis is
-# then at most 32 degrees out of the plane.
+# The axis of the tool is a unit vector. The tool is drawn only at times at which the component of this vector in the
+# plane of the picture is at least MIN_IN_PLANE. The angle between axis and plane is then at most 32 degrees.
 MIN_IN_PLANE = 0.85
 
 
@@ -46,8 +46,8 @@ class RunLook(Look):
 
 
 def looks(runs, labels, groups=()):
-    """Returns the RunLook of each run. `groups`: a name for each run, equal for runs that differ only in the seed;
-    empty: the labels."""
+    """Returns the RunLook of each run. `groups`: a name for each run; runs that differ only in the seed have the same
+    name. If `groups` is empty, the labels are used instead."""
     groups = groups or labels
     distinct = list(dict.fromkeys(zip(groups, (run.algorithm for run in runs))))
     algorithms = [algorithm for _, algorithm in distinct]
@@ -360,7 +360,8 @@ def draw_surface(ax, plane, middle, surface, reach, paper):
 
 
 def spacing_of(points):
-    """Returns the median distance of a point to the nearest point at another position."""
+    """Returns the median distance of a point to the nearest point at another position, from a sample of at most 60
+    points."""
     squares = [
         ((points - one) ** 2).sum(axis=1)
         for one in points[np.linspace(0, len(points) - 1, min(len(points), 60)).astype(int)]
@@ -379,7 +380,7 @@ def outline(profile, tip, axis):
 
 
 def draw_tool(ax, plane, samples, profile, colour):
-    """Draws the outline of the tool at four times, first faint, last strong."""
+    """Draws the outline of the tool at four times. Later outlines are more opaque."""
     tip, axis = (tip_of(samples, columns)[:, plane] for columns in (PATH_COLUMNS, AXIS_COLUMNS))
     rows = np.sort(framed(samples))
     rows = rows[np.linalg.norm(axis[rows], axis=1) >= MIN_IN_PLANE]

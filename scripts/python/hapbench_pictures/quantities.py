@@ -123,8 +123,8 @@ def quantity(name, runs):
 
 
 def switch_of(lacks):
-    """Returns the field of the scenario that makes a run record a table or a column: the first field of `record` whose
-    description names it."""
+    """Returns the field of the scenario that makes a run record the table or column `lacks`: the first field of
+    `record` whose description names `lacks`."""
     record = json.loads(SCHEMA.read_text(encoding="utf-8"))["else"]["properties"]["record"][
         "properties"
     ]

@@ -48,7 +48,7 @@ class Entry:
     spread: float | None = (
         None  # standard deviation; None for one repetition, or if the seed changes nothing
     )
-    tolerance: float | None = None  # largest error of the mean, from the errors of the runs
+    tolerance: float | None = None  # bound of the error of the mean: mean of the runs' error bounds
     rank: int | None = None
 
     @property
@@ -59,7 +59,7 @@ class Entry:
     def shown_error(self):
         """Error that determines the number of digits of the mean, as in the ranking that `compare` prints. It is the
         largest of three values: the error of the mean, the standard error over seeds, and a tenth of RESOLUTION times
-        the mean. Without seeds, it is the tolerance."""
+        the mean. If the entry has no spread, the tolerance is returned instead."""
         if self.spread is None or self.mean is None:
             return self.tolerance
         of_seeds = self.spread / np.sqrt(max(len(self.values), 1))
@@ -112,9 +112,10 @@ class Scene:
 
     @cached_property
     def seeds(self):
-        """Repetitions (seeds) over which means are computed. Laws that failed in all repetitions are ignored, and the
-        repetitions in which no other law failed are used. If there is no such repetition: the repetitions that all laws
-        without any failure have in common. If there is still none: the repetitions of all laws."""
+        """Repetitions (seeds) over which means are computed. Laws that failed in all repetitions are ignored. The
+        result has the repetitions in which every other law has a run that did not fail. If there is no such repetition,
+        it has the repetitions that all laws without any failure have in common. If these laws have no common
+        repetition, it has all repetitions."""
         succeeding = [law for law in self.laws if len(law.failures) < len(law.runs)]
         for laws in (succeeding, [law for law in self.laws if not law.failures]):
             shared = [set(law.runs) - set(law.failures) for law in laws]
@@ -144,8 +145,9 @@ class Scene:
         return found
 
     def ranks(self, metric):
-        """Returns the rank of each law by label. The rank is None if the metric has no better direction, or if only a
-        bound of its value is known. If the ranks of all laws would be equal, all are None."""
+        """Returns the rank of each law by label. All ranks are None if the metric has no better direction, or if all
+        laws would have the same rank. The rank of a law without failures is None if only a bound of its mean is known.
+        """
         return {label: of.rank for label, of in self.entries(metric).items()}
 
     def entry(self, law, metric):
@@ -166,8 +168,8 @@ class Scene:
         )
 
     def sorted_laws(self, metric):
-        """Returns the laws, best first: fewest failures first, then by the mean. Laws without a mean come last among
-        equal failures."""
+        """Returns the laws, sorted by the number of failures. Laws with the same number of failures are sorted by the
+        mean, best first; laws without a mean follow."""
         found, sign = self.entries(metric), -1 if self.better.get(metric) == "more" else 1
 
         def key(law):

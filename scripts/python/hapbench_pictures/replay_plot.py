@@ -1,5 +1,6 @@
-"""Picture of the logs of a haptic loop: the rendered force, or the set position, over time, the difference of two logs,
-and the late calls. A log is a file of the loop or of `run --replay`."""
+"""Picture of one or two logs of a haptic loop. The picture shows over time what the loop sends to the device (the
+rendered force or the set position), the late calls, and the difference of two logs. A haptic loop or
+`hapbench run --replay` writes a log."""
 import json
 from pathlib import Path
 
@@ -13,7 +14,7 @@ from .panels import SPANS
 
 REPLAY, COMPARISON = "replay.csv", "replay_comparison.csv"
 HEADER = "# hapbench loop log:"
-# A call is late if the time since the previous call exceeds this factor times the period.
+# A call of the loop is late if the time since the previous call exceeds LATE times the period of the loop.
 LATE = 1.5
 MODES = {  # columns, title and factor of the quantity that the loop sends to the device, by mode
     "impedance": (("fx_N", "fy_N", "fz_N"), "force [N]", 1.0),
@@ -49,7 +50,7 @@ def log_of(path):
 
 class Log:
     """A log of a haptic loop: at each call, the time since the first call [s], the quantity that the loop sends to the
-    device, and True if the call is late."""
+    device, and True if the call is late or the previous call is missing."""
 
     def __init__(self, file):
         with file.open(encoding="utf-8") as lines:

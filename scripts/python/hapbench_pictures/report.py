@@ -42,8 +42,8 @@ STYLE = Path(__file__).parent / "page.css"
 
 
 def report(options):
-    """Writes the page and returns the exit status. With --tolerance, compares two folders instead; the status then
-    states whether they differ."""
+    """Writes the page and returns the exit status. With --tolerance, writes no page but compares two folders; the exit
+    status then states whether the folders differ."""
     if options.tolerance is not None:
         return test_of_regression(options)
     if given_sweep(options.runs):
@@ -88,8 +88,8 @@ def test_of_regression(options):
 
 
 def differences_section(words):
-    """Returns the section with the differences of two runs; empty for any other number of folders, or if a folder holds
-    no single run."""
+    """Returns a list with the section that states the differences of two runs. `words`: the given folders. The list is
+    empty if `words` are not the folders of two different single runs."""
     a, b = map(Path, words) if len(words) == 2 else (Path(), Path())
     if a == b or not all(
         (folder / name).is_file() for folder in (a, b) for name in (SUMMARY, SCENARIO)

@@ -185,8 +185,8 @@ def scene_groups(runs, samples):
 
 
 def box_of(samples):
-    """Returns the corners of the bounding box of the tip's path in the rows framed(). The path of a tool that is thrown
-    away after a contact is thereby excluded."""
+    """Returns the corners of the bounding box of the tip's positions in the rows that framed() returns. These rows
+    exclude the path of a tool that is thrown away after a contact."""
     tips = tip_of(samples)[framed(samples)]
     return np.array([tips.min(axis=0), tips.max(axis=0)])
 

@@ -81,8 +81,8 @@ def contact_text(run):
 
 
 def texts_section(runs, labels, of_run):
-    """Returns a list of the texts that `of_run` returns for each run, with the label of the run: its warnings, or its
-    diagnosis with advice."""
+    """Returns an HTML list of the texts that `of_run` returns for each run, such as the warnings of the run. Each text
+    follows the label of its run."""
     items = "".join(
         f"<li><b>{text(label)}:</b> {words}</li>"
         for run, label in zip(runs, labels)

@@ -21,7 +21,7 @@ from .over_axes import Axis, look_of, over_axes, spread_logarithmically
 
 USUAL = ("force_rms_above_30Hz_N", "force_max_N")
 FAILURES = ("diverges", "error")
-# Style of a cell without a number.
+# Style of a cell of the heat map that has no value of the metric.
 NO_VALUE = {"facecolor": "#F4F4F4", "edgecolor": "#C8C8C8", "lw": 0.5}
 WIDTH = 100  # width of the printed table [characters]
 MAX_COSINES, ROWS_PER_COSINE = 6, 10
@@ -88,8 +88,10 @@ class Sweep:
         return np.array([float(text) for text in texts]) if all(map(is_number, texts)) else texts
 
     def is_logarithmic(self, i):
-        """Returns True if the field was varied in equal ratios, and False if it was varied in equal steps. For all
-        other lists of numbers, spread_logarithmically() decides. Returns False for texts."""
+        """Returns True if the axis of field i is logarithmic. If the sweep states the scale of the field, the scale
+        decides. Otherwise, the axis is logarithmic for three or more numbers in equal ratios, and linear for texts and
+        for three or more numbers in equal steps. For all other numbers, spread_logarithmically() decides.
+        """
         if "scale" in self.axes[i]:
             return self.axes[i]["scale"] == "log"
         values = self.column(self.fields[i])
@@ -285,7 +287,8 @@ def edges(values):
 
 
 def patch_of(name):
-    """Returns the style of a cell for the class of its run. `name`: the class; None for a cell without a number."""
+    """Returns the style of a cell of the heat map without a number. `name`: the class of the cell's failed run, or None
+    if the cell has no failed run."""
     if name is None:
         return NO_VALUE
     _, colour, hatch = look_of_class(name)
@@ -376,8 +379,8 @@ class Sensitivity:
     spreadsheet software", Environmental Modelling & Software 35, 2012). For listed values, the fit is the mean at each
     value. S_i is the R^2 of the fit, adjusted for the number of functions (Ezekiel), so that S_i has the mean 0 for a
     field without influence. The standard error of S_i comes from a jackknife over the rows; the error of a Latin
-    hypercube or a Sobol sequence is smaller. Variation faster than the sixth cosine, such as a jump, is underestimated:
-    for a step in the middle by a fifteenth.
+    hypercube or a Sobol sequence is smaller. If y varies faster than the sixth cosine, S_i is too small: if y jumps in
+    the middle of the range, by a fifteenth.
 
     The largest values dominate a variance. For a positive metric that spans more than a decade, the index of the
     logarithm is also computed, so that three outliers do not hide a field that determines all other values.

@@ -35,11 +35,11 @@ MODEL_ERRORS, MODEL_TIMES = "convergence_model.csv", "convergence_model_timing.c
 
 
 def draw_model_errors(files, sheet=SHEET):
-    """Draws the errors of laws against a reference over the time of a step. Panels show the errors of the force's
-    direction, of the force and, where a hand moves the tool, of the tip's position. A mark is at the median of the step
-    times; a line reaches from the mark to their 99.9th percentile. A grey line is the deadline of a step. A hollow mark
-    is a law that has the same constraints as the reference. Marks are not joined, because laws have no order. Laws
-    whose runs failed are omitted.
+    """Draws the errors of laws against a reference over the computation time of a step. Panels show the error of the
+    force's direction, the error of the force and, if a hand moves the tool, the error of the tip's position. A mark is
+    at the median of the computation times; a line reaches from the mark to their 99.9th percentile. A grey line is the
+    deadline of a step. A hollow mark is a law that has the same constraints as the reference. Marks are not joined,
+    because laws have no order. Laws whose runs failed are omitted.
     """
     errors, times = files.records(MODEL_ERRORS), files.records(MODEL_TIMES)
     median, p99_9 = (1e6 * numbers(times, name) for name in ("step_median_s", "step_p99_9_s"))
@@ -94,7 +94,8 @@ def draw_model_errors(files, sheet=SHEET):
 
 def draw_work_precision(files, sheet=SHEET):
     """Returns the figure. Filled marks are resolved errors. Hollow marks are errors below ten times the error of the
-    reference solution. A ring marks the knee of the front. Grey lines mark the requested error and real time.
+    reference solution. A ring marks the knee of the Pareto front of error and processor time. Grey lines mark the
+    requested error and real time.
     """
     errors, times = files.records(ERRORS), files.records(TIMES)
     cost, error = 1e3 * numbers(times, "seconds_per_simulated_second"), 1e6 * numbers(
@@ -178,8 +179,9 @@ def legend_of(looks, requested, has_knee, has_unresolved, has_real_time):
 
 
 def draw_front(ax, errors, cost, error, chosen, is_knee):
-    """Draws a line through the settings of the front, and labels some of their time steps: the knee, both ends, and
-    settings between them for which there is space. Labels stand below the front, where no setting can be.
+    """Draws a line through the settings (integrator and time step) on the Pareto front. Labels the time steps at the
+    knee and at both ends of the front, and of settings between them if there is space. Labels stand below the front,
+    where no setting can be.
     """
     rows = np.flatnonzero(chosen & np.isfinite(error) & (error > 0))
     rows = rows[np.argsort(cost[rows])]

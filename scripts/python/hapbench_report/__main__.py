@@ -54,13 +54,13 @@ def arguments(words):
         description="Writes one self-contained HTML file: ledger, figures, all runs, and a replay.",
     )
     parser.add_argument(
-        "results", type=Path, metavar="RESULTS_DIR", help="what scripts/reproduce wrote"
+        "results", type=Path, metavar="RESULTS_DIR", help="results that scripts/reproduce wrote"
     )
     parser.add_argument(
         "--figures",
         type=Path,
         metavar="DIR",
-        help="what scripts/figures wrote; default: no figures",
+        help="figures that scripts/figures wrote; default: no figures",
     )
     parser.add_argument(
         "--claims", type=Path, metavar="FILE", help="the ledger, claims.json; default: no ledger"
@@ -69,8 +69,8 @@ def arguments(words):
         "--program",
         type=Path,
         metavar="FILE",
-        help=f"a built hapbench, to record the runs of the replay into RESULTS_DIR/"
-        f"{REPLAY_DIRECTORY}; default: the replay shows those that are there",
+        help=f"the program hapbench, which records the runs of the replay into RESULTS_DIR/"
+        f"{REPLAY_DIRECTORY}; default: the replay shows the recorded runs that RESULTS_DIR already has",
     )
     parser.add_argument("--out", type=Path, metavar="FILE", help="default: RESULTS_DIR/report.html")
     return parser.parse_args(words)

@@ -84,11 +84,12 @@ def figures_section(figures, claims):
     if not figures:
         return '<p class="note">No figures were given (<code>--figures</code>).</p>'
     return (
-        "<p>Redrawn from the results above, published numbers as red hollow marks where the "
-        "thesis gives them. A click enlarges a figure. "
-        "<span class=dark-only>On the dark page black and white have changed places; captions "
-        "name the colours of the light one. </span>"
-        f"To draw them again:</p>{command('scripts/figures results/out/reproduce --out results/out/figures')}"
+        "<p>The figures are drawn from the results above. Red hollow marks are published numbers of the thesis. "
+        "A click enlarges a figure. "
+        "<span class=dark-only>On the dark page, black and white are exchanged; captions "
+        "name the colours of the light page. </span>"
+        "This command draws the figures again:</p>"
+        f"{command('scripts/figures results/out/reproduce --out results/out/figures')}"
         f"<div class=figures>{''.join(figure_markup(figure, claims) for figure in figures)}</div>"
     )
 

@@ -71,9 +71,9 @@ def summary_section(runs, claims, headline, abstract, figures):
     )
     return (
         "<h1>hapbench: haptic rendering of object-to-object contact</h1>"
-        '<p class="lead">Scripted tool trajectories go through pluggable force algorithms; '
-        "trajectories, stiffness ratios, "
-        "stability limits and the cost of a step come out. Everything here is compared with T. C. Lee, <cite>Rendering "
+        '<p class="lead">hapbench runs force algorithms on scripted tool trajectories. It reports '
+        "trajectories, stiffness ratios, stability limits and the cost of a step. "
+        "This page compares all results with T. C. Lee, <cite>Rendering "
         "6-DOF Object-to-Object Interaction with 3-DOF Haptic Interfaces</cite> (“the thesis”); "
         "numbers such as Fig. A.2 or "
         f"3.3 are its figures and sections. Program of commit <code>{text(commits)}</code>.</p>"
@@ -114,7 +114,7 @@ def main_results(claims, abstract):
 
 def warnings(runs):
     """Returns a paragraph with the names of all runs that did not end as expected. Returns an empty text if all runs
-    did."""
+    ended as expected."""
     missed = [f"{text(run.path)} ({text(run.outcome)})" for run in runs if not run.expected]
     return f'<p><b class="bad">✗ Not as expected:</b> {", ".join(missed)}.</p>' if missed else ""
 
@@ -127,7 +127,11 @@ def refusals(claims):
         for c in of_thesis(claims)
         if VERDICTS[c["verdict"]][1] == "bad"
     )
-    return f"<p>What these runs do not confirm:</p><ul>{items}</ul>" if items else ""
+    return (
+        f"<p>Claims of the thesis that these runs do not confirm:</p><ul>{items}</ul>"
+        if items
+        else ""
+    )
 
 
 def ledger_section(claims, figures):
@@ -140,19 +144,20 @@ def ledger_section(claims, figures):
         for title in ("Id", "Verdict", "Claim", "Published", "Measured", "Decided by")
     ]
     return (
-        "<p>Each claim of the thesis, what it publishes, what our runs give, and a verdict by a rule, which unfolds "
-        "with the figures and scenarios behind it. "
-        "Hands are calibrated to mean and standard deviation of the raw colliding points; all else is a prediction. "
-        "Decided by: each assumption that the thesis leaves open (<code>results/reference/assumptions.json</code>) "
-        "was set to its other plausible values, one at a time. Exact: no assumption enters; robust: none changes the "
-        "verdict.</p>"
+        "<p>The table lists each claim of the thesis with the published number, the measured number of our runs, and a "
+        "verdict. A row unfolds to show the rule of the verdict, figures and scenarios. "
+        "Hands are calibrated to mean and standard deviation of the number of raw colliding points; all other numbers "
+        "are predictions. Column “Decided by”: each assumption that the thesis leaves open "
+        "(<code>results/reference/assumptions.json</code>) was set to its other plausible values, one at a time, and "
+        "the column names the assumptions that change the verdict. Exact: the claim depends on no assumption; robust: "
+        "no assumption changes the verdict.</p>"
         + FILTER
         + table(headings, rows, "<b>The ledger</b>", "sortable stack", "ledger-table")
         + (
             table(
                 headings,
                 ours,
-                "<b>Found on the way, and no claims of the thesis</b>",
+                "<b>Additional findings, which are not claims of the thesis</b>",
                 "sortable stack",
                 "findings-table",
             )

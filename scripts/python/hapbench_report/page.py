@@ -87,9 +87,9 @@ def section(key, _, title, body):
 
 def rerun_section():
     return (
-        "<p>From the root of the repository. Everything, installing what is missing:</p>"
+        "<p>In the root of the repository, this command writes all results:</p>"
         + command("scripts/reproduce")
-        + "<p>One part:</p>"
+        + "<p>These commands write a part of the results:</p>"
         + command(
             "hapbench=build/release/bin/hapbench\n"
             "$hapbench run scenarios/library/thesis/*.json --out results/out/reproduce/thesis"
@@ -98,7 +98,7 @@ def rerun_section():
             "  # a study; all: $hapbench describe studies\n"
             "$hapbench describe scenario                                                    # what every field means"
         )
-        + "<p>This report:</p>"
+        + "<p>This command writes this report:</p>"
         + command(
             "scripts/report results/out/reproduce --figures results/out/figures --claims "
             "results/reference/claims.json \\\n"
@@ -116,8 +116,9 @@ def live_page():
 
 
 def live_link(scenario):
-    """Returns a sentence with a link that opens the scenario in the live page. Returns an empty text without a live
-    page, for a tool that is not free to move, or if the scenario names a file."""
+    """Returns a sentence with a link that opens the scenario in the live page. Returns an empty text if there is no
+    live page, if the scenario prescribes the position of the tool, or if the scenario names a file.
+    """
     position = at(scenario, "/motion/position")
     is_free = position is None or at(scenario, "/motion/position/type") == "free"
     names_a_file = any(isinstance(part.get("file"), str) for part in objects_in(scenario))
@@ -129,7 +130,7 @@ def live_link(scenario):
         if key not in ("$schema", "record", "expect", "description", "reference_force")
     }
     scene = quote(json.dumps(led, separators=(",", ":"), ensure_ascii=False))
-    return f'<p><a href="{LIVE}#scenario={scene}">Take this scene in hand</a></p>'
+    return f'<p><a href="{LIVE}#scenario={scene}">Touch this scene in the live page</a></p>'
 
 
 def place_live_page(folder):

@@ -121,9 +121,10 @@ def rows_to_show(columns):
 
 
 def settled_rows(columns, scenario):
-    """Returns for each row True if it is in contact and not part of a landing, by the settings of the run's metrics. A
-    landing lasts settling_s from a first touch. A first touch is a contact at the start, or a contact after at least
-    settling_s without contact. If from_s is set, all rows in contact from that time on are settled.
+    """Returns for each row True if the row is settled: in contact and not part of a landing. A landing lasts settling_s
+    from a first touch. A first touch is a contact at the start, or a contact after at least settling_s without contact.
+    If from_s is set, the settled rows are instead all rows in contact from the time from_s on. settling_s and from_s
+    are fields of `metrics` in the scenario.
     """
     settling_s, from_s = (
         number_or_none(at(scenario, f"/metrics/{key}")) for key in ("settling_s", "from_s")
@@ -221,10 +222,10 @@ def base64_of(code, values):
 
 
 def sound(columns):
-    """Returns the sound of a run for the page. Its samples are the rendered force above 30 Hz, projected on the
-    direction in which this filtered force is strongest. The magnitude of the force would hide a change of sign. Returns
-    None if there are fewer than three rows, if their times do not increase, if their rate is below 120 Hz, or if the
-    filtered force is zero or too large."""
+    """Returns the sound of a run for the page. The samples of the sound are the rendered force above 30 Hz, projected
+    on the direction in which this filtered force is strongest. The projection keeps changes of sign, which the
+    magnitude of the force would hide. Returns None if there are fewer than three rows, if their times do not increase,
+    if their rate is below 120 Hz, or if the filtered force is zero or too large."""
     times = columns["time_s"][:LONGEST]
     if len(times) < 3 or not times[-1] > times[0]:
         return None

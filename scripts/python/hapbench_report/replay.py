@@ -154,8 +154,8 @@ def packed_recording(recording, label):
 
 
 def points_of(run, recordings):
-    """Returns (drawn points of the surface, note about the drawing). The points come from the program hapbench. If it
-    provides no points, the recorded contact points are used."""
+    """Returns (drawn points of the surface, note about the drawing). The points come from the program hapbench. If the
+    program provides no points, the recorded contact points are used instead."""
     surface, failure = shell(run)
     every = surface and surface.points
     if every is None:
@@ -182,7 +182,7 @@ def points_of(run, recordings):
 
 def touched_box(recordings):
     """Returns the corners of the bounding box of all contact points and of all tip positions in shown rows with
-    contact. If there are neither, returns the corners of the bounding box of all shown tip positions.
+    contact. If no shown row has a contact, returns the corners of the bounding box of all shown tip positions.
     """
     positions = [contact[:3] for r in recordings for of_row in r.contacts for contact in of_row]
     positions += [tip for r in recordings for tip in r.tips(touching=True)]

@@ -36,24 +36,26 @@ struct Setting {
   std::string name;  ///< "panel/setting", the name in scripts and pictures
   std::string unit;  ///< unit of Work::count: "step" or "call"
   std::function<Errors()> errors;
-  std::function<Work()> work;  ///< creates the work without observers; the errors are measured separately, with
-                               ///< observers
+  /// Creates the work whose run time is measured. The work runs without observers; `errors` measures with observers in
+  /// separate runs.
+  std::function<Work()> work;
 };
 using Panel = std::vector<Setting>;
 
-/// Returns the panel of all integrators over the time step, for signed bilateral springs, a free position and no hand.
-/// Errors: the distance to the exact solution of damped springs, and the energy created without damping.
+/// Returns the panel of all integrators with different time steps, for a free tool on signed bilateral springs without
+/// a hand. Errors: the distance to the exact solution of damped springs, and the energy created without damping.
 Panel integrators(const Scenario& springs);
 /// Returns the panel of all algorithms, some of them also with angular damping or with the passivity controller.
 /// Errors: the deviation from the ideal trajectory of a drill in a hole.
 Panel algorithms(const Scenario& drill);
-/// Returns the panel of the spacing of the block's points, for the densities `signed_distance` and `binary` of the
-/// block. Errors: the deviation from the ideal trajectory.
+/// Returns the panel of different spacings of the block's points, for the densities `signed_distance` and `binary` of
+/// the block. Errors: the deviation from the ideal trajectory.
 Panel spacing(const Scenario& drill);
-/// Returns the panel of the number of shaping iterations. Errors: the deviation from the exact optimum on the contacts
-/// of a drill in a hole.
+/// Returns the panel of different numbers of shaping iterations. Errors: the deviation from the exact optimum on the
+/// contacts of a drill in a hole.
 Panel shaping(const Scenario& drill);
-/// Returns the panel of the thresholds of the reduction. Errors: the deviation from exact shaping of all contacts.
+/// Returns the panel of different thresholds of the reduction. Errors: the deviation from exact shaping of all
+/// contacts.
 Panel reduction(const Scenario& drill);
 /// Returns the panel of laws on reduced, merged and all contacts, for spacings with dozens to hundreds of contacts.
 /// Errors: the deviation from exact shaping of all contacts.
@@ -63,8 +65,8 @@ Panel merging(const Scenario& drill);
 Panel multi_rate_contacts(const Scenario& free);
 /// Returns the panel of the contact search with and without skips. Both settings find the same contacts.
 Panel skips(const Scenario& free);
-/// Returns the panel of all integrators over the time step, for a free tool that is thrown at an object. Errors: the
-/// energy that a bounce gains because contacts begin and end between samples.
+/// Returns the panel of all integrators with different time steps, for a free tool that is thrown at an object. Errors:
+/// the energy that a bounce gains because contacts begin and end between samples.
 Panel events(const Scenario& thrown);
 
 // Functions that the panels share.

@@ -26,7 +26,7 @@ double value(const Panel& panel, const std::string& beginning, const char* name)
   return those(panel, beginning).front().errors()[name];
 }
 
-/// Returns the drill in the hole for half a rotation, with a coarser wall.
+/// Returns the scenario of the drill in the hole, for half a rotation and with a coarser grid of the block.
 Scenario drill() {
   return bundled("task2_rotate_signed_distance",
                  {"time.duration_s=3", "environment.grid_m=0.0002", "rendering.local_average=false"});
@@ -44,9 +44,9 @@ TEST(Integrators, ConvergeWithTheirOrdersToTheExactSolution) {
       step = errors["step_s"];
       error = errors["error_rms_m"];
     }
-    // The deviation from the formal order decreases with the step: 0.2 to 0.7 at 1 ms, so less than 0.7 / 500 at 2 us.
-    // For rk4 the deviation decreases with the fourth power of the step, but at the last step used here the rounding
-    // error is a hundredth of the error.
+    // The deviation from the formal order is proportional to the time step: it is 0.2 to 0.7 at 1 ms, so less than
+    // 0.7 / 500 at 2 us. For rk4, the deviation is proportional to the fourth power of the time step, but at the
+    // smallest step used here the rounding error is a hundredth of the error.
     EXPECT_NEAR(order, integrator->damped_order, 0.01) << integrator->info.name;
   }
 }
@@ -102,8 +102,9 @@ TEST(Merging, DependsOnTheOrderOfTheContactsOnlyWhereTheyAreReduced) {
     const accuracy::Errors errors = setting.errors();
     const bool reduced = setting.name.find("reduced") != std::string::npos;
     EXPECT_EQ(errors["kept_mean"] < errors["contacts_mean"], reduced) << setting.name;
-    // Another order of the contacts changes sums over up to a thousand contacts only by rounding. exact_shaping
-    // computes weights with the error of rounding divided by epsilon.
+    // Without a reduction, another order of the contacts changes sums over up to a thousand contacts only by rounding.
+    // exact_shaping divides by its parameter epsilon and so enlarges the rounding error of the weights. With a
+    // reduction, the order also decides which contacts are kept.
     EXPECT_EQ(errors["order_spread_relative"] > 1e-9, reduced) << setting.name;
     if (setting.name.starts_with("merging/exact_shaping of all")) {
       EXPECT_EQ(errors["force_error_relative"], 0.0);

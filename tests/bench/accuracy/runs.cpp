@@ -215,7 +215,7 @@ Panel algorithms(const Scenario& drill) {
 namespace {
 
 constexpr std::int64_t kQueryEvery[] = {1, 2, 4, 8, 16, 32};
-/// Time [s] within which two runs are compared. Later, the runs differ because the scene is chaotic.
+/// Two runs are compared from their start up to this time [s]. Later, the runs differ because the scene is chaotic.
 constexpr double kTogether = 0.2;
 
 /// Time steps of the bounce, in units of the scene's time step.

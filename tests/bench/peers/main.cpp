@@ -22,7 +22,7 @@ namespace {
 /// pose.
 constexpr std::size_t kEvery = 64;
 
-/// Maximum number of contacts of a library; more than the limit of ODE.
+/// Maximum number of contacts that a library may return. The number is larger than ODE's own limit.
 constexpr std::size_t kRoom = 100'000;
 
 struct Library {
