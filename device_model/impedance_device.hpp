@@ -25,7 +25,7 @@ struct LowPassFilter {
 };
 
 /// Mode of a sampled low-pass filter: a term in the partial fractions of the filter's transfer function. For each
-/// sample u, the state y of the mode changes by gain (residue u - y). This is exact if the input was constant at u over
+/// sample u, the state y of the mode changes by gain * (residue * u - y). This is exact if the input was constant at u over
 /// the preceding period. The filter's output is the sum of the real parts of all states.
 struct LowPassMode {
   /// Dimensionless coefficients. A pair of complex poles has one mode, with twice the residue of one pole. The mode of

@@ -151,7 +151,7 @@ void ForceFidelityObserver::on_step(const StepRecord& record) noexcept {
   error_ += error.squaredNorm();
   normal_ += along * along;
   tangential_ += (error - along * normal).squaredNorm();
-  // Add the step to the sums from which the friction coefficient is fitted by least squares.
+  // Add the step to the sums of squares: `loads_` and `drag_` fit the friction coefficient by least squares.
   const double load = std::max(0.0, normal.dot(reference));
   loads_ += load * load;
   drag_ += load * (reference - load * normal).norm();

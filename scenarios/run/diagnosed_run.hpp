@@ -51,7 +51,7 @@ struct DiagnosedRun {
   bool vibrates() const;
   /// Returns `number` if it is meaningful for this run, else an empty value. A number is not meaningful in a run that
   /// diverged, went through the surface or never touched the surface. A number is also not meaningful for a tool on
-  /// springs that does not vibrate, because the mean force is then no reference for force steps.
+  /// springs that does not vibrate: such a tool comes to rest, and its mean force tends to zero.
   Number if_completed(const Number& number) const;
 };
 

@@ -75,8 +75,8 @@ struct NamedLoop {
 /// - with `over_hands`, if a hand holds an impedance device: the loop with each hand of typical_hands().
 /// Omits variants without matrices.
 std::vector<NamedLoop> contact_loops(const Scenario& scenario, const LinearContact& contact, bool over_hands);
-/// Returns the same variants as contact_loops(), for springs in permanent contact: a wall with stiffness lambda K and
-/// damping lambda B along one axis.
+/// Returns the same variants as contact_loops(), for a tool in permanent contact with a wall that acts along one axis,
+/// with stiffness lambda K and damping lambda B.
 std::vector<NamedLoop> wall_loops(const Scenario& scenario, double lambda, bool over_hands);
 
 /// Returns the name of the part of the loop that is unstable without contact: "the device's servo" if the device is

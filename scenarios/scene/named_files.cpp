@@ -54,7 +54,7 @@ const NamedFile::Read& NamedFile::read() {
     Contents contents = parsed(*bytes, notes);
     return std::make_shared<const Read>(Read{hash_text(hash_of(*bytes)), std::move(contents), std::move(notes)});
   };
-  // A parsed mesh needs about 4 times the memory of its text.
+  // A parsed mesh needs about 4 times the memory of its text; the same is assumed for other files.
   read_ = shared_cache().get<Read>(key, parse, [&bytes](const Read&) { return 4 * (bytes ? bytes->size() : 0); });
   return *read_;
 }

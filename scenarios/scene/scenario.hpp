@@ -248,8 +248,8 @@ using ReferenceForceFields = std::variant<GivenForceFields, RigidContactFields>;
 inline constexpr const char* kMatchedProxy = "matched_proxy";
 
 /// Parameters of the comparison with a 6-DOF device (SixDofObserver): the law on the 3-DOF device, springs of hand and
-/// coupling, and the positions of force point, grip and pivot on the tool's axis. At the force point, the device
-/// measures and applies its force.
+/// coupling, and the positions of force point, grip and pivot on the tool's axis. Both devices apply their force at
+/// the force point.
 struct SixDofFields {
   std::string law;                 ///< name of an algorithm, or kMatchedProxy; empty: the scenario's algorithm
   double hand = 500.0;             ///< K_h, stiffness of the hand [N/m]

@@ -100,7 +100,7 @@ std::string joined(const std::vector<const Json*>& claims, const std::function<s
 /// Returns the table of the abstract's sentences.
 std::string abstract_table(const Json& ledger) {
   std::string text =
-      "| the abstract claims | published | ours | verdict | decided by | figure | command |\n"
+      "| claim of the abstract | published | ours | verdict | decided by | figure | command |\n"
       "|---|---|---|---|---|---|---|\n";
   for (const Json& sentence : ledger.at("abstract")) {
     std::vector<const Json*> claims;

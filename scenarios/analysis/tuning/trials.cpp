@@ -290,7 +290,8 @@ MetricValues Trials::metrics_of(const Result& run) const {
 
 // ---- Evaluation of the constraints, the cheapest first
 
-/// Evaluates a trial as far as `need` requires, and writes the violated constraint.
+/// Evaluates a trial as far as `need` requires, and stores the violated constraint in
+/// `trial.binding`; it stays empty if no evaluated constraint is violated.
 void Trials::judge(TuneTrial& trial, Need need) {
   trial.binding.clear();
   trial.why.clear();

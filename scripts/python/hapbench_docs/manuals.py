@@ -159,7 +159,7 @@ def read(name):
 def main_results(_old=""):
     """Returns the table in claims.md that lists the sentences of the thesis's abstract, with links into the ledger."""
     page = (REFERENCE / "claims.md").read_text(encoding="utf-8")
-    return next(part for part in page.split("\n\n") if part.startswith("| the abstract claims |"))
+    return next(part for part in page.split("\n\n") if part.startswith("| claim of the abstract |"))
 
 
 def experiments(_old=""):
