@@ -147,8 +147,8 @@ using TransitionMatrix = ElasticMotion::Matrix;
 // step, the phase of the fastest mode advances by at most kMaxStep radians.
 /// Number of halvings of the longest step that locate the time of a change.
 constexpr std::size_t kChangeHalvings = 40;
-/// The motors stop or start at a change (advance_to_change). The first step after a change is not searched for a further
-/// change. Its length is the longest step, halved kSkipHalvings times.
+/// The motors stop or start at a change (advance_to_change). The first step after a change is not searched for a
+/// further change. Its length is the longest step, halved kSkipHalvings times.
 constexpr std::size_t kSkipHalvings = 12;
 /// Largest number of halvings of an interval: the number of bits in a double's mantissa.
 constexpr std::size_t kMaxHalvings = 52;

@@ -25,8 +25,8 @@ struct LowPassFilter {
 };
 
 /// Mode of a sampled low-pass filter: a term in the partial fractions of the filter's transfer function. For each
-/// sample u, the state y of the mode changes by gain * (residue * u - y). This is exact if the input was constant at u over
-/// the preceding period. The filter's output is the sum of the real parts of all states.
+/// sample u, the state y of the mode changes by gain * (residue * u - y). This is exact if the input was constant at u
+/// over the preceding period. The filter's output is the sum of the real parts of all states.
 struct LowPassMode {
   /// Dimensionless coefficients. A pair of complex poles has one mode, with twice the residue of one pole. The mode of
   /// a real pole has real coefficients.

@@ -109,7 +109,8 @@ AlgorithmEntry original_averaging_entry() {
           "u_r = sum u_i / |sum u_i|, d_r = sum d_i / |sum u_i|, f = -K d_r u_r, S = u_r u_r^T; "
           "zero force when |sum u_i| <= 1e-9 n",
       .source = "thesis B.2, Eq. B.1; always with depth model shortest_distance and without reduction",
-      .known_failure = "nearly opposite gradients make d_r very large and flip u_r by 180 degrees (thesis B.3.3): vibration",
+      .known_failure =
+          "nearly opposite gradients make d_r very large and flip u_r by 180 degrees (thesis B.3.3): vibration",
       .parameters = kStiffnessAlone,
   };
   return {.info = &kInfo,

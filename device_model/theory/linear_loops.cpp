@@ -343,8 +343,9 @@ bool is_stable_loop(const std::vector<Eigen::MatrixXd>& loop) {
 }
 
 std::vector<Eigen::MatrixXd> contact_loop(const SampledLoop& loop, const LinearContact& contact) {
-  // The map is an affine function of the four coefficients of wall and sampled hand. A stiffness of `unit`, or a damping of
-  // `damping_unit`, changes entries of the map by about 1, so that the differences from the free map are accurate.
+  // The map is an affine function of the four coefficients of wall and sampled hand. A stiffness of `unit`, or a
+  // damping of `damping_unit`, changes entries of the map by about 1, so that the differences from the free map are
+  // accurate.
   const double unit = loop.moving_mass() / (loop.period * loop.period), damping_unit = unit * loop.period;
   const auto map = [&loop](double K, double B, double k, double c) {
     SampledLoop at = loop;

@@ -28,9 +28,10 @@ namespace hapbench {
 /// mean of the velocities at the beginning and at the end of the step: exactly the change of the kinetic energy. Other
 /// integrators evaluate forces at states that are not recorded. For other integrators, the work is the displacement
 /// between two successive steps times the mean of the forces of these steps; f_in, which is constant between the steps,
-/// is taken from the first step. The remaining change of kinetic energy is assigned to the integrator. A prescribed motion is treated the same way, but the remainder is
-/// the work of the script. If the tool moves by a distance d between two steps, and a contact of stiffness K begins or
-/// ends between them, the trapezoidal rule has an error of up to K d^2 / 8.
+/// is taken from the first step. The remaining change of kinetic energy is assigned to the integrator. A prescribed
+/// motion is treated the same way, but the remainder is the work of the script. If the tool moves by a distance d
+/// between two steps, and a contact of stiffness K begins or ends between them, the trapezoidal rule has an error of up
+/// to K d^2 / 8.
 struct EnergyBalance {
   double kinetic = 0.0, stored = 0.0;  ///< current energy of the virtual mass and of the penalty springs
   double input = 0.0, spring = 0.0;    ///< work of f_in and f_spring on the tool

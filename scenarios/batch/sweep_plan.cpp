@@ -57,8 +57,8 @@ void add_names(Names& names, const MetricList& metrics) {
 }
 
 /// Reads the files that the scenarios of `runs` name, and returns the hashes of the files. Adds the warnings about
-/// scenarios and files to the plan. If a scenario replays a recorded motion, adds the names of the metrics of its run to
-/// `metrics`; these metrics depend on whether the recording has a force.
+/// scenarios and files to the plan. If a scenario replays a recorded motion, adds the names of the metrics of its run
+/// to `metrics`; these metrics depend on whether the recording has a force.
 Json check_files(SweepPlan& plan, const std::vector<std::size_t>& runs, Names& metrics) {
   Json hashes = Json::array();
   for (const std::size_t run : runs) {

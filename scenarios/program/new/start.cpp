@@ -154,9 +154,9 @@ class Start {
   }
 
   /// Returns the length of the file's unit [m]. With --unit, this is the given unit. With --extent, it is the unit
-  /// with which the longest side of the object's bounding box is as long as given. With neither option, it is 1 m. `box`: the object's
-  /// bounds, read as millimetres. Throws InputError if neither option is given and the object, read in metres, is
-  /// shorter than 1 mm or longer than 1 m.
+  /// with which the longest side of the object's bounding box is as long as given. With neither option, it is 1 m.
+  /// `box`: the object's bounds, read as millimetres. Throws InputError if neither option is given and the object, read
+  /// in metres, is shorter than 1 mm or longer than 1 m.
   double choose_scale(const Box& box, const char* object) {
     const double longest = box.size().maxCoeff() / 0.001;
     if (!extent_ && !unit_ && (longest < kShortestObject || longest > kLongestObject)) {

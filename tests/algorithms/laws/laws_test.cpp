@@ -76,8 +76,8 @@ TEST(AveragedDirection, IsOneSpringAlongTheSummedGradient) {
       const double d = law.depth(dense.d, length);
 
       const LawForce force = make_law(law.name, config)->evaluate(contacts);
-      // The sum of n unit gradients has an error of up to n^2 eps: n roundings of partial sums of up to n. The direction
-      // u and the factor 1 / length have this error divided by `length`.
+      // The sum of n unit gradients has an error of up to n^2 eps: n roundings of partial sums of up to n. The
+      // direction u and the factor 1 / length have this error divided by `length`.
       const double rounding = 4 * n * n * std::numeric_limits<double>::epsilon() / length;
       ASSERT_LE((force.spring + 1234.5 * d * u).norm(), rounding * 1234.5 * d) << law.name << ' ' << family;
       ASSERT_LE((force.S - u * u.transpose()).norm(), rounding) << law.name << ' ' << family;

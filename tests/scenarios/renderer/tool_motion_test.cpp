@@ -20,8 +20,8 @@ void set_angle(Loop& loop, double angle) {
 /// Returns a setup in which friction depends on the velocity of the tool's material, without a low-pass of the angular
 /// velocity.
 HapbenchSetup setup_with_angular_damping() {
-  static const char* const kOverrides[] = {"rendering.angular_damping=true", "rendering.angular_velocity_cutoff_Hz=null",
-                                           nullptr};
+  static const char* const kOverrides[] = {"rendering.angular_damping=true",
+                                           "rendering.angular_velocity_cutoff_Hz=null", nullptr};
   HapbenchSetup setup = setup_of(kPlane);
   setup.overrides = kOverrides;
   return setup;
