@@ -41,7 +41,8 @@ int stress(const StressOptions& options, ProgramContext& context) {
   report.add_text("\n");
   report.add_text(layout.wrapped(
       "every force must be finite and within the bound that its algorithm guarantees: the columns \"non-finite\" and "
-      "\"out of bound\" must be 0. \"points dropped\": contacts left out because the reduction keeps at most n_ext points",
+      "\"out of bound\" must be 0. \"points dropped\": contacts left out because the reduction keeps at most n_ext "
+      "points",
       0));
   report.json() = columns.json_list(all);
   // Report each law with an invalid force as a failure.

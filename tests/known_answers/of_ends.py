@@ -528,8 +528,8 @@ def limit_under_bound(bench, base, field, strip):
 
 
 def words_of_limit(bench, base, printed, resolution, row):
-    """Checks entries of the JSON of `limit` that repeat its options or answer yes or no, for a varied field that changes
-    the runs."""
+    """Checks entries of the JSON of `limit` that repeat its options or answer yes or no. The varied field changes the
+    runs."""
     for key, known, naive in (
         ("from", 1e3, 1.0),
         ("to", 1e7, 1e6),
