@@ -34,13 +34,23 @@ std::string metric_text(const RankingEntry& entry, double factor) {
   return with_spread(factor * *entry.mean, scaled(entry.spread), scaled(entry.tolerance));
 }
 
+/// Returns the caption of the table, with the seeds over which the means are computed.
+std::string caption_of(const Ranking& ranking) {
+  if (ranking.seeds < 2) return "mean of each metric";
+  std::string caption = fmt::format("mean and spread of each metric over {} seeds", ranking.seeds);
+  for (std::size_t s = 0; s < ranking.scenarios.size(); ++s)
+    if (ranking.common[s].size() < ranking.seeds)
+      caption += fmt::format("; in {} over the {} seeds in which no algorithm failed", ranking.scenarios[s],
+                             ranking.common[s].size());
+  return caption;
+}
+
 }  // namespace
 
 Table law_metric_table(const Ranking& ranking) {
   const bool has_failures = std::ranges::count(ranking.failed, true) > 0;
   const bool several = ranking.scenarios.size() > 1;
-  Table table{.caption = fmt::format("mean{} of each metric",
-                                     ranking.seeds > 1 ? fmt::format(" and spread over {} seeds", ranking.seeds) : "")};
+  Table table{.caption = caption_of(ranking)};
   if (several) table.columns.push_back({"scenario", false});
   table.columns.push_back({"algorithm", false});
   if (has_failures) table.columns.push_back({"failed\nruns"});

@@ -149,6 +149,19 @@ std::string unranked_text(const Ranking& ranking, const Layout& layout) {
       0);
 }
 
+/// Returns a line for each scenario whose means are not over all seeds.
+static std::string common_seeds_text(const Ranking& ranking, const Layout& layout) {
+  std::string text;
+  for (std::size_t s = 0; s < ranking.scenarios.size(); ++s)
+    if (ranking.common[s].size() < ranking.seeds)
+      text += layout.wrapped(
+          fmt::format("mean and spread in {}: over the {} of {} seeds in which no algorithm failed; algorithms that "
+                      "failed in every seed are ignored",
+                      ranking.scenarios[s], ranking.common[s].size(), ranking.seeds),
+          0);
+  return text;
+}
+
 void report_ranking_text(const Ranking& ranking, const Layout& layout, Report& report) {
   if (report.prints_tables()) return report.show(law_metric_table(ranking));
   constexpr std::size_t kMaxPrinted = 60;
@@ -170,6 +183,7 @@ void report_ranking_text(const Ranking& ranking, const Layout& layout, Report& r
             ranking.seeds > 1 ? "; the spread over the seeds does not count" : ""),
         0));
   if (ranking.seeds > 1) report.add_text("spread: standard deviation over the seeds\n");
+  report.add_text(common_seeds_text(ranking, layout));
   report.add_text(unranked_text(ranking, layout));
   report.add_text(verdict(ranking, report.folder().string(), layout));
 }

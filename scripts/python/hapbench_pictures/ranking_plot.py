@@ -32,6 +32,7 @@ SINGLE = {
     "mew": 0,
     "alpha": 0.6,
 }  # drawn below the mean, which would otherwise be hidden
+HOLLOW = {"mfc": "none", "mew": 0.6}
 # Height of the row of a law, height of a row with a second line of text, and smallest height of a row with one line
 # [inch].
 ROW, FAILED_ROW, MIN_ROW = 0.2, 0.3, 0.14
@@ -151,14 +152,17 @@ def draw_panel(ax, scene, metric, is_compact=False):
 
 def draw_law(ax, row, of, factor, colour, is_positive):
     """Draws the mean of a law, its error, its standard deviation and its runs in a row."""
-    each, mean = factor * np.array(list(of.values.values())), factor * of.mean
+    mean = factor * of.mean
+    in_mean = [factor * value for seed, value in of.values.items() if seed not in of.others]
+    others = [factor * value for value in of.others.values()]
     low, high = (mean + sign * factor * of.error for sign in (-1, 1))
     low = max(low, 0.0) if is_positive else low
     ax.barh(row, high - low, 0.7, low, color=TOLERANCE, zorder=0.5)
     if of.spread is not None:
         ax.errorbar(mean, row, xerr=factor * of.spread, color=colour, lw=1.2, capsize=3)
     ax.plot(mean, row, **MEAN, color=colour, mec=ax.get_facecolor())
-    ax.plot(each, np.full(len(each), row + 0.3), **SINGLE, color=colour)
+    ax.plot(in_mean, np.full(len(in_mean), row + 0.3), **SINGLE, color=colour)
+    ax.plot(others, np.full(len(others), row + 0.3), **SINGLE | HOLLOW, color=colour)
 
 
 def draw_bounds(ax, bounds, has_numbers, is_dark):
@@ -229,6 +233,9 @@ def legend_of(scenes, metrics):
         )
     if has_repetitions(scenes):
         entries.append((Line2D([], [], color=BLACK, **SINGLE), "single run"))
+    if any(one.others for one in of):
+        marker = Line2D([], [], color=BLACK, **SINGLE | HOLLOW)
+        entries.append((marker, "run not in the mean: another law failed"))
     if any(one.tolerance for one in of if one.mean is not None):
         entries.append((Patch(color=TOLERANCE), "error of the mean"))
     if any(law.failures for law in laws):

@@ -44,6 +44,7 @@ class Entry:
     """One law in one scene for one metric."""
 
     values: dict  # value by number of the repetition (seed), without failed runs
+    others: dict  # those of `values` that are not in the mean, because another law failed in the repetition
     mean: float | None = None  # mean over the common repetitions
     spread: float | None = (
         None  # standard deviation; None for one repetition, or if the seed changes nothing
@@ -162,6 +163,7 @@ class Scene:
         ]
         return Entry(
             values,
+            {seed: value for seed, value in values.items() if seed not in self.seeds},
             float(np.mean(common)) if common else None,
             float(np.std(common, ddof=1)) if len(common) > 1 and self.depends_on_seed else None,
             float(np.mean(errors)) if errors else None,
