@@ -40,7 +40,7 @@ std::string laws_that_never_soften(const DiagnosedRun& run) {
 /// Returns the field that sets the damping of the contacts.
 std::string damping_field(const RenderingConfig& rendering) {
   if (rendering.hunt_crossley) return parameter::kChi.field;
-  return rendering.damping ? parameter::kDamping.field : std::string(parameter::kDampingRatio.field) + " (zeta)";
+  return rendering.damping ? parameter::kDamping.field : damping_ratio_field();
 }
 
 bool is_beyond(const Number& number, double threshold) {
@@ -84,6 +84,10 @@ std::string against_roughness(const DiagnosedRun& run, const char* laws, const c
 }
 
 }  // namespace
+
+std::string damping_ratio_field() {
+  return std::string(parameter::kDampingRatio.field) + " (zeta)";
+}
 
 std::string against_fault(const DiagnosedRun& run) {
   const Divergence& divergence = run.result.end.divergence;

@@ -8,6 +8,9 @@
 /// quantities measured in the run. It names only fields that the scenario has, and never recommends the law of the run.
 namespace hapbench {
 
+/// The field of the damping ratio as the advice names it.
+std::string damping_ratio_field();
+
 std::string against_fault(const DiagnosedRun& run);
 std::string against_divergence(const DiagnosedRun& run);
 std::string against_sinking(const DiagnosedRun& run);

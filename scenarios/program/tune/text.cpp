@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <optional>
+#include <string_view>
 #include <vector>
 
 #include "scenarios/input/text_lines.hpp"
@@ -13,6 +14,7 @@
 #include "scenarios/program/text.hpp"
 #include "scenarios/program/tune/columns.hpp"
 #include "scenarios/run/diagnosis.hpp"
+#include "scenarios/run/diagnosis_advice.hpp"
 
 namespace hapbench {
 std::string low_vibration_rules() {
@@ -23,9 +25,11 @@ namespace {
 
 /// Returns the advice `attempt` of a diagnosis with the option of tune in place of the field that tune chooses.
 std::string as_options_of_tune(std::string attempt) {
-  const std::string field = "rendering.damping_ratio (zeta)";
-  const std::size_t at = attempt.find(field);
-  return at == std::string::npos ? attempt : attempt.replace(at, field.size(), "zeta (--damping-ratio)");
+  constexpr std::string_view kOption = "zeta (--damping-ratio)";
+  const std::string field = damping_ratio_field();
+  for (std::size_t at = attempt.find(field); at != std::string::npos; at = attempt.find(field, at + kOption.size()))
+    attempt.replace(at, field.size(), kOption);
+  return attempt;
 }
 
 std::string limits_text(const Tuning& tuning) {
