@@ -45,7 +45,7 @@ RankingEntry ranking_entry(const Ranking& ranking, std::size_t s, std::size_t a,
   RankingEntry entry{ranking.scenarios[s],   ranking.algorithms[a],
                      ranking.metrics[m],     ranking.seeds,
                      ranking.failures(s, a), outcomes_text(ranking.runs.subspan(first, ranking.seeds))};
-  entry.common_seeds = ranking.common[s].size();
+  entry.common_seeds = ranking.lacks_common_seeds(s) ? entry.seeds - entry.failed : ranking.common[s].size();
   entry.better = ranking.better[m];
   std::vector<double> numbers, tolerances;  // values of successful runs with common seeds
   for (const std::size_t k : ranking.common[s]) {
@@ -135,6 +135,13 @@ bool Ranking::seeds_matter(std::size_t scenario) const {
     if (std::ranges::any_of(same, [&](const Result& run) { return run.state_hash != same.front().state_hash; }))
       return true;
   }
+  return false;
+}
+
+bool Ranking::lacks_common_seeds(std::size_t scenario) const {
+  if (common[scenario].size() < seeds) return false;
+  for (std::size_t a = 0; a < algorithms.size(); ++a)
+    if (const std::size_t failed_seeds = failures(scenario, a); failed_seeds > 0 && failed_seeds < seeds) return true;
   return false;
 }
 

@@ -72,8 +72,8 @@ struct Ranking {
 
   std::vector<bool> depends_on_seed = {};  ///< for each scenario: true if runs with different seeds differ
   /// For each scenario, the seeds over which means are computed. These are the seeds for which all algorithms
-  /// succeeded, not counting algorithms that failed for every seed. If there is no such seed, all seeds are used;
-  /// failed runs do not count.
+  /// succeeded, not counting algorithms that failed for every seed. If there is no such seed, all seeds are used, but
+  /// failed runs do not count (lacks_common_seeds()).
   std::vector<std::vector<std::size_t>> common = {};
   std::vector<RankingEntry> entries = {};  ///< ordered by scenario, then algorithm, then metric
   std::vector<LawRankingEntry> laws = {};  ///< ordered by mean rank, best first
@@ -92,6 +92,9 @@ struct Ranking {
   bool seeds_matter(std::size_t scenario) const;
   /// Returns true if a metric compares the force of an algorithm with a reference force from the same constraints.
   bool shares_reference(std::size_t scenario, std::size_t algorithm, std::size_t metric) const;
+  /// Returns true if the means of different algorithms in a scenario are over different seeds, because at every seed
+  /// an algorithm failed that succeeded at another seed.
+  bool lacks_common_seeds(std::size_t scenario) const;
   /// Returns the number of seeds for which an algorithm failed in a scenario.
   std::size_t failures(std::size_t scenario, std::size_t algorithm) const;
 };

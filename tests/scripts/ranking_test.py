@@ -17,7 +17,7 @@ from hapbench.columns import read_records
 from hapbench_pictures.bands import band
 from hapbench_pictures.given import given_runs, labels
 from hapbench_pictures.many_runs import between
-from hapbench_pictures.ranking_plot import draw_panel, draw_ranking
+from hapbench_pictures.ranking_plot import draw_panel, draw_ranking, legend_of
 from hapbench_pictures.ranking_values import FAILURES, Law, Scene, scenes_of
 from hapbench_report.markup import known_number
 from hapbench_style import SHEETS, plt
@@ -45,6 +45,19 @@ def setUpModule():
         "--by",
         METRICS,
     )
+
+
+class RunOfDepth:
+    """A run with a known value of inside_max_m."""
+
+    scenario, path = {}, ""
+
+    def __init__(self, value, outcome, seed):
+        self.summary, self.outcome = {"metrics": {"inside_max_m": value}}, outcome
+        self.state_hash = f"{value} {seed}"
+
+    def tolerance(self, section, name):
+        return 9e-4
 
 
 class WithRuns(Given):
@@ -128,18 +141,8 @@ class Rankings(WithRuns):
         """Checks a panel in which every number is an upper bound, because its tolerance is not smaller than its value.
         The axis must extend to the largest bound. A law whose runs all failed has no number."""
 
-        class Run:
-            scenario, path = {}, ""
-
-            def __init__(self, value, outcome, seed):
-                self.summary, self.outcome = {"metrics": {"inside_max_m": value}}, outcome
-                self.state_hash = f"{value} {seed}"
-
-            def tolerance(self, section, name):
-                return 9e-4
-
         laws = [
-            Law(name, name, {seed: Run(value, outcome, seed) for seed in range(2)})
+            Law(name, name, {seed: RunOfDepth(value, outcome, seed) for seed in range(2)})
             for name, value, outcome in (
                 ("a", 1e-4, "completes"),
                 ("b", 2e-4, "completes"),
@@ -155,6 +158,34 @@ class Rankings(WithRuns):
         marks = sorted(high * float(at[0]) for dot in curves_of(ax, "<") for at in dot)
         np.testing.assert_allclose(marks, [1.0, 1.1])
         plt.close(figure)
+
+    def test_means_without_common_repetitions_are_said_to_be_so(self):
+        """Checks the repetitions of the means. Law "c" fails in each repetition, so it is ignored in both scenes."""
+
+        def scene(outcomes):
+            laws = [
+                Law(
+                    name,
+                    name,
+                    {seed: RunOfDepth(seed + 1.0, end, seed) for seed, end in enumerate(ends)},
+                )
+                for name, ends in outcomes.items()
+            ]
+            return Scene("s", laws, {"inside_max_m": "less"})
+
+        some = scene(
+            {"a": ["completes"] * 3, "b": ["stuck"] + ["completes"] * 2, "c": ["stuck"] * 3}
+        )
+        none = scene({"a": ["stuck"] + ["completes"] * 2, "b": ["completes"] + ["stuck"] * 2})
+        self.assertEqual((some.seeds, some.lacks_common_seeds), ({1, 2}, False))
+        self.assertEqual((none.seeds, none.lacks_common_seeds), ({0, 1, 2}, True))
+        entry = some.entries("inside_max_m")["a"]
+        self.assertEqual((entry.mean, entry.others), (2.5, {0: 1.0}))
+        # The sample deviation of 2 and 3 is the root of 1/2. The mean of two runs has this, divided by the root of 2.
+        self.assertAlmostEqual(entry.shown_error, 0.5)
+        labels = [label for _, label in legend_of([none], ["inside_max_m"])]
+        self.assertIn("mean over the law's runs that did not fail", labels)
+        self.assertIn("mean", [label for _, label in legend_of([some], ["inside_max_m"])])
 
     def test_seeds_have_the_numbers_of_their_folders(self):
         folder = self.many / "tap_wall"

@@ -86,7 +86,7 @@ Columns<RankingEntry> ranking_columns(bool seeds) {
        &Row::rank, under("rank")},
       {"common_seeds", "1",
        "number of seeds over which mean and spread are taken: seeds in which no algorithm failed, not counting "
-       "algorithms that failed in every seed; if there is no such seed, all seeds, without the failed runs",
+       "algorithms that failed in every seed; if there is no such seed, the seeds in which this algorithm did not fail",
        &Row::common_seeds},
       {"better", "",
        "less if smaller values of the metric are better, more if larger values are better; empty if neither is better; "

@@ -39,13 +39,21 @@ std::string caption_of(const Ranking& ranking) {
   if (ranking.seeds < 2) return "mean of each metric";
   std::string caption = fmt::format("mean and spread of each metric over {} seeds", ranking.seeds);
   for (std::size_t s = 0; s < ranking.scenarios.size(); ++s)
-    if (ranking.common[s].size() < ranking.seeds)
-      caption += fmt::format("; in {} over the {} seeds in which no algorithm failed", ranking.scenarios[s],
-                             ranking.common[s].size());
+    if (const std::string seeds = seeds_of_means_text(ranking, s); !seeds.empty())
+      caption += fmt::format("; in {} {}", ranking.scenarios[s], seeds);
   return caption;
 }
 
 }  // namespace
+
+std::string seeds_of_means_text(const Ranking& ranking, std::size_t scenario) {
+  const std::size_t common = ranking.common[scenario].size();
+  if (common < ranking.seeds)
+    return fmt::format("over the {} of {} seeds in which no algorithm failed", common, ranking.seeds);
+  if (ranking.lacks_common_seeds(scenario))
+    return "over the seeds in which the algorithm itself did not fail, because in every seed an algorithm failed";
+  return "";
+}
 
 Table law_metric_table(const Ranking& ranking) {
   const bool has_failures = std::ranges::count(ranking.failed, true) > 0;

@@ -153,12 +153,10 @@ std::string unranked_text(const Ranking& ranking, const Layout& layout) {
 static std::string common_seeds_text(const Ranking& ranking, const Layout& layout) {
   std::string text;
   for (std::size_t s = 0; s < ranking.scenarios.size(); ++s)
-    if (ranking.common[s].size() < ranking.seeds)
-      text += layout.wrapped(
-          fmt::format("mean and spread in {}: over the {} of {} seeds in which no algorithm failed; algorithms that "
-                      "failed in every seed are ignored",
-                      ranking.scenarios[s], ranking.common[s].size(), ranking.seeds),
-          0);
+    if (const std::string seeds = seeds_of_means_text(ranking, s); !seeds.empty())
+      text += layout.wrapped(fmt::format("mean and spread in {}: {}; algorithms that failed in every seed are ignored",
+                                         ranking.scenarios[s], seeds),
+                             0);
   return text;
 }
 

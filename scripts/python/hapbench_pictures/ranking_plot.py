@@ -224,7 +224,9 @@ def legend_of(scenes, metrics):
         entry for scene in scenes for metric in metrics for entry in scene.entries(metric).values()
     ]
     laws = [law for scene in scenes for law in scene.laws]
-    entries = [(Line2D([], [], color=BLACK, **MEAN), "mean")]
+    differ = any(scene.lacks_common_seeds for scene in scenes)
+    mean = "mean over the law's runs that did not fail" if differ else "mean"
+    entries = [(Line2D([], [], color=BLACK, **MEAN), mean)]
     if any(one.is_unknown for one in of):
         entries.append((Line2D([], [], color=BLACK, **BOUND), "bound: not larger than its error"))
     if any(one.spread is not None for one in of):

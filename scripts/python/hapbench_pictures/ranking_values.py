@@ -44,7 +44,7 @@ class Entry:
     """One law in one scene for one metric."""
 
     values: dict  # value by number of the repetition (seed), without failed runs
-    others: dict  # those of `values` that are not in the mean, because another law failed in the repetition
+    others: dict  # part of `values` that is not in the mean, because another law failed in the repetition
     mean: float | None = None  # mean over the common repetitions
     spread: float | None = (
         None  # standard deviation; None for one repetition, or if the seed changes nothing
@@ -63,7 +63,7 @@ class Entry:
         the mean. If the entry has no spread, the tolerance is returned instead."""
         if self.spread is None or self.mean is None:
             return self.tolerance
-        of_seeds = self.spread / np.sqrt(max(len(self.values), 1))
+        of_seeds = self.spread / np.sqrt(len(self.values) - len(self.others))
         return max(self.error, of_seeds, 0.1 * RESOLUTION * abs(self.mean))
 
     @property
@@ -124,6 +124,13 @@ class Scene:
             if common:
                 return common
         return set().union(*(law.runs for law in self.laws))
+
+    @cached_property
+    def lacks_common_seeds(self):
+        """True if the means of different laws are over different repetitions, because in every repetition a law failed
+        that succeeded in another repetition."""
+        has_failures = any(0 < len(law.failures) < len(law.runs) for law in self.laws)
+        return has_failures and self.seeds == set().union(*(law.runs for law in self.laws))
 
     @cached_property
     def depends_on_seed(self):

@@ -108,6 +108,9 @@ TEST(Ranking, RanksByMeansThenThoseWithoutOneThenByFailedSeeds) {
   const Ranking without_common = rank_comparison({-1.0, 2.0, 3.0, -1.0, 4.0, 6.0}, Better::less, 2);
   EXPECT_EQ(without_common.at(0, 2, 0).common_seeds, 2u);
   EXPECT_EQ(without_common.at(0, 2, 0).mean, 5.0);
+  EXPECT_EQ(without_common.at(0, 1, 0).common_seeds, 1u);
+  EXPECT_TRUE(without_common.lacks_common_seeds(0));
+  EXPECT_FALSE(ranking.lacks_common_seeds(0));
 }
 
 /// Checks ranks of laws whose values cannot be told apart, because the errors are too large.
