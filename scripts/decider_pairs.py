@@ -62,19 +62,22 @@ def pairs_to_judge(claims, cases):
     return entries
 
 
+def key_of(pair):
+    return json.dumps([pair["values"], pair["alone"]])
+
+
 def take_from_record(entries, record):
     """Copies into `entries` the verdicts of pairs that `record` has. A pair in `record` is used only if it has the same
     claim, the same values, and the same verdicts: of the claim, and with each of the two values alone.
     """
     known = {
-        (claim["id"], claim["verdict"], json.dumps([pair["values"], pair["alone"]])): pair
+        (claim["id"], claim["verdict"], key_of(pair)): pair
         for claim in record
         for pair in claim["pairs"]
     }
     for entry in entries:
         for pair in entry["pairs"]:
-            key = json.dumps([pair["values"], pair["alone"]])
-            pair.update(known.get((entry["id"], entry["verdict"], key), {}))
+            pair.update(known.get((entry["id"], entry["verdict"], key_of(pair)), {}))
 
 
 def judged(program, claims, values):

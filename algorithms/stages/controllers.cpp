@@ -38,8 +38,8 @@ const ModelInfo kActuatorLimitedPassivityInfo = {
     .summary = "force stage: time-domain passivity control with damping that every actuator can render",
     .formula =
         "W = <f, v> - E / dt > 0 is dissipated by f1 = f - a1 <v, n> n, n = f / |f|, then f2 = f1 - a2 (v - <v, n> n); "
-        "a1 = W / <v, n>^2 and a2 = (W - a1 <v, n>^2) / |v - <v, n> n|^2, each at most b and such that |f_j| <= F_j; "
-        "the rest of W is dissipated in later steps",
+        "a1 = W / <v, n>^2 and a2 = (W - a1 <v, n>^2) / |v - <v, n> n|^2, each at most b and at most the value at "
+        "which an actuator reaches |f_j| = F_j; the rest of W is dissipated in later steps",
     .source =
         "Hannaford and Ryu 2002; priority of the force's direction and limits of each actuator after the abstract of "
         "Porcini and Frisoli 2026 (arXiv 2603.26347); the formulas are our derivation",

@@ -24,11 +24,11 @@ constexpr OutcomeInfo kOutcomes[] = {
     {"stuck",
      "all steps were computed, but one of these holds. (1) At the end the tool stood still, and not because the hand "
      "pressed it against the surface: while the hand's target moved on by more than the tool's width, the tool moved "
-     "by less than a tenth of the target's distance. The target is that of a hand of type drag, impedance or "
-     "mass_spring_damper, or the intended position of a hand of type tracking. (2) A tool led by a hand of type drag "
-     "ended behind the target by more than a tenth of the target's distance along the path, and by more than the "
-     "tool's half width. A tool that was at least half as far behind at half of the path does not count, because "
-     "friction has this effect",
+     "by less than a tenth of the target's distance. The target is the moving target of a hand of type drag, "
+     "impedance or mass_spring_damper, or the intended position of a hand of type tracking. (2) A tool led by a hand "
+     "of type drag ended behind the target by more than a tenth of the target's distance along the path, and by more "
+     "than the tool's half width. A tool that was at least half as far behind at half of the path does not count, "
+     "because friction has this effect",
      true},
     {"no_contact", "all steps were computed, and the tool never touched the environment", true, kLeftForGood},
     {"lost_contact",

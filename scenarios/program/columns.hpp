@@ -41,7 +41,7 @@ Shown only_printed(bool wide = false);
 /// Returns `where` if `has_it` is true. Otherwise returns the outputs of a column that appears nowhere.
 Shown when(bool has_it, Shown where = {});
 
-/// Returns `where`, changed so that the column is that of a varied field (Shown::varied).
+/// Returns `where` with `varied` set to true: the column has the values of a varied field.
 Shown varied(Shown where);
 
 /// Returns the value of a varied field as a cell: a number if the text is a finite number, otherwise the text.

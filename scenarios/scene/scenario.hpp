@@ -214,7 +214,7 @@ struct IntegratorFields {
   double tolerance = kEventTolerance;        ///< time tolerance of the integrator `event` [s]
 };
 
-/// What a run records: the tables that it writes besides its summary, and optional sections of the summary.
+/// The tables that a run writes besides its summary, and the optional sections of the summary.
 struct RecordFields : TrajectoryExtras {
   bool trajectory = true;
   std::int64_t every = 1;  ///< records every n-th time step

@@ -460,7 +460,7 @@ ToolShape::Grown Revolved::grown(double margin) const {
   // Compute the upper convex hull of the corners.
   std::vector<ProfilePoint> hull;
   for (const ProfilePoint& p : corners) {
-    // Of several corners with the same s, keep the one with the largest rho.
+    // If several corners have the same s, keep the corner with the largest rho.
     while (!hull.empty() && hull.back().s == p.s) hull.pop_back();
     while (hull.size() >= 2 && cross(hull[hull.size() - 2], hull.back(), p) >= 0.0) hull.pop_back();
     hull.push_back(p);

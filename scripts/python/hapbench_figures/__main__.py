@@ -176,9 +176,10 @@ def measured(figure, claims):
 
 
 def record(directory, page, drawn, claims):
-    """Copies those figures of `drawn` into the directory `page` that redraw a figure of the thesis, or of which the
-    directory already has an older drawing. Writes figures.md about the copied figures, and rows.json with the measured
-    numbers of the claims that the copied figures draw. `drawn`: entries of figures.json by identifier.
+    """Copies figures in `drawn` into the directory `page`: each figure that redraws a figure of the thesis, and each
+    figure of which the directory already has an older drawing. Writes figures.md about the copied figures, and
+    rows.json with the measured numbers of the claims that the copied figures draw. `drawn`: entries of figures.json by
+    identifier.
     """
     text, rows = PAGE, {}
     for figure in FIGURES:
