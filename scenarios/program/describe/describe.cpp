@@ -35,12 +35,13 @@ std::string plain(std::string_view text) {
   return plain;
 }
 
-/// Returns true if `name` is the entry's heading, such as ">30Hz rms N", or the first line of this heading, ">30Hz".
-/// Ignores case and spaces.
+/// Returns true if `name` is the entry's heading, such as "mean force [N]", the heading without its unit, "mean force",
+/// or the first line of the heading, "mean". Ignores case and spaces.
 bool is_heading(const IndexEntry& item, std::string_view name) {
   const std::string_view title = item.name;
   return item.kind == "heading" &&
-         (plain(name) == plain(title) || plain(name) == plain(title.substr(0, title.find('\n'))));
+         (plain(name) == plain(title) || plain(name) == plain(title.substr(0, title.find(" ["))) ||
+          plain(name) == plain(title.substr(0, title.find('\n'))));
 }
 
 std::vector<Description> described(const Index& index, const std::function<bool(const IndexEntry&)>& is_meant) {
@@ -157,12 +158,13 @@ void add_describe(CommandLine& line) {
       "columns, claims, assumptions, terms, or a group of scenarios such as thesis.\n\n"
       "Scenario files: \"scenario\" (all fields), a field such as rendering.limits (unit, allowed values, default), "
       "or \"schema\".\n\n"
-      "Results: a file such as trajectory.csv (all its columns with units), a column, a metric, an "
-      "outcome such as went_through, or the heading of a table such as \">30Hz rms N\".\n\n"
+      "Results: a file such as trajectory.csv (all its columns with units), a column, a metric, a key of summary.json or "
+      "timing.json, an outcome such as went_through, or the heading of a table such as \"mean force\".\n\n"
       "Concepts: \"stability\", \"diagnosis\", or a term of the glossary such as \"linear limit\".\n\n"
       "Models: the name of a force law, depth model, integrator, environment, hand, device, scenario or study.\n\n"
       "Thesis: a claim such as C5, an assumption such as planar.first_tilt, a figure, table or equation such as \"Fig. "
       "A.2\", or \"assumptions_schema\".\n\n"
+      "The program: the name of a command, such as tune.\n\n"
       "Unknown name: exit status 2, and a message with the nearest valid name, if a similar name exists.");
 }
 

@@ -2,7 +2,9 @@
 
 #include <utility>
 
+#include "scenarios/program/describe/command_names.hpp"
 #include "scenarios/program/describe/fields.hpp"
+#include "scenarios/program/describe/json_keys.hpp"
 #include "scenarios/program/describe/models.hpp"
 #include "scenarios/program/describe/result_names.hpp"
 #include "scenarios/program/result_tables.hpp"
@@ -52,6 +54,8 @@ Index program_index(const Layout& layout) {
     index.push_back({"field", path, "", [path, layout] { return describe_field(path, layout); }});
   add_types(index, layout);
   add_printed_names(index, layout);
+  add_json_keys(index, layout);
+  add_commands(index, layout);
   add_headings(index, tables, layout);
   return index;
 }

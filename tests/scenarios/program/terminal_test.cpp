@@ -14,6 +14,7 @@
 #include "scenarios/input/json_schema.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/input/writer.hpp"
+#include "scenarios/program/commands.hpp"
 #include "scenarios/program/describe/index.hpp"
 #include "scenarios/program/result_tables.hpp"
 #include "scenarios/program/run_table.hpp"
@@ -213,6 +214,39 @@ TEST(DescribeCommand, ExplainsTheWordsAndHeadingsThatResultsHave) {
   for (const RunVerdictText& verdict : run_verdict_texts()) words.emplace_back(verdict.name);
   for (const RunHeading& heading : kRunHeadings) words.emplace_back(heading.title);
   for (const std::string& word : words) EXPECT_EQ(hapbench_in_process({"describe", word}).status, 0) << word;
+}
+
+/// Adds the keys of all objects in `json` to `keys`.
+void add_keys(const Json& json, std::set<std::string>& keys) {
+  for (const auto& [key, value] : json.items()) {
+    if (json.is_object()) keys.insert(key);
+    if (value.is_structured()) add_keys(value, keys);
+  }
+}
+
+TEST(DescribeCommand, ExplainsEveryKeyOfTheJsonFilesOfARun) {
+  const test::TemporaryDirectory folder;
+  std::set<std::string> keys;
+  for (const char* scenario : {"drag_molar", "six_dof_peg", "impedance_in_hole", "task2_held", "hole_late"}) {
+    const fs::path out = folder / scenario;
+    const ProgramRun run =
+        hapbench_in_process({"run", scenario, "--set", "record.timing=true", "--out", out.string(), "--quiet"});
+    ASSERT_EQ(run.status, 0) << run.err;
+    for (const char* file : {"summary.json", "timing.json"}) add_keys(read_json(out / file), keys);
+  }
+  EXPECT_GT(keys.size(), 150u);
+  for (const IndexEntry& entry : program_index(Layout())) keys.erase(entry.name);
+  // The remaining keys are the last parts of names, such as "created_sum_J" of the metric "energy.created_sum_J".
+  for (const std::string& key : keys) EXPECT_EQ(hapbench_in_process({"describe", key}).status, 0) << key;
+}
+
+TEST(DescribeCommand, ExplainsEveryCommand) {
+  for (const CommandGuide& guide : command_guides()) {
+    const std::string name(guide.name);
+    const ProgramRun run = hapbench_in_process({"describe", name});
+    EXPECT_EQ(run.status, 0) << name << run.err;
+    EXPECT_NE(run.out.find("hapbench " + name + " --help"), std::string::npos) << run.out;
+  }
 }
 
 TEST(DescribeCommand, ShowsWhatNamesALocationInTheThesis) {

@@ -1,0 +1,12 @@
+#pragma once
+
+#include "scenarios/program/describe/index.hpp"
+#include "scenarios/program/layout.hpp"
+
+/// The keys of the JSON files of a run that are neither metrics nor columns of a table.
+namespace hapbench {
+
+/// Adds these keys, each with its file and its unit.
+void add_json_keys(Index& index, const Layout& layout);
+
+}  // namespace hapbench
