@@ -125,8 +125,9 @@ const char* expectation_source(const Scenario& scenario) {
 /// Reports the tables and the diagnosis of the runs.
 void report_results(const std::vector<Result>& results, bool latency, const Layout& layout, Report& report) {
   report.show(run_table(results, true, layout));
-  report_fidelity(results, layout, report);
+  report.add_text(run_legend(results, layout));
   report.add_text(step_time_text(results, layout));
+  report_fidelity(results, layout, report);
   for (const Result& result : results) {
     if (!result.sections.contains("targets")) continue;
     const std::string caption = fmt::format("{}: targets, mean +- standard error over subjects", result.name);

@@ -112,6 +112,19 @@ Table run_table(std::span<const Result> reports, bool of_scenes, const Layout& l
   return run_columns(of_scenes).table(reports, caption, layout.in_full());
 }
 
+std::string run_legend(std::span<const Result> reports, const Layout& layout) {
+  const auto known = [](const char* metric) {
+    return [metric](const Result& run) { return number_of(run.metrics, metric).has_value(); };
+  };
+  const auto is_complete = [](const Result& run) { return !run.end.ended_at; };
+  const bool has_short_contact = std::ranges::any_of(
+      reports, [&](const Result& run) { return is_complete(run) && !known("force_mean_in_contact_N")(run); });
+  std::string text = "mean force and vibration: of the force in settled contact, vibration above 30 Hz";
+  if (has_short_contact) text += " (-: less than 33 ms of it)";
+  if (std::ranges::any_of(reports, known("inside_max_m"))) text += "; max depth inside: of the tool below the surface";
+  return "\n" + layout.wrapped(text, 0);
+}
+
 void report_fidelity(std::span<const Result> reports, const Layout& layout, Report& report) {
   std::vector<std::reference_wrapper<const Result>> with_reference;
   for (const Result& run : reports)
@@ -186,7 +199,7 @@ std::string step_time_text(std::span<const Result> reports, const Layout& layout
         has_table ? "" : ", which is", cell(1e6 * step, 2));
   else if (has_table)
     return "";
-  return "\n" + layout.wrapped(text, 0);
+  return layout.wrapped(text, 0);
 }
 
 std::string value_and_threshold_text(const Diagnosed& found) {

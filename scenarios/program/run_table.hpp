@@ -55,6 +55,9 @@ void add_metrics(Columns<Row>& columns, std::span<const RunHeading> headings, Fi
 /// even without --wide. This vibration is defined also for runs without settled contact.
 Table run_table(std::span<const Result> reports, bool of_scenes, const Layout& layout);
 
+/// Returns the text below run_table(), which explains the columns that it has without --wide.
+std::string run_legend(std::span<const Result> reports, const Layout& layout);
+
 /// Metric whose square root is the vibration of the tool.
 inline constexpr const char* kToolVibrationPower = "vibration_power_above_30Hz_m2_per_s2";
 

@@ -125,6 +125,7 @@ void report_runs(const std::vector<Result>& reports, const Ranking& ranking, boo
                  Report& report) {
   report.add_text(reports.front().name + "\n\n");
   report.show(run_table(reports, false, layout));
+  report.add_text(run_legend(reports, layout));
   report_fidelity(reports, layout, report);
   report.add_text(unranked_text(ranking, layout));
   if (!errors) report.add_text(vibration_text(ranking, layout));

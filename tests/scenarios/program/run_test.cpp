@@ -54,12 +54,13 @@ TEST_F(RunCommand, WritesWhatTheScenarioRecords) {
 
 TEST_F(RunCommand, ShowsSevenColumnsAndARowForEachScenario) {
   const auto lines = lines_of(hapbench({"run", "single_spring", "single_damper", "--out", out()}).out);
-  ASSERT_EQ(lines.size(), 12u);
+  ASSERT_EQ(lines.size(), 13u);
   EXPECT_EQ(words_of(lines[2]).size(), 7u) << lines[2];
   EXPECT_EQ(lines[3].find("single_spring  summation  completes"), 0u) << lines[3];
   EXPECT_EQ(lines[4].find("single_damper  summation  completes"), 0u) << lines[4];
-  EXPECT_EQ(lines[6].find("99 % of the time steps are computed within "), 0u) << lines[6];
-  EXPECT_EQ(lines[8], "diagnosis of single_damper: damping (0.998, threshold 0.5)");
+  EXPECT_EQ(lines[6], "mean force and vibration: of the force in settled contact, vibration above 30 Hz");
+  EXPECT_EQ(lines[7].find("99 % of the time steps are computed within "), 0u) << lines[7];
+  EXPECT_EQ(lines[9], "diagnosis of single_damper: damping (0.998, threshold 0.5)");
   EXPECT_EQ(lines.back(), "results in " + out());
   const auto wide = lines_of(hapbench({"run", "single_spring", "--wide", "--out", out()}).out);
   EXPECT_EQ(words_of(wide[2]).size(), 14u) << wide[2];
