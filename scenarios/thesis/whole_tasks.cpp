@@ -53,7 +53,7 @@ Finding judge_stability(const Measured& measured, const PublishedNumbers&) {
           fmt::format("{} of {} runs complete; in {} of them, the diagnosis finds no vibration and no jumps", completed,
                       measured.size(), undisturbed),
           "",
-          fmt::format("{} of {} runs complete; rms force above 30 Hz up to {:.2f} times the mean force", completed,
+          fmt::format("{} of {} runs complete; rms force above 30 Hz: at most {:.2f} times the mean force", completed,
                       measured.size(), buzz)};
 }
 
