@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "scenarios/scene/load_scenario.hpp"
 #include "scenarios/scene/overrides.hpp"
 
@@ -32,8 +30,7 @@ InputError with_override_locations(const InputError& error, const std::vector<st
   for (const InputError& fault : error.faults()) {
     ErrorLocation location = fault.location();
     for (const std::string& override : overrides) {
-      std::string pointer = "/" + std::string(overridden_path(override));
-      std::ranges::replace(pointer, '.', '/');
+      const std::string pointer = overridden_pointer(override);
       const bool is_in_it = location.pointer == pointer || location.pointer.starts_with(pointer + "/");
       if (!is_in_it || location.file.empty()) continue;
       name_override(location, override, pointer);

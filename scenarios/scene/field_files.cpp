@@ -1,5 +1,7 @@
 #include "scenarios/scene/field_files.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <iterator>
 
@@ -7,6 +9,7 @@
 #include "scenarios/input/nearest_name.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/scene/load_scenario.hpp"
+#include "scenarios/scene/overrides.hpp"
 #include "scenarios/scene/scenario_schema.hpp"
 
 namespace hapbench {
@@ -89,8 +92,14 @@ fs::path file_of(const LoadedScenario& loaded, const std::string& pointer) {
 
 std::vector<std::string> with_files(const LoadedScenario& loaded, const std::vector<Warning>& warnings) {
   std::vector<std::string> texts;
-  for (const Warning& warning : warnings)
-    texts.push_back(file_of(loaded, warning.pointer).string() + ": " + warning.located_text());
+  for (const Warning& warning : warnings) {
+    const auto override = std::ranges::find(loaded.overrides, warning.pointer, overridden_pointer);
+    // The text does not have the value of the override, so that a sweep of the field warns once.
+    texts.push_back(override == loaded.overrides.end()
+                        ? file_of(loaded, warning.pointer).string() + ": " + warning.located_text()
+                        : fmt::format("{}, overridden field {}: {}", loaded.scenario.name, overridden_path(*override),
+                                      warning.text));
+  }
   return texts;
 }
 

@@ -16,8 +16,9 @@ struct LoadedScenario;
 /// file sets the value, returns the file that has the nearest enclosing object.
 std::filesystem::path file_of(const LoadedScenario& loaded, const std::string& pointer);
 
-/// Returns the warnings as texts for the user. Each text begins with the file that sets the value, and the JSON pointer
-/// of the value.
+/// Returns the warnings as texts for the user. Each text begins with the location of the value: the file that sets it
+/// and the JSON pointer of the value, or, if an override sets this field, the name of the scenario and the path of the
+/// field.
 std::vector<std::string> with_files(const LoadedScenario& loaded, const std::vector<Warning>& warnings);
 
 /// Throws a copy of `error`. In the copy, the name of `file` stands in front of each fault.

@@ -45,6 +45,7 @@ LoadedScenario load_scenario(const ScenarioText& text, std::span<const std::stri
     LoadedScenario read = read_scenario(json, text.file.parent_path());
     read.file = loaded.file;
     read.layers = std::move(loaded.layers);
+    read.overrides = {overrides.begin(), overrides.end()};
     if (read.scenario.name.empty()) read.scenario.name = text.file.stem().string();
     return read;
   });

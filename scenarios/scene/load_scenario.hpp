@@ -25,6 +25,7 @@ struct LoadedScenario {
   /// The scenario's file and the files that it extends (ScenarioText::layers), with the overrides applied to the first
   /// of these files. Empty if the scenario's file extends no other file.
   std::vector<ScenarioLayer> layers;
+  std::vector<std::string> overrides;  ///< overrides that were applied to the scenario's file
 };
 
 /// Applies the overrides to a scenario that was read before, and checks the result. The overload below describes

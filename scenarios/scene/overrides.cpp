@@ -60,6 +60,12 @@ void apply_override(Json& json, const std::string& text) {
   if (path == "time" || path == "time.step_s") drop_derived_samples(json);
 }
 
+std::string overridden_pointer(std::string_view override) {
+  std::string pointer = "/" + std::string(overridden_path(override));
+  std::ranges::replace(pointer, '.', '/');
+  return pointer;
+}
+
 bool keeps_run_unchanged(std::string_view override) {
   constexpr std::string_view kWithoutEffect[] = {"expect", "record", "name", "description", "source"};
   // Fields of `record` that change the metrics: the first three add or remove metrics, and `record.every` selects the

@@ -13,6 +13,9 @@ inline std::string_view overridden_path(std::string_view override) noexcept {
   return override.substr(0, override.find('='));
 }
 
+/// Returns the JSON pointer of the field that an override sets.
+std::string overridden_pointer(std::string_view override);
+
 /// Returns the JSON value of a text. The text is parsed as JSON, or as a number in a notation that JSON does not allow
 /// (".001", "+1"). Any other text becomes a JSON string.
 Json override_value(const std::string& text);

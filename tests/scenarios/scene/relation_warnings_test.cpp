@@ -6,6 +6,7 @@
 
 #include "scenarios/input/bundled_scenarios.hpp"
 #include "scenarios/input/json_file.hpp"
+#include "scenarios/scene/field_files.hpp"
 #include "scenarios/scene/load_scenario.hpp"
 #include "tests/scenarios/support/scenarios.hpp"
 
@@ -30,6 +31,19 @@ TEST(Warnings, NameFieldsThatTheAlgorithmDoesNotRead) {
   EXPECT_TRUE(found[0].starts_with("/rendering/iterations: has no effect on this algorithm")) << found[0];
   EXPECT_TRUE(found[1].ends_with("it is a parameter of virtual_coupling, static_coupling")) << found[1];
   EXPECT_EQ(found[2], "/rendering/angular_velocity_cutoff_Hz: has no effect without rendering.angular_damping");
+}
+
+TEST(Warnings, NameTheOverrideInsteadOfAFileThatDoesNotSetTheField) {
+  const auto texts = [](std::vector<std::string> overrides) {
+    const LoadedScenario loaded = load_scenario(find_scenario("poke_plane"), overrides);
+    return with_files(loaded, loaded.warnings);
+  };
+  const std::string text = "poke_plane, overridden field rendering.iterations: has no effect on this algorithm";
+  const auto found = texts({"rendering.algorithm=mean", "rendering.iterations=7"});
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_TRUE(found[0].starts_with(text)) << found[0];
+  // The text does not depend on the value, so that a sweep of the field warns once.
+  EXPECT_EQ(texts({"rendering.iterations=8", "rendering.algorithm=mean"}), found);
 }
 
 TEST(AdmittanceDevice, WarnsUnderAHandThatDoesNotFeelTheHandle) {
