@@ -18,8 +18,8 @@ PLOT_NOTES = [
     "peaks of the other runs.",
     "A comparison with a ranking (several seeds, scenes, or --by): each metric by law, the best "
     "on top with its rank; --y draws the runs over time instead. --metric draws other metrics by "
-    "law, also without a ranking. Grey: the error of the mean. A mean that is not larger than its "
-    "error is drawn as a hollow mark at mean + error. Failed runs are counted in red and have no "
+    "law, also without a ranking. Grey: the tolerance of the mean. A mean that is not larger than its "
+    "tolerance is drawn as a hollow mark at mean + error. Failed runs are counted in red and have no "
     "value.",
     "Limits: marks are simulated limits, lines or hollow squares linear limits; with --device a "
     "colour for each device, dotted lines for published limits. The mark of a simulated limit is "

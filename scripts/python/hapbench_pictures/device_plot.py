@@ -137,7 +137,8 @@ def draw_devices_over(found, sheet):
         for name in dict.fromkeys(row["device"] for row in of_panel):
             mine = [row for row in of_panel if row["device"] == name]
             series += curves_of(found, mine, looks[device_of(mine[0])].colour, "[" in name)
-        y = [values for _, _, values, _ in series]
+        # The marks at the end of the range also belong to the axis: a linear axis would press the curves together.
+        y = [values for _, _, values, _ in series] + [simulated_kinds(of_panel)[2]]
         over_axes(
             ax,
             found.axis(),

@@ -239,7 +239,7 @@ def legend_of(scenes, metrics):
         marker = Line2D([], [], color=BLACK, **SINGLE | HOLLOW)
         entries.append((marker, "run not in the mean: another law failed"))
     if any(one.tolerance for one in of if one.mean is not None):
-        entries.append((Patch(color=TOLERANCE), "error of the mean"))
+        entries.append((Patch(color=TOLERANCE), "tolerance of the mean"))
     if any(law.failures for law in laws):
         entries.append((Line2D([], [], **FAILED), "failed runs"))
     return entries

@@ -111,9 +111,8 @@ def draw_work_precision(files, sheet=SHEET):
     is_knee = is_true(times, "knee")
     requested = 1e6 * float(errors[0]["asked_error_m"])
     rows, columns = sheet.grid(len(problems))
-    figure, axes = sheet.panels(
-        rows, columns, 0.5 + sheet.panel(2.4) * rows, sharex=True, sharey=True
-    )
+    # Processor times of laws can differ by a factor of a thousand, so each panel has its own range of times.
+    figure, axes = sheet.panels(rows, columns, 0.5 + (sheet.panel(2.4) + 0.2) * rows, sharey=True)
     for ax, problem in zip(axes.flat, problems):
         of_problem = np.array([row["problem"] == problem for row in errors])
         series = [
@@ -128,12 +127,12 @@ def draw_work_precision(files, sheet=SHEET):
                 error,
             )
         ]
-        across = Axis("processor time per simulated second [ms]", cost, log=True)
+        across = Axis("processor time per\nsimulated second [ms]", cost, log=True)
         over_axes(
             ax, across, Axis("rms error of the\ntip's position [µm]", error, log=True), series
         )
         ax.axhline(requested, zorder=1, **REQUESTED)
-        if cost.max() > 0.1 * REAL_TIME:
+        if cost[of_problem].max() > 0.1 * REAL_TIME:
             ax.axvline(REAL_TIME, zorder=1, **SPEED)
         for at in np.flatnonzero(of_problem & is_knee):
             ax.plot(cost[at], error[at], **KNEE)
@@ -141,8 +140,9 @@ def draw_work_precision(files, sheet=SHEET):
         if not np.isfinite(error[of_problem]).any():
             note(ax, 0.5, 0.5, "no error: not predictable", ha="center")
         ax.set_title(problem.replace("_", " "))
-        ax.margins(x=0.1, y=0.13)  # leaves room for the labels of the front
-        ax.label_outer()
+        leave_room(ax)
+    for ax in axes[:, 1:].flat:
+        ax.set_ylabel("")
     for ax in list(axes.flat)[len(problems) :]:
         ax.set_visible(False)
     unresolved = (np.isfinite(error) & (error > 0) & ~is_true(errors, "resolved")).any()
@@ -151,6 +151,13 @@ def draw_work_precision(files, sheet=SHEET):
     )
     legend_above(figure, marks, names, columns=None)
     return figure
+
+
+def leave_room(ax):
+    """Extends the range of the panel by the room that the labels of the front need, below and on the left."""
+    ax.margins(x=0.05, y=0.2)
+    low, high = ax.get_xlim()
+    ax.set_xlim(low * (low / high) ** ROOM[0], high)
 
 
 def legend_of(looks, requested, has_knee, has_unresolved, has_real_time):
