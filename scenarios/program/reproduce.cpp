@@ -113,7 +113,7 @@ std::vector<JudgedClaim> judge(const std::vector<Claim>& claims, const Published
   std::vector<JudgedClaim> judged;
   Measurements measurements;
   std::map<Measure, double> measuring;  // time of each measurement without the runs of scenarios [s]
-  ProgressBar bar(options.output.quiet ? "" : "claims", claims.size(), context.progress);
+  ProgressBar bar(options.output.quiet ? "" : "judging claims", claims.size(), context.progress);
   for (const Claim& claim : claims) {
     bar.show(judged.size());
     std::set<std::string> used;  // scenarios that the claim uses
@@ -220,7 +220,7 @@ int reproduce(const ReproduceOptions& options, ProgramContext& context) {
     report.files().write(ledger.parent_path() / "claim_pages.md", claim_pages(json));
     report.add_text(fmt::format("\nledger in {}\n", ledger.string()));
   } else {
-    report.add_text("\nno ledger is written; for single claims, --ledger FILE writes one\n");
+    report.add_text("\nno ledger (table of all claims) is written for single claims; --ledger FILE writes it\n");
   }
   for (const ThesisRun& run : runs)
     for (const std::string& problem : run.unmet)

@@ -112,17 +112,21 @@ Table run_table(std::span<const Result> reports, bool of_scenes, const Layout& l
   return run_columns(of_scenes).table(reports, caption, layout.in_full());
 }
 
+std::string headings_legend(bool has_empty_mean, bool has_depth, const Layout& layout) {
+  std::string text = "mean force and vibration: of the rendered force in settled contact, vibration above 30 Hz";
+  if (has_empty_mean) text += " (-: less than 33 ms of it)";
+  if (has_depth) text += "; max depth inside: of the tool below the surface";
+  return layout.wrapped(text, 0);
+}
+
 std::string run_legend(std::span<const Result> reports, const Layout& layout) {
   const auto known = [](const char* metric) {
     return [metric](const Result& run) { return number_of(run.metrics, metric).has_value(); };
   };
-  const auto is_complete = [](const Result& run) { return !run.end.ended_at; };
-  const bool has_short_contact = std::ranges::any_of(
-      reports, [&](const Result& run) { return is_complete(run) && !known("force_mean_in_contact_N")(run); });
-  std::string text = "mean force and vibration: of the force in settled contact, vibration above 30 Hz";
-  if (has_short_contact) text += " (-: less than 33 ms of it)";
-  if (std::ranges::any_of(reports, known("inside_max_m"))) text += "; max depth inside: of the tool below the surface";
-  return "\n" + layout.wrapped(text, 0);
+  // A run that ended early has no metrics at all.
+  const bool has_empty_mean = std::ranges::any_of(
+      reports, [&](const Result& run) { return !run.end.ended_at && !known("force_mean_in_contact_N")(run); });
+  return "\n" + headings_legend(has_empty_mean, std::ranges::any_of(reports, known("inside_max_m")), layout);
 }
 
 void report_fidelity(std::span<const Result> reports, const Layout& layout, Report& report) {
@@ -169,10 +173,10 @@ std::vector<std::string> run_warnings(std::span<const Result> reports) {
   }
   std::vector<std::string> texts;
   for (const Merged& warning : all) {
-    std::string text = reports.front().name + ": " + warning.text;
-    const std::string others =
-        warning.others > 0 ? fmt::format("; further runs with other numbers: {}", warning.others) : "";
-    if (reports.size() > 1) text += fmt::format(" ({}{})", fmt::join(warning.algorithms, ", "), others);
+    const std::string laws =
+        reports.size() > 1 ? fmt::format(", with {}", fmt::join(warning.algorithms, ", ")) : std::string();
+    std::string text = fmt::format("{}{}: {}", reports.front().name, laws, warning.text);
+    if (warning.others > 0) text += fmt::format(" (further runs with other numbers: {})", warning.others);
     texts.push_back(std::move(text));
   }
   return texts;

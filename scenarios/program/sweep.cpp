@@ -110,7 +110,16 @@ std::string summary_text(const SweepTable& table, const std::string& metric, con
   if (shown < rows.size() && single) text = fmt::format("the first {} of {} runs\n\n", shown, rows.size());
   rows.resize(shown);
   if (shown > 0) text += run_columns(table, metric, costs).text(rows, layout) + "\n";
-  return text + count_columns().text(table.kept.outcomes, layout);
+  text += count_columns().text(table.kept.outcomes, layout) + "\n";
+  const auto knows = [&](const char* name) {
+    return [&table, name](const SweepRow& row) { return table.number(row, name).has_value(); };
+  };
+  if (std::ranges::any_of(rows, knows("force_mean_in_contact_N")))
+    text += headings_legend(false, std::ranges::any_of(rows, knows("inside_max_m")), layout);
+  return text + layout.wrapped(
+                    "as expected: outcome and metrics agree with the scenario's field expect. The outcome completes "
+                    "says nothing about vibration, which \"hapbench run\" diagnoses",
+                    0);
 }
 
 /// Returns a cell as JSON if it is valid JSON, else as text; null for an empty cell.

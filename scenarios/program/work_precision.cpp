@@ -40,6 +40,12 @@ std::string error_text(const Setting& s, double error, double of_reference, doub
   return fmt::format("{}{}", error < kResolvedError * of_reference ? "< " : "", significant(shown, 2));
 }
 
+/// Returns true if the table marks an error of the setting with "<".
+bool is_unresolved(const Setting& s) {
+  return s.error && (s.error->position < kResolvedError * s.reference_error.position ||
+                     s.error->force < kResolvedError * s.reference_error.force);
+}
+
 /// Returns the columns of convergence.csv. Their values are the same if the command is repeated. `max_error` [m]: the
 /// requested error.
 Columns<Setting> error_columns(double max_error) {
@@ -143,7 +149,15 @@ void report_work_precision(const std::vector<WorkPrecisionProblem>& problems, do
     all.insert(all.end(), problem.settings.begin(), problem.settings.end());
     report.add_text(problem.name + "\n\n");
     report.show(error_columns(max_error).table(problem.settings, problem.name, layout.in_full()));
-    report.add_text("\n" + layout.wrapped(answer_text(problem, max_error), 0));
+    report.add_text("\n");
+    if (std::ranges::any_of(problem.settings, is_unresolved))
+      report.add_text(layout.wrapped(
+          fmt::format(
+              "<: the difference from the reference solution is less than {:g} times the error of the reference "
+              "solution, so that the error is at most the sum of both",
+              kResolvedError),
+          0));
+    report.add_text(layout.wrapped(answer_text(problem, max_error), 0));
     const auto& first = problem.settings.front();
     report.add_text(layout.wrapped(fmt::format("reference: {}; its error is about {} m and {} N", problem.reference,
                                                significant(first.reference_error.position, 1),

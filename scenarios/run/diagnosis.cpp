@@ -117,7 +117,7 @@ constexpr Rule kRules[] = {
      "1", kMaxEncoderForce, "each encoder step causes a force of {} times the mean force, through the damping",
      encoder_force, against_encoder},
     {"saturated", "fraction of the steps in contact in which the force is at its upper limit", "1", kMaxSaturation,
-     "the force is saturated during {} of the contact time", saturation, against_saturation},
+     "the force is at its upper limit during {} of the contact time", saturation, against_saturation},
     {"limiter", "fraction of the steps in contact in which the input-force limiter of the device cuts the hand's force",
      "1", 0.2, "the device's limiter cuts the hand's force during {} of the contact time",
      [](const DiagnosedRun& r) { return share(r.observations.at_input_limit, r.observations.in_contact); },

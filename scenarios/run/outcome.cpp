@@ -330,10 +330,14 @@ class OutcomeObserverImpl final : public OutcomeObserver {
         length_text(*progress_->left_behind()), length_text(progress_->target_progress()), millimetres(position_));
     // If the tool still moves at the end of the run, it may only need more time to reach the target.
     const double speed = handle_velocity_.norm();
-    if (speed > kMinMovingFraction * std::get<DragHandFields>(scenario_.hand).drag.speed)
+    const auto& hand = std::get<DragHandFields>(scenario_.hand);
+    if (speed > kMinMovingFraction * hand.drag.speed)
       text += fmt::format(
-          "; it still moved, at {:.2g} mm/s: with more time after the end of the path (time.steps) it may arrive",
-          1e3 * speed);
+          "; it still moved, at {:.2g} mm/s: {}", 1e3 * speed,
+          hand.path
+              ? "with more time after the end of the path (time.steps) it may arrive"
+              : "with hand.path in place of hand.direction, and more time after the end of the path (time.steps), "
+                "it may arrive");
     return text;
   }
 

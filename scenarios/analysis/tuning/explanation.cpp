@@ -143,19 +143,19 @@ std::string relaxations(Trials& trials, const TuneTrial& nearest, const IsFeasib
 /// Returns the failure that tune reports if relaxing limits does not help. Variants are judged in the order of their
 /// indices, and a trial keeps only the failure of its first failing variant. Among all trials, finds the highest index
 /// of a failing variant, and returns the most frequent failure with this index. All variants with lower indices are
-/// settled with the margin in these trials.
-const TuneFailure* binding_failure(const Trials& trials) {
+/// settled with the margin in these trials. Returns a trial with this failure; null if no trial failed.
+const TuneTrial* binding_trial(const Trials& trials) {
   const auto key_of = [](const TuneFailure& f) {
     return std::tuple(f.variant_index, f.binding == "margin", f.variant, f.verdict);
   };
-  std::map<std::tuple<std::size_t, bool, std::string, std::string>, std::pair<std::size_t, const TuneFailure*>> counts;
+  std::map<std::tuple<std::size_t, bool, std::string, std::string>, std::pair<std::size_t, const TuneTrial*>> counts;
   for (const auto& [key, trial] : trials.all()) {
     if (!trial.failure) continue;
-    auto& [count, failure] = counts[key_of(*trial.failure)];
+    auto& [count, example] = counts[key_of(*trial.failure)];
     ++count;
-    if (failure == nullptr || failure->unstable_at_K) failure = &*trial.failure;
+    if (example == nullptr || example->failure->unstable_at_K) example = &trial;
   }
-  const TuneFailure* binding = nullptr;
+  const TuneTrial* binding = nullptr;
   std::tuple<std::size_t, std::size_t> best{0, 0};  // variant, number of trials
   for (const auto& [key, counted] : counts) {
     const std::tuple rank{std::get<0>(key), counted.first};
@@ -212,10 +212,10 @@ void explain(Trials& trials, const IsFeasible& is_feasible, TunedLaw& law) {
   // variant is found.
   for (const auto& [key, trial] : trials.all())
     if (trial.limits_alone) trials.evaluated(trial, Need::excess);
-  if (const TuneFailure* failure = binding_failure(trials)) {
-    law.binding = failure->binding;
-    law.why = failure->why;
-    law.relax = remedy(trials.question(), *failure);
+  if (const TuneTrial* trial = binding_trial(trials)) {
+    law.binding = trial->failure->binding;
+    law.why = fmt::format("{}, for example with K = {:.4g} N/m", trial->failure->why, trial->stiffness);
+    law.relax = remedy(trials.question(), *trial->failure);
     return;
   }
   const TuneTrial& last = trials.all().rbegin()->second;

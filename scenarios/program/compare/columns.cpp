@@ -14,6 +14,7 @@
 #include "scenarios/batch/sweep_columns.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/program/compare/times.hpp"
+#include "scenarios/program/digits.hpp"
 #include "scenarios/scene/metric_sections.hpp"
 
 namespace hapbench {
@@ -36,6 +37,14 @@ std::optional<double> error_of_mean(const RankingEntry& entry) {
   const double of_seeds = *entry.spread / std::sqrt(static_cast<double>(entry.common_seeds));
   return std::max(
       {entry.tolerance, std::optional(of_seeds), std::optional(0.1 * kRankResolution * std::abs(*entry.mean))});
+}
+
+/// Returns the spread of the entry as text. A spread below the tolerance of the metric is not resolved: the text then
+/// has the tolerance as its bound.
+std::string spread_text(const RankingEntry& entry) {
+  if (!entry.spread) return "-";
+  if (entry.tolerance && *entry.spread < *entry.tolerance) return bound_text(0.0, *entry.tolerance);
+  return significant(*entry.spread, 2);
 }
 
 }  // namespace
@@ -77,7 +86,8 @@ Columns<RankingEntry> ranking_columns(bool seeds) {
       {"spread", "unit of the metric",
        "standard deviation of the metric over the common seeds; empty with a single seed, or if the seed changes "
        "nothing in the scenario",
-       &Row::spread, under(seeds ? "spread" : "", 2)},
+       &Row::spread, under("")},
+      {seeds ? "spread" : "", "", "", spread_text, only_printed()},
       {"rank", "1",
        "rank of the algorithm in this scenario by this metric: 1 + the number of algorithms that are better by more "
        "than 0.1 % and by more than the sum of both errors; algorithms with failed runs come last, ordered by the "

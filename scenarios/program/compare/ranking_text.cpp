@@ -84,10 +84,10 @@ std::string first_ranks_text(const Ranking& ranking) {
   if (firsts.empty())
     return "no algorithm has rank 1, because the error of the best mean is unknown or not smaller than the mean";
   const std::string where =
-      rankings == 1 ? "" : fmt::format(" in each of the {} rankings (one per scenario and metric)", rankings);
+      rankings == 1 ? "" : fmt::format(" in all {} rankings (one per scenario and metric)", rankings);
   if (firsts.size() == 1 && is_everywhere)
-    return fmt::format("only {} has rank 1{}", ranking.laws.front().algorithm, where);
-  return fmt::format("no algorithm has rank 1 alone{}; rank 1: {}", where,
+    return fmt::format("{} alone is first{}", ranking.laws.front().algorithm, where);
+  return fmt::format("no algorithm alone is first{}; first, ties included: {}", where,
                      fmt::join(first_few(firsts, kMaxNamed), ", "));
 }
 
@@ -175,12 +175,13 @@ void report_ranking_text(const Ranking& ranking, const Layout& layout, Report& r
     report.add_text(layout.wrapped(
         fmt::format(
             "rank: 1 is best. Algorithms share a rank if their means differ by at most 0.1 % or by at most the "
-            "sum of their errors{}{}. No rank (-): the error is unknown or not smaller than the number (<=), or "
-            "all ranks would be equal",
+            "sum of their errors{}{}. No rank (-): the error of the mean is unknown; or it is not smaller than the mean, "
+            "of which only a bound (<=) is known; or all ranks would be equal",
             ranking.estimated_error ? ", which are estimated below" : "",
             ranking.seeds > 1 ? "; the spread over the seeds does not count" : ""),
         0));
-  if (ranking.seeds > 1) report.add_text("spread: standard deviation over the seeds\n");
+  if (ranking.seeds > 1)
+    report.add_text("spread: standard deviation over the seeds (random numbers of noise, tremor and --jitter)\n");
   report.add_text(common_seeds_text(ranking, layout));
   report.add_text(unranked_text(ranking, layout));
   report.add_text(verdict(ranking, report.folder().string(), layout));

@@ -55,8 +55,6 @@ constexpr KeyMeaning kTimingKeys[] = {
     {"shell_s", "s", "time to compute or load the points on the environment's surface"},
     {"loop_s", "s", "time of all steps, with observers and recorders"},
     {"step_mean_s", "s", "mean wall time of one step, with observers and recorders"},
-    {"step_p50_s", "s", "median wall time of one step, without observers and recorders"},
-    {"step_p99_s", "s", "99th percentile of the wall time of one step, without observers and recorders"},
     {"step_latency", "", "with record.timing: distribution of the wall times of steps, with observers and recorders"},
     {"clock_overhead_s", "s", "member of step_latency: time to read the clock, subtracted from each step"},
     {"p50_s", "s", "member of step_latency: median of the times of steps"},

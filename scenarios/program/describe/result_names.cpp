@@ -22,10 +22,13 @@ struct PrintedName {
   const char *name, *kind, *meaning;
 };
 
+constexpr const char* kTime = "number of timing.json";
 constexpr const char* kResultFile = "file of the results";
 
 /// Printed names that no enumeration defines.
 constexpr PrintedName kPrintedNames[] = {
+    {"step_p50_s", kTime, "median wall time of one step, without observers and recorders [s]"},
+    {"step_p99_s", kTime, "99th percentile of the wall time of one step, without observers and recorders [s]"},
     {"tolerances", "object of summary.json",
      "errors of metrics: for each metric whose method has an error bound, the largest error, in the unit of the "
      "metric"},

@@ -140,16 +140,18 @@ std::string notes_text(const LimitTable& table, const Layout& layout) {
                                      table.first().question.search.smallest ? "to" : "from")},
       {table.is_grid(),
        "linear limit: limit by the eigenvalues of the loop of device, hand and contact, without dry friction and "
-       "encoder; none: no value or every value of the range is stable; -: the eigenvalues give no limit (column "
+       "encoder; none: the loop is stable, or unstable, in the whole range; -: the eigenvalues give no limit (column "
        "no_linear_reason of limit.csv)"},
       {true,
        "first unstable: class of motion (\"hapbench describe stability\") of the first unstable run beyond the "
        "simulated limit; if no value is stable, of the run at the low end of the range"},
       {true,
        "non-monotonic: number of unstable runs on the stable side of the limit and of stable runs beyond it; "
-       "limit_runs.csv has the class of each run"},
+       "if it is not 0, the simulated limit depends on the values that were tried. limit_runs.csv has the class of "
+       "each run"},
       {table.is_grid(),
-       "this table has no verification samples; run limit with one scene, device and algorithm to get them"},
+       "no further runs verified these limits; limit with one scene and algorithm, without --device and --over, makes "
+       "them"},
       {std::ranges::any_of(table.devices, is_published),
        "published: largest stable stiffness of a wall [N/m] that was published (\"hapbench describe DEVICE\" names the "
        "source)"},

@@ -133,7 +133,7 @@ def run(options):
     sure = kind or data["confidence"]
     headings = ["signal", "value"]
     if not kind:
-        headings = ["identified device", "value", "95 % from" if sure else "estimated from", "to"]
+        headings = ["identified device", "value", "95 % from" if sure else "interval from", "to"]
     next_line = (
         "play these forces on the device, log time_s,force_N,position_m, then "
         f"{shell_line('hapbench', 'import', 'device', 'LOG.csv')}"
