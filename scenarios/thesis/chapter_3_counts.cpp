@@ -128,7 +128,7 @@ Finding judge_reduced_points(const Measured& counts, const PublishedNumbers& pub
     inputs += agree.raw ? 1U : 0U;
     all += agree.whole ? 1U : 0U;
     means += agree.mean ? 1U : 0U;
-    append_item(why, fmt::format("{}: {}", c.name, agreement_text(agree, bounded, bound)));
+    append_item(why, fmt::format("density {}: {}", c.name, agreement_text(agree, bounded, bound)));
   }
   return {inputs == 0 ? Verdict::not_judged : decide(all == counts.size(), means > 0), why};
 }

@@ -53,12 +53,13 @@ Finding judge_trajectory(const MeasuredCase& m, const PublishedNumbers& publishe
   const bool follows = std::abs(m["low_height"]) <= depth;
   const bool offset = std::abs(m["high_height"]) > std::abs(m["low_height"]);
   const bool on_line = m["high_lateral"] <= lateral, shallow = m["inside"] <= depth;
-  return {decide(follows && offset && on_line && shallow, follows && offset),
-          fmt::format(
-              "below 2 N, the tip {} the ideal trajectory; above 2 N, the error of the height {}, the error of the "
-              "distance to the axis is {}, and the depth in the wall is {}",
-              follows ? "follows" : "leaves", offset ? "is larger" : "is not larger",
-              on_line ? "as published" : "larger than published", shallow ? "as published" : "larger than published")};
+  return {
+      decide(follows && offset && on_line && shallow, follows && offset),
+      fmt::format(
+          "below 2 N, the tip {} the ideal trajectory; above 2 N, the error of the height {}, the lateral error is {}, "
+          "and the depth in the wall is {}",
+          follows ? "follows" : "leaves", offset ? "is larger" : "is not larger",
+          on_line ? "as published" : "larger than published", shallow ? "as published" : "larger than published")};
 }
 
 // ---- C5, T2b: the drill of task 2 turned in the hole while a hand presses it with a constant force. Measures the
