@@ -63,6 +63,9 @@ std::vector<Description> described_headings(const Index& index, const std::strin
   for (const IndexEntry& heading : index) {
     if (!is_heading(heading, name)) continue;
     std::vector<Description> meanings = described_by_name(index, heading.summary);
+    // A table can have a column with the name of a metric; its meaning refers to the metric.
+    const auto is_metric = [](const Description& meaning) { return meaning.json.value("kind", "") == "metric"; };
+    if (std::ranges::any_of(meanings, is_metric)) std::erase_if(meanings, std::not_fn(is_metric));
     if (meanings.empty()) meanings.push_back(heading.describe());
     for (Description& meaning : meanings)
       if (std::ranges::find(found, meaning.text, &Description::text) == found.end())

@@ -140,7 +140,7 @@ std::string notes_text(const LimitTable& table, const Layout& layout) {
                                      table.first().question.search.smallest ? "to" : "from")},
       {table.is_grid(),
        "linear limit: limit by the eigenvalues of the loop of device, hand and contact, without dry friction and "
-       "encoder; none: the loop is stable, or unstable, in the whole range; -: the eigenvalues give no limit (column "
+       "encoder; all stable, none stable: all values of the range or none; -: the eigenvalues give no limit (column "
        "no_linear_reason of limit.csv)"},
       {true,
        "first unstable: class of motion (\"hapbench describe stability\") of the first unstable run beyond the "
