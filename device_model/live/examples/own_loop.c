@@ -108,7 +108,7 @@ int main(int argc, char** argv) {
   static HapbenchInput input;
   static HapbenchOutput output;
   const unsigned long calls = (unsigned long)(1000.0 * (argc > 2 ? atof(argv[2]) : 3.0));
-  unsigned long lost = 0;
+  unsigned long lost = 0, stale = 0;
   uint64_t next = now_ns();
   for (unsigned long i = 0; i < calls; ++i) {
     next += PERIOD_NS;
@@ -118,6 +118,7 @@ int main(int argc, char** argv) {
     device_read(&input);
     hapbench_renderer_step(renderer, &input, &output);
     device_write(&output);
+    if (output.status == HAPBENCH_STALE) ++stale; /* the force falls to 0, because a call came too late */
     if (atomic_load(&written) - atomic_load(&logged) < RING) {
       ring[atomic_load(&written) % RING] = (Call){input, output};
       atomic_fetch_add(&written, 1);
@@ -132,7 +133,9 @@ int main(int argc, char** argv) {
   atomic_store(&running, 0);
   pthread_join(writer, NULL);
   if (log != NULL) fclose(log);
-  printf("status at the end: %u %s\n", output.status, hapbench_renderer_fault(renderer));
+  printf("status at the end (enumeration in hapbench_renderer.h): %u %s\n", output.status,
+         hapbench_renderer_fault(renderer));
+  printf("calls with status HAPBENCH_STALE: %lu\n", stale);
   puts("time from wake-up to force, wake-up delay included:");
   for (unsigned i = 0; i < 20; ++i)
     if (buckets[i] > 0) printf("  < %6lu us: %lu calls\n", 1ul << i, buckets[i]);
