@@ -393,7 +393,7 @@ class Doubt(Logs):
         self.assertIn("do not read them as 95 % intervals", warned)
         printed = run("import", "device", self.root / "log.csv", "--out", self.root / "d.json")
         self.assertNotIn("95 %", printed.stdout)
-        self.assertIn("estimated from", printed.stdout)
+        self.assertIn("interval from", printed.stdout)
 
 
 class Design(unittest.TestCase):

@@ -68,8 +68,8 @@ TEST(RunWarnings, QuoteEachLawsOwnNumber) {
   const std::vector<Result> runs = {run("mean", "2 mm deep"), run("proxy", "1 mm deep"), run("summation", "2 mm deep"),
                                     run("proxy", "1.5 mm deep")};
   EXPECT_EQ(run_warnings(runs),
-            (std::vector<std::string>{"scene: 2 mm deep (mean, summation)",
-                                      "scene: 1 mm deep (proxy; further runs with other numbers: 1)"}));
+            (std::vector<std::string>{"scene, with mean, summation: 2 mm deep",
+                                      "scene, with proxy: 1 mm deep (further runs with other numbers: 1)"}));
   EXPECT_EQ(run_warnings({runs.data(), 1}), std::vector<std::string>{"scene: 2 mm deep"});
 }
 

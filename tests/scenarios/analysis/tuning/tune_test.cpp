@@ -186,7 +186,8 @@ TEST(Tune, NamesTheRunThatFailsAndTheOptionThatLeavesItOut) {
   const TunedLaw none = tuned_law(asked, "shaped_stiffness");
   ASSERT_FALSE(none.choice);
   EXPECT_EQ(none.binding, "settled");
-  EXPECT_EQ(none.why, "at K: no_contact (a hand of 0.1 kg and 100 N/m)");
+  EXPECT_TRUE(none.why.starts_with("at K: no_contact (a hand of 0.1 kg and 100 N/m), for example with K = "))
+      << none.why;
   EXPECT_EQ(none.relax, "--family seeds leaves out a hand of 0.1 kg and 100 N/m");
   asked.families = {"seeds"};
   EXPECT_TRUE(tuned_law(asked, "shaped_stiffness").choice);
