@@ -331,6 +331,25 @@ class Formats(unittest.TestCase):
             self.assertTrue((scratch / "out" / name).is_file(), name)
         self.assertEqual(json.loads((scratch / "out" / "audit.json").read_text()), found)
 
+    def test_the_log_of_the_renderer_has_usual_names(self):
+        z = pressed(20)
+        named = {
+            "time_s": T * np.arange(len(z)),
+            "fx_N": 0 * z,
+            "fy_N": 0 * z,
+            "fz_N": wall(z, 1000.0),
+        }
+        for of in "hp":  # columns of the renderer's log and of trajectory.csv
+            log = named | {f"{of}x_m": 0 * z, f"{of}y_m": 0 * z, f"{of}z_m": z}
+            found = audit(log)
+            self.assertEqual(
+                [column["name"] for column in found["columns"]["position"]],
+                [f"{of}x_m", f"{of}y_m", f"{of}z_m"],
+            )
+            self.assertAlmostEqual(
+                found["stiffness"]["stiffness_N_per_m"] / 1000.0, 1.0, delta=EXACT
+            )
+
     def test_one_axis_and_usual_names(self):
         z = pressed(20)
         for names in (

@@ -33,7 +33,7 @@ FOLLOWED = 0.05
 # other than letters and digits.
 USUAL = {
     "time": "time times t ts timestamp stamp secs simtime headerstamp clock",
-    "position": "px posx positionx poseposition posepositionx tipx toolx tcpx eex hipx pos0 p0 position0 x",
+    "position": "px posx positionx poseposition posepositionx tipx toolx tcpx eex hipx hx pos0 p0 position0 x",
     "force": "fx forcex wrenchforcex contactforcex fextx fcmdx commandedx commandedforcex forcecommandedx force0 f0",
     "velocity": "vx velx velocityx twistlinearx vel0 v0",
     "measured": "measuredx measuredforcex forcemeasuredx fmeasuredx fsensorx",
