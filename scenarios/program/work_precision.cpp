@@ -119,7 +119,7 @@ std::string answer_text(const WorkPrecisionProblem& problem, double max_error) {
   if (!problem.is_predictable) {
     return fmt::format(
         "no error is stated: an initial shift of 1 nm grows to {} m, which is more than the requested error ({:g} m; "
-        "--to changes it); compare metrics over seeds instead: hapbench compare --seeds 5 --jitter 1e-9",
+        "--to changes it); compare metrics over seeds instead: hapbench compare SCENARIO --seeds 5 --jitter 1e-9",
         significant(problem.grown_shift, 2), max_error);
   }
   const WorkPrecisionSetting* best = problem.cheapest_below(max_error);
@@ -159,11 +159,12 @@ void report_work_precision(const std::vector<WorkPrecisionProblem>& problems, do
           0));
     report.add_text(layout.wrapped(answer_text(problem, max_error), 0));
     const auto& first = problem.settings.front();
-    report.add_text(layout.wrapped(fmt::format("reference: {}; its error is about {} m and {} N", problem.reference,
-                                               significant(first.reference_error.position, 1),
-                                               significant(first.reference_error.force, 1)),
-                                   0) +
-                    "\n");
+    if (problem.is_predictable)
+      report.add_text(layout.wrapped(
+          fmt::format("reference: {}; its error is about {} m and {} N", problem.reference,
+                      significant(first.reference_error.position, 1), significant(first.reference_error.force, 1)),
+          0));
+    report.add_text("\n");
     Json json = {{"problem", problem.name}, {"predictable", problem.is_predictable}, {"reference", problem.reference}};
     json["settings"] = Json::array();
     for (const Setting& setting : problem.settings) {

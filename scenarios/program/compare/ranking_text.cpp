@@ -175,10 +175,13 @@ void report_ranking_text(const Ranking& ranking, const Layout& layout, Report& r
     report.add_text(layout.wrapped(
         fmt::format(
             "rank: 1 is best. Algorithms share a rank if their means differ by at most 0.1 % or by at most the "
-            "sum of their errors{}{}. No rank (-): the error of the mean is unknown; or it is not smaller than the mean, "
+            "sum of their errors{}{}{}. No rank (-): the error of the mean is unknown; or it is not smaller than the mean, "
             "of which only a bound (<=) is known; or all ranks would be equal",
-            ranking.estimated_error ? ", which are estimated below" : "",
-            ranking.seeds > 1 ? "; the spread over the seeds does not count" : ""),
+            ranking.estimated_error ? ", which are estimated below"
+                                    : "; the errors of time step and point spacing do not count (--errors)",
+            ranking.seeds > 1 ? "; the spread over the seeds does not count" : "",
+            std::ranges::count(ranking.failed, true) > 0 ? ". An algorithm with failed runs ranks after all others"
+                                                         : ""),
         0));
   if (ranking.seeds > 1)
     report.add_text("spread: standard deviation over the seeds (random numbers of noise, tremor and --jitter)\n");

@@ -119,6 +119,14 @@ std::string missing_quotes_text(const LimitTable& table, const Layout& layout) {
   return text;
 }
 
+/// Returns true if the runs of the row are stable to the end of the range, vibrating runs count as stable, and the
+/// device limits the force, so that no run can diverge.
+bool is_unbounded_by_force_limit(const LimitRow& row) {
+  const auto* device = std::get_if<ImpedanceDeviceConfig>(&row.scenario.device);
+  const bool is_limited = device != nullptr && device->force_max.has_value();
+  return is_limited && !row.limit.end.beyond && row.limit.end.value && row.question.rule.bounded;
+}
+
 /// Returns notes that explain the table's columns and marks.
 std::string notes_text(const LimitTable& table, const Layout& layout) {
   std::optional<double> friction;  // largest Coulomb friction over the handles [N]; empty without impedance devices
@@ -145,6 +153,9 @@ std::string notes_text(const LimitTable& table, const Layout& layout) {
       {true,
        "first unstable: class of motion (\"hapbench describe stability\") of the first unstable run beyond the "
        "simulated limit; if no value is stable, of the run at the low end of the range"},
+      {std::ranges::any_of(table.rows, is_unbounded_by_force_limit),
+       "end of the range: device.force_max_N limits the force, so that an unstable loop vibrates without growing, which "
+       "counts as stable here; --stable settled counts it as unstable"},
       {true,
        "non-monotonic: number of unstable runs on the stable side of the limit and of stable runs beyond it; "
        "if it is not 0, the simulated limit depends on the values that were tried. limit_runs.csv has the class of "
