@@ -55,8 +55,8 @@ void add_metrics(Columns<Row>& columns, std::span<const RunHeading> headings, Fi
 /// even without --wide. This vibration is defined also for runs without settled contact.
 Table run_table(std::span<const Result> reports, bool of_scenes, const Layout& layout);
 
-/// Returns the text that explains the columns of kRunHeadings that are printed without --wide. `has_empty_mean`: true if
-/// the table has a run without a mean force. `has_depth`: true if the table has a depth.
+/// Returns the text that explains the columns of kRunHeadings that are printed without --wide.
+/// `has_empty_mean`: true if the table has a run without a mean force. `has_depth`: true if the table has a depth.
 std::string headings_legend(bool has_empty_mean, bool has_depth, const Layout& layout);
 /// Returns headings_legend() for run_table(), after an empty line.
 std::string run_legend(std::span<const Result> reports, const Layout& layout);
