@@ -154,8 +154,8 @@ std::string notes_text(const LimitTable& table, const Layout& layout) {
        "first unstable: class of motion (\"hapbench describe stability\") of the first unstable run beyond the "
        "simulated limit; if no value is stable, of the run at the low end of the range"},
       {std::ranges::any_of(table.rows, is_unbounded_by_force_limit),
-       "end of the range: device.force_max_N limits the force, so that an unstable loop vibrates without growing, which "
-       "counts as stable here; --stable settled counts it as unstable"},
+       "end of the range: device.force_max_N limits the force, so that an unstable loop vibrates without growing, "
+       "which counts as stable here; --stable settled counts it as unstable"},
       {true,
        "non-monotonic: number of unstable runs on the stable side of the limit and of stable runs beyond it; "
        "if it is not 0, the simulated limit depends on the values that were tried. limit_runs.csv has the class of "
