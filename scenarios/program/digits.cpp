@@ -66,15 +66,14 @@ std::string deserved(double value, const std::optional<double>& tolerance, int d
 
 std::string with_spread(double mean, const std::optional<double>& spread, const std::optional<double>& tolerance,
                         int digits) {
-  if (!spread || is_only_bounded({mean, tolerance})) return deserved(mean, tolerance, digits);
-  const double error = std::max(*spread, tolerance.value_or(0.0));
-  if (!(error > 0.0)) return significant(mean, digits) + " +- " + significant(*spread, 2);
-  const int last = leading_digit(error) - 1;
-  // A spread that rounds to 0 says less than the tolerance.
-  if (tolerance && 2.0 * *spread < math::pow(10.0, last)) return deserved(mean, tolerance, digits);
-  if (std::max(std::abs(mean), error) >= kSmallest && last >= kLastDigit)
+  // A spread below the tolerance is not resolved.
+  if (!spread || (tolerance && *spread < *tolerance) || is_only_bounded({mean, tolerance}))
+    return deserved(mean, tolerance, digits);
+  if (!(*spread > 0.0)) return significant(mean, digits) + " +- " + significant(*spread, 2);
+  const int last = leading_digit(*spread) - 1;
+  if (std::max(std::abs(mean), *spread) >= kSmallest && last >= kLastDigit)
     return fmt::format("{} +- {}", to_digit(mean, last), to_digit(*spread, last));
-  const int decimals = std::max(0, leading_digit(std::max(std::abs(mean), error)) - last);
+  const int decimals = std::max(0, leading_digit(std::max(std::abs(mean), *spread)) - last);
   return fmt::format("{:.{}e} +- {}", mean, decimals, significant(*spread, 2));
 }
 

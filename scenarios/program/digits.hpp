@@ -26,9 +26,9 @@ std::string bound_text(double value, double tolerance);
 /// values of at least 1e-4. Returns `digits` significant digits if the tolerance is unknown or not above 0, and
 /// bound_text() if the number is only bounded.
 std::string deserved(double value, const std::optional<double>& tolerance, int digits = 4);
-/// Returns "MEAN +- SPREAD", both to the second significant digit of the larger of the spread and the tolerance of the
-/// mean. Returns deserved(mean, tolerance, digits) instead if there is no spread, if the spread would round to 0, or if
-/// the mean is not larger than its tolerance. `digits`: significant digits if the tolerance is unknown.
+/// Returns "MEAN +- SPREAD", both to the second significant digit of the spread. Returns deserved(mean, tolerance,
+/// digits) instead if there is no spread, if the spread is less than the tolerance of the mean, or if the mean is not
+/// larger than its tolerance. `digits`: significant digits if the tolerance is unknown.
 std::string with_spread(double mean, const std::optional<double>& spread, const std::optional<double>& tolerance,
                         int digits = 4);
 

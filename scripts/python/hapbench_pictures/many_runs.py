@@ -107,7 +107,8 @@ def summary(scenes, runs):
 
 
 NOTE = (
-    "<p class=note>Each entry is mean ± standard deviation over seeds. A seed counts if no law failed with it, except "
+    "<p class=note>Each entry is mean ± standard deviation over seeds; a deviation below the error of the metric is "
+    "left out. A seed counts if no law failed with it, except "
     "laws that fail with every seed. Seeds agree if the deviation is at most 0.1 % of the mean. The rank is in bold: "
     "1 + the number of laws that are better by more than 0.1 % and by more than both errors. There is no rank if the "
     "metric has no better direction or if the numbers do not differ by more than their errors. "
@@ -176,7 +177,7 @@ def mean_cell(of, rank, factor=1.0):
     shown = known_number(factor * of.mean, error and factor * error)
     if of.seeds_agree and not of.is_unknown:
         shown += " <span class=note>seeds agree</span>"
-    elif of.spread is not None and not of.is_unknown:
+    elif of.spread is not None and not of.is_unknown and of.spread >= of.error:
         digits = deserved_digits(of.spread, of.tolerance, 2)
         shown += f" ± {number(factor * of.spread, digits)}"
     shown = shown if rank is None else f"{shown} <b>{rank}</b>"

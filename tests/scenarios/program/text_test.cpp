@@ -103,9 +103,10 @@ TEST(Deserved, IsABoundIfTheToleranceIsNotSmaller) {
   EXPECT_EQ(short_text(0.0, 0.0, 1.0), "0");
 }
 
-TEST(WithSpread, EndsWithTheSecondDigitOfTheLargerError) {
+TEST(WithSpread, EndsWithTheSecondDigitOfTheSpread) {
   EXPECT_EQ(with_spread(1.23456, 0.0567, {}), "1.235 +- 0.057");
-  EXPECT_EQ(with_spread(1.23456, 0.0567, 0.3), "1.23 +- 0.06");
+  EXPECT_EQ(with_spread(1.23456, 0.0567, 0.3), "1.2") << "a spread below the tolerance is not resolved";
+  EXPECT_EQ(with_spread(1.23456, 0.0567, 0.05), "1.235 +- 0.057");
   EXPECT_EQ(with_spread(1234.56, 56.7, {}), "1235 +- 57");
   EXPECT_EQ(with_spread(12345.6, 567.0, {}), "12350 +- 570");
   EXPECT_EQ(with_spread(0.01, 0.4, {}), "0.01 +- 0.40");
