@@ -114,8 +114,12 @@ std::string summary_text(const SweepTable& table, const std::string& metric, con
   const auto knows = [&](const char* name) {
     return [&table, name](const SweepRow& row) { return table.number(row, name).has_value(); };
   };
+  const auto is_empty = [&](const SweepRow& row) {
+    return !is_failure(table.outcome(row)) && !knows("force_mean_in_contact_N")(row);
+  };
   if (std::ranges::any_of(rows, knows("force_mean_in_contact_N")))
-    text += headings_legend(false, std::ranges::any_of(rows, knows("inside_max_m")), layout);
+    text +=
+        headings_legend(std::ranges::any_of(rows, is_empty), std::ranges::any_of(rows, knows("inside_max_m")), layout);
   return text + layout.wrapped(
                     "as expected: outcome and metrics agree with the scenario's field expect. The outcome completes "
                     "says nothing about vibration, which \"hapbench run\" diagnoses",
