@@ -30,20 +30,24 @@ std::optional<double> force_error(const Setting& s) {
   return s.error ? std::optional(s.error->force) : std::nullopt;
 }
 
+/// Returns true if the reference solution, which has the error `of_reference`, is too inexact to determine `error`.
+bool is_unresolved(double error, double of_reference) {
+  return error < kResolvedError * of_reference;
+}
+
 /// Returns the larger of two errors as text, in multiples of `unit`: `error` of the setting, and `of_reference`, the
-/// error of the reference solution. The text begins with "<" if `error` is less than kResolvedError times
-/// `of_reference`, because the reference solution is then too inexact to determine it. Returns "-" for a setting
-/// without an error.
+/// error of the reference solution. The text begins with "<" if is_unresolved(). Returns "-" for a setting without an
+/// error.
 std::string error_text(const Setting& s, double error, double of_reference, double unit) {
   if (!s.error) return "-";
   const double shown = std::max(error, of_reference) / unit;
-  return fmt::format("{}{}", error < kResolvedError * of_reference ? "< " : "", significant(shown, 2));
+  return fmt::format("{}{}", is_unresolved(error, of_reference) ? "< " : "", significant(shown, 2));
 }
 
 /// Returns true if the table marks an error of the setting with "<".
-bool is_unresolved(const Setting& s) {
-  return s.error && (s.error->position < kResolvedError * s.reference_error.position ||
-                     s.error->force < kResolvedError * s.reference_error.force);
+bool has_unresolved_error(const Setting& s) {
+  return s.error && (is_unresolved(s.error->position, s.reference_error.position) ||
+                     is_unresolved(s.error->force, s.reference_error.force));
 }
 
 /// Returns the columns of convergence.csv. Their values are the same if the command is repeated. `max_error` [m]: the
@@ -150,7 +154,7 @@ void report_work_precision(const std::vector<WorkPrecisionProblem>& problems, do
     report.add_text(problem.name + "\n\n");
     report.show(error_columns(max_error).table(problem.settings, problem.name, layout.in_full()));
     report.add_text("\n");
-    if (std::ranges::any_of(problem.settings, is_unresolved))
+    if (std::ranges::any_of(problem.settings, has_unresolved_error))
       report.add_text(layout.wrapped(
           fmt::format(
               "<: the difference from the reference solution is less than {:g} times the error of the reference "

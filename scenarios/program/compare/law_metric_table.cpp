@@ -37,9 +37,10 @@ std::string metric_text(const RankingEntry& entry, double factor) {
 /// Returns the caption of the table, with the seeds over which the means are computed.
 std::string caption_of(const Ranking& ranking) {
   if (ranking.seeds < 2) return "mean of each metric";
-  std::string caption =
-      fmt::format("mean and spread of each metric over {} seeds; no spread: it is less than the error of the metric",
-                  ranking.seeds);
+  std::string caption = fmt::format(
+      "mean and spread of each metric over {} seeds; no spread: it is less than 0.1 % of the mean, "
+      "or than the error of the metric",
+      ranking.seeds);
   for (std::size_t s = 0; s < ranking.scenarios.size(); ++s)
     if (const std::string seeds = seeds_of_means_text(ranking, s); !seeds.empty())
       caption += fmt::format("; in {} {}", ranking.scenarios[s], seeds);

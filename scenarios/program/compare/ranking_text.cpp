@@ -176,7 +176,7 @@ void report_ranking_text(const Ranking& ranking, const Layout& layout, Report& r
         fmt::format(
             "rank: 1 is best. Algorithms share a rank if their means differ by at most 0.1 % or by at most the "
             "sum of their errors{}{}{}. No rank (-): the error of the mean is unknown; or it is not smaller than the "
-            "mean, of which only a bound (<=) is known; or all ranks would be equal",
+            "mean, so that only a bound of the mean (<=) is known; or all ranks would be equal",
             ranking.estimated_error ? ", which are estimated below"
                                     : "; the errors of time step and point spacing do not count (--errors)",
             ranking.seeds > 1 ? "; the spread over the seeds does not count" : "",
