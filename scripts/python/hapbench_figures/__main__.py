@@ -177,7 +177,7 @@ def measured(figure, claims):
 
 def record(directory, page, drawn, claims):
     """Copies figures in `drawn` into the directory `page`: each figure that redraws a figure of the thesis, and each
-    figure of which the directory already has an older drawing. Writes figures.md about the copied figures, and
+    figure that the directory already has. Writes figures.md about the copied figures, and
     rows.json with the measured numbers of the claims that the copied figures draw. `drawn`: entries of figures.json by
     identifier.
     """
