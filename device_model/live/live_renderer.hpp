@@ -50,6 +50,10 @@ class LiveRenderer {
   /// Returns the reason of the last fault; empty if there was no fault.
   const char* fault() const noexcept { return fault_text_.data(); }
   double period() const { return loop_.dt(); }
+  /// Returns the state of the tool after the last call; not meaningful if its status was STALE or FAULT.
+  const ToolState& tool() const noexcept { return tool_; }
+  /// Returns the depth of the deepest contact in the last call that rendered [m]; 0 without contact.
+  double deepest_contact() const noexcept { return loop_.force().depth_max; }
 
  private:
   /// Reason why the held force of an earlier call is falling to 0; `none` if no force is falling.

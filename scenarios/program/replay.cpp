@@ -10,8 +10,10 @@
 #include "results/io/atomic_file.hpp"
 #include "scenarios/input/bundled_scenarios.hpp"
 #include "scenarios/program/names.hpp"
+#include "scenarios/program/output.hpp"
 #include "scenarios/program/report.hpp"
 #include "scenarios/renderer/loop_log.hpp"
+#include "scenarios/renderer/replayed_passage.hpp"
 #include "scenarios/run/checked_scenario.hpp"
 #include "scenarios/scene/field_files.hpp"
 #include "scenarios/scene/load_scenario.hpp"
@@ -68,12 +70,35 @@ Columns<ReplayRow> replay_columns() {
           {"clamped_calls", "1", "calls with the status CLAMPED", &ReplayRow::clamped, under("CLAMPED")}};
 }
 
-/// Renders the calls of `log` with a checked scenario. Returns the new outputs, and the header of a log with these
-/// outputs.
-std::pair<std::vector<HapbenchOutput>, std::string> rendered(const CheckedScenario& scenario, const LoopLog& log) {
+/// Returns the time between the first call of the log and call `i` [s].
+double time_of(const LoopLog& log, std::size_t i) {
+  return 1e-9 * static_cast<double>(log.inputs[i].time_ns - log.inputs.front().time_ns);
+}
+
+/// Result of rendering the calls of a log with a scenario.
+struct Replayed {
+  std::vector<HapbenchOutput> outputs;
+  std::string header;  ///< header of a log with these outputs
+  ReplayedPassage passage;
+};
+
+Replayed rendered(const CheckedScenario& scenario, const LoopLog& log) {
   const std::unique_ptr<HapbenchRenderer> renderer(
       with_file(scenario.loaded(), [&] { return new_renderer(scenario, log.setup); }));
-  return {replayed(*renderer, log), renderer->log_header};
+  ReplayedPassage passage(scenario);
+  const auto add = [&](std::size_t i, const HapbenchOutput& output) {
+    passage.add(renderer->live, output, time_of(log, i));
+  };
+  std::vector<HapbenchOutput> outputs = replayed(*renderer, log, add);
+  return {std::move(outputs), renderer->log_header, std::move(passage)};
+}
+
+/// Warns if the tool passed through the surface. `what`: the log, or the log and the algorithm.
+void warn_of_passage(const ProgramContext& context, const std::string& what, const ReplayedPassage& passage) {
+  if (const std::string text = passage.text(); !text.empty())
+    print_warnings(context, {fmt::format("{}: the tool passed through the surface: {}; the forces after this time are "
+                                         "not those of the surface that it touched first",
+                                         what, text)});
 }
 
 /// Returns a sentence on the difference between the scenario and the recorded scenario; empty if they are the same.
@@ -92,7 +117,7 @@ std::string other_scenario_note(const CheckedScenario& scenario, const LoopLog& 
 /// Returns sentences on the calls of the log and on the comparison of the outputs. `period`: time step of the scenario
 /// that renders the log [s].
 std::string summary_text(const ReplayRow& row, const LoopLog& log, const std::string& file, double period) {
-  const double seconds = 1e-9 * static_cast<double>(log.inputs.back().time_ns - log.inputs.front().time_ns);
+  const double seconds = time_of(log, log.inputs.size() - 1);
   std::string text = fmt::format(
       "{}: {} calls in {:.6g} s, {} mode, mean period {:.6g} ms (scenario: {:.6g} ms)\n", file, log.inputs.size(),
       seconds, mode_name(log.setup.mode),
@@ -113,7 +138,8 @@ int replay_loop(const std::string& given, const std::string& log_file, const Com
   const CheckedScenario scenario = checked(load_scenario(file, options.overrides));
   print_warnings(context, scenario);
   Report report(options, "replay", file.stem().string() + "_replay", context);
-  const auto [outputs, header] = rendered(scenario, log);
+  const auto [outputs, header, passage] = rendered(scenario, log);
+  warn_of_passage(context, log_file, passage);
   // Write the log with the new outputs.
   AtomicFile written(report.folder() / "replay.csv");
   written.append(header);
@@ -129,6 +155,7 @@ int replay_loop(const std::string& given, const std::string& log_file, const Com
   report.add_text(fmt::format("\nresults in {}\n", report.folder().string()));
   report.json() = replay_columns().json(row);
   report.json()["is_recorded_scenario"] = other.empty();
+  report.json()["went_through"] = passage.went_through() ? Json(*passage.went_through()) : Json();
   if (other.empty() && row.compared.equal != row.compared.calls)
     report.fault(fmt::format("{}: call {} has other outputs than recorded, although the scenario is the same; the log "
                              "was edited, or another version recorded it",
@@ -150,8 +177,17 @@ int compare_replays(const std::string& given, const std::string& log_file, const
   }
   Report report(options, "compare_replay", "compare_" + file.stem().string() + "_replay", context);
   std::vector<ReplayRow> rows;
-  for (const CheckedScenario& scenario : scenarios)
-    rows.push_back(replay_row(scenario.scenario().rendering.algorithm, rendered(scenario, log).first, log));
+  for (const CheckedScenario& scenario : scenarios) {
+    const std::string& algorithm = scenario.scenario().rendering.algorithm;
+    const Replayed replayed = rendered(scenario, log);
+    // In impedance mode, the tool moves identically with all laws.
+    if (log.setup.mode == HAPBENCH_ADMITTANCE) {
+      warn_of_passage(context, fmt::format("{}, {}", log_file, algorithm), replayed.passage);
+    } else if (rows.empty()) {
+      warn_of_passage(context, log_file, replayed.passage);
+    }
+    rows.push_back(replay_row(algorithm, replayed.outputs, log));
+  }
   report.write("replay_comparison.csv", replay_columns(), rows);
   const Layout layout = context.layout();
   report.add_text(

@@ -214,9 +214,13 @@ LoopLog read_loop_log(const fs::path& file) {
   return log;
 }
 
-std::vector<HapbenchOutput> replayed(HapbenchRenderer& renderer, const LoopLog& log) {
+std::vector<HapbenchOutput> replayed(HapbenchRenderer& renderer, const LoopLog& log,
+                                     const std::function<void(std::size_t, const HapbenchOutput&)>& after_call) {
   std::vector<HapbenchOutput> outputs(log.inputs.size());
-  for (std::size_t i = 0; i < outputs.size(); ++i) hapbench_renderer_step(&renderer, &log.inputs[i], &outputs[i]);
+  for (std::size_t i = 0; i < outputs.size(); ++i) {
+    hapbench_renderer_step(&renderer, &log.inputs[i], &outputs[i]);
+    after_call(i, outputs[i]);
+  }
   return outputs;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -34,8 +35,11 @@ std::string log_row(const HapbenchInput& input, const HapbenchOutput& output);
 /// A log with a missing call cannot be replayed, because forces depend on every earlier call.
 LoopLog read_loop_log(const std::filesystem::path& file);
 
-/// Calls hapbench_renderer_step for every input of the log, in order, and returns the outputs.
-std::vector<HapbenchOutput> replayed(HapbenchRenderer& renderer, const LoopLog& log);
+/// Calls hapbench_renderer_step for every input of the log, in order, and returns the outputs. `after_call`: called
+/// after each call with its index and its output.
+std::vector<HapbenchOutput> replayed(
+    HapbenchRenderer& renderer, const LoopLog& log,
+    const std::function<void(std::size_t, const HapbenchOutput&)>& after_call = [](auto, const auto&) {});
 
 /// Comparison of two sequences of outputs.
 struct ReplayComparison {

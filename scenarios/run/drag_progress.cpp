@@ -36,9 +36,8 @@ std::optional<Stuck> DragProgress::stuck() const {
   return Stuck{stuck_->time, now_.tool - stuck_->tool, now_.target - stuck_->target};
 }
 
-std::optional<double> DragProgress::left_behind() const {
-  const double tolerated = std::max({kMinMovingFraction * now_.target, 0.5 * width_, 2.0 * lag_at_half_path_});
-  return lag_ > tolerated ? std::optional(lag_) : std::nullopt;
+double DragProgress::tolerated_lag() const {
+  return std::max({kMinMovingFraction * now_.target, 0.5 * width_, 2.0 * lag_at_half_path_});
 }
 
 }  // namespace hapbench

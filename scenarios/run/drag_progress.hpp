@@ -25,10 +25,12 @@ class DragProgress {
   std::optional<Stuck> stuck() const;
   double progress() const { return now_.tool; }           ///< largest progress of the tool along the path [m]
   double target_progress() const { return now_.target; }  ///< progress of the target point along the path [m]
-  /// Returns the lag of the tool along the path behind the target point at the end [m]. Empty unless the lag exceeds a
-  /// tenth of the target's progress, half the tool width, and twice the lag at half of the path. The last condition
-  /// excludes a tool that friction holds back at a constant lag.
-  std::optional<double> left_behind() const;
+  double lag() const { return lag_; }  ///< lag of the tool along the path behind the target point [m]
+  /// Returns the largest lag at the end with which the tool still counts as dragged [m]: the largest of a tenth of the
+  /// target's progress, half the tool width, and twice the lag at half of the path. The last value includes a tool that
+  /// friction holds back at a constant lag.
+  double tolerated_lag() const;
+  bool is_left_behind() const { return lag_ > tolerated_lag(); }
 
  private:
   /// Progress of the target point and of the tool along the path [m] at one time [s].

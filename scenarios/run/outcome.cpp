@@ -23,11 +23,6 @@
 namespace hapbench {
 namespace {
 
-std::string millimetres(const Vec3& position) {
-  const Vec3 p = 1e3 * position;
-  return fmt::format("({:.3g}, {:.3g}, {:.3g}) mm", p.x(), p.y(), p.z());
-}
-
 class OutcomeObserverImpl final : public OutcomeObserver {
  public:
   OutcomeObserverImpl(const Scenario& scenario, const NamedFiles& files, const SimulationParts& parts,
@@ -253,23 +248,23 @@ class OutcomeObserverImpl final : public OutcomeObserver {
     const double half_width = tool_->half_width();
     const std::string end =
         failure_ ? fmt::format("the run ended there (--full continues it)")
-        : p.left ? fmt::format("left it on another side at {:.4g} s at {}", p.left->time, millimetres(p.left->point))
+        : p.left ? fmt::format("left it on another side at {:.4g} s at {}", p.left->time, position_text(p.left->point))
         : p.last_depth > 0.0 ? fmt::format("at the end it was {} below the surface", length_text(p.last_depth))
                              : std::string("at the end it was not below the surface");
     if (p.deep) {
       return fmt::format(
           "its tip centre was deeper below the surface than the half width of the tool, {}, at {:.4g} s at {}; largest "
           "depth {}; {}",
-          length_text(half_width), p.deep->time, millimetres(p.deep->point), length_text(p.deepest), end);
+          length_text(half_width), p.deep->time, position_text(p.deep->point), length_text(p.deepest), end);
     }
     // In the remaining cases, the tip centre was never deeper than half the tool's width.
-    if (p.left) return fmt::format("it entered the environment at {} and {}", millimetres(p.entered), end);
+    if (p.left) return fmt::format("it entered the environment at {} and {}", position_text(p.entered), end);
     if (p.ends_inside) return fmt::format("the core of the tool ended inside the environment; its tip centre: {}", end);
     if (const auto& core = inside_->core_passage().event(); core && (failure_ || inside_max() <= half_width)) {
       return fmt::format("its axis {} at {:.4g} s, from {} to {}",
                          core->at_once ? "crossed the environment from face to face"
                                        : "entered the environment and left it on another side",
-                         core->time, millimetres(core->entered), millimetres(core->left));
+                         core->time, position_text(core->entered), position_text(core->left));
     }
     return fmt::format(
         "a part of the tool was {} deep, more than its half width of {}, although its tip centre was not",
@@ -318,16 +313,18 @@ class OutcomeObserverImpl final : public OutcomeObserver {
     return fmt::format(
         "the tool stood still from {:.4g} s on: it moved by {} while its target moved by {}; at the end it was at {} "
         "with a force of {:.3g} N",
-        s->since, length_text(s->tool_distance), length_text(s->target_distance), millimetres(position_),
+        s->since, length_text(s->tool_distance), length_text(s->target_distance), position_text(position_),
         force_.norm());
   }
 
-  bool is_stuck() { return stuck() || (progress_ && progress_->left_behind()); }
+  bool is_stuck() { return stuck() || (progress_ && progress_->is_left_behind()); }
   std::string stuck_text() {
     if (stuck()) return standstill_text();
     std::string text = fmt::format(
-        "the dragged tool ended {} behind the position to which its hand should have led it, {} along the path, at {}",
-        length_text(*progress_->left_behind()), length_text(progress_->target_progress()), millimetres(position_));
+        "the dragged tool ended {} behind the position to which its hand should have led it, {} along the path, at {}; "
+        "a lag of up to {} counts as dragged",
+        length_text(progress_->lag()), length_text(progress_->target_progress()), position_text(position_),
+        length_text(progress_->tolerated_lag()));
     // If the tool still moves at the end of the run, it may only need more time to reach the target.
     const double speed = handle_velocity_.norm();
     const auto& hand = std::get<DragHandFields>(scenario_.hand);

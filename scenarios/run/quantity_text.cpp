@@ -27,6 +27,11 @@ std::string length_text(double metres) {
   return fmt::format("{:.3g} {}", metres * unit.per_metre, unit.name);
 }
 
+std::string position_text(const Vec3& position) {
+  const Vec3 p = 1e3 * position;
+  return fmt::format("({:.3g}, {:.3g}, {:.3g}) mm", p.x(), p.y(), p.z());
+}
+
 std::string size_text(const Box& box) {
   const Unit unit = unit_for(box.size().maxCoeff());
   const Vec3 n = box.size() * unit.per_metre;

@@ -113,6 +113,57 @@ TEST_F(Replay, ReportsALogThatWasEdited) {
   EXPECT_NE(run.err.find("call 900 has other outputs than recorded"), std::string::npos) << run.err;
 }
 
+/// Returns a log in which the handle moves from above to `lowest` [m] in 1 s, beside the hole.
+std::string pressed(const std::string& scenario, double lowest) {
+  HapbenchMount mount = HAPBENCH_MOUNT_INIT;
+  mount.max_force = 5.0;
+  Renderer renderer(scenario, mount);
+  std::string log = renderer.log_header();
+  for (int i = 0; i <= 1000; ++i) {
+    HapbenchInput input{};
+    input.time_ns = static_cast<std::uint64_t>(i) * 1'000'000u;
+    const double height = 0.002 + (lowest - 0.002) * 1e-3 * i;
+    input.handle = {{0.001375, 0.0, height}, {1, 0, 0, 0}};
+    log += Renderer::log_row(input, renderer.step(input));
+  }
+  return log;
+}
+
+TEST_F(Replay, WarnsOfAToolThatPassedThroughTheSurface) {
+  const auto replay = [&](double lowest, const std::string& environment) {
+    write_plainly(scene, kScene);
+    if (!environment.empty()) write_plainly(scene, environment);
+    write_plainly(log, pressed(scene, lowest));
+    return hapbench({"run", scene, "--replay", log, "--out", out, "--json"});
+  };
+  // The top of the block is at z = 0, and the tip centre 0.5 mm above the lowest point of the tool.
+  const auto touching = replay(0.0003, "");
+  ASSERT_EQ(touching.status, 0) << touching.err;
+  EXPECT_GT(touching.json()["loop_force_max_N"], 0.1);
+  EXPECT_EQ(touching.json()["went_through"], false);
+  EXPECT_EQ(touching.err.find("passed through"), std::string::npos) << touching.err;
+  const auto through = replay(-0.002, "");
+  EXPECT_EQ(through.json()["went_through"], true);
+  // The centre reaches a depth of 0.5 mm after (2 + 0.5) / 4 of the second. The depth has an error of at most 2 %, or
+  // 0.01 mm, through which the tool moves in 2.5 ms. A call takes 1 ms.
+  const std::string begin = "the tool passed through the surface: at ";
+  const auto time = through.err.find(begin);
+  ASSERT_NE(time, std::string::npos) << through.err;
+  EXPECT_NEAR(std::stod(through.err.substr(time + begin.size())), 0.62675, 0.00175) << through.err;
+  EXPECT_NE(through.err.find(" s, its tip centre was deeper below the surface than the half width of the tool, 0.5 mm"),
+            std::string::npos)
+      << through.err;
+  const auto compared = hapbench({"compare", scene, "--replay", log, "--algorithms", "mean,proxy", "--out", out});
+  const auto first = compared.err.find("the tool passed through the surface");
+  EXPECT_NE(first, std::string::npos) << compared.err;
+  EXPECT_EQ(compared.err.find("the tool passed through the surface", first + 1), std::string::npos) << compared.err;
+  // Springs have no inside.
+  Json springs = Json::parse(kScene);
+  springs["environment"] = {{"type", "springs"}, {"groups", {{{"direction", {0, 0, 1}}, {"count", 1}}}}};
+  const auto unknown = replay(-0.002, springs.dump());
+  EXPECT_TRUE(unknown.json()["went_through"].is_null()) << unknown.err;
+}
+
 TEST_F(Replay, RefusesWhatHasNoMeaning) {
   const auto refused = [](const std::vector<std::string>& arguments, const char* words) {
     const auto run = hapbench(arguments);
