@@ -1,5 +1,7 @@
 #include "scenarios/analysis/stability/run_end_observer.hpp"
 
+#include <algorithm>
+
 #include "results/observe/metrics.hpp"
 #include "scenarios/run/scene_checks.hpp"
 #include "scenarios/run/scripted_motion.hpp"
@@ -26,6 +28,8 @@ RunEndObserver::RunEndObserver(const Scenario& scenario, bool alone)
 void RunEndObserver::on_step(const StepRecord& record) noexcept {
   touches_ = record.colliding > 0;
   if (touches_) judged_.touch(record.step);
+  if (touches_ && !touch_speed_) touch_speed_ = record.handle.velocity.norm();
+  hand_force_max_ = std::max(hand_force_max_, record.hand_force.norm());
   vibration_.add(record.step, record.handle.velocity, judged_.contain(record.step));
   bounces_.add(record, judged_);
   tip_ = record.tool.pose.position;
@@ -72,6 +76,8 @@ SettledState RunEndObserver::state(bool rests) const {
   SettledState state;
   // If the run was stopped because the tool came to rest, the steps that were not simulated count with velocity 0.
   state.vibration = vibration_.rms(if_any(rests && judged_.begin(), judged_.end() - judged_.begin().value_or(0)));
+  state.touch_speed = touch_speed_;
+  state.hand_force_max = hand_force_max_;
   state.last_contact = last_contact_;
   state.rests = rests;
   state.is_held = rests && (coulomb_ > 0.0 || sticks_);

@@ -15,15 +15,17 @@
 /// Observes the state at the end of a run, from which the run is judged.
 namespace hapbench {
 
-/// The settled state of a run: `contacts`, `lambda_max`, `share_away`, `contacts_change` and `directions_change` refer
-/// to the steps of the last quarter of the run. The last quarter of a run that comes to rest early is the quarter in
-/// which it came to rest.
+/// How a run touched, and its settled state. `contacts`, `lambda_max`, `share_away`, `contacts_change` and
+/// `directions_change` refer to the steps of the last quarter of the run. The last quarter of a run that comes to rest
+/// early is the quarter in which it came to rest.
 struct SettledState {
   /// Vibration of the handle above 30 Hz over the judged steps (EvaluationWindow) [m/s rms]; empty at sampling rates of
   /// 60 Hz or less.
   std::optional<double> vibration;
-  double contacts = 0.0;    ///< mean number of rendered contacts, over the steps in contact
-  double lambda_max = 0.0;  ///< largest eigenvalue of the mean stiffness tensor S in contact, in units of K
+  std::optional<double> touch_speed;  ///< speed of the handle in the first step in contact [m/s]; empty without contact
+  double hand_force_max = 0.0;        ///< largest force of the hand on the handle [N]
+  double contacts = 0.0;              ///< mean number of rendered contacts, over the steps in contact
+  double lambda_max = 0.0;            ///< largest eigenvalue of the mean stiffness tensor S in contact, in units of K
   std::optional<ContactState> last_contact;  ///< state at the last step in contact; empty without contact
   double share_away = 1.0;                   ///< share of the steps in which the tool is not in contact
   bool contacts_change = false;  ///< true if the set of touching points differs between two consecutive steps
@@ -64,8 +66,10 @@ class RunEndObserver final : public Observer {
  private:
   void add_contact(const StepRecord& record) noexcept;
 
-  bool touches_ = false;     ///< true if the tool was in contact in the last step
-  Vec3 tip_ = Vec3::Zero();  ///< tip centre in the last step [m]
+  bool touches_ = false;               ///< true if the tool was in contact in the last step
+  Vec3 tip_ = Vec3::Zero();            ///< tip centre in the last step [m]
+  std::optional<double> touch_speed_;  ///< SettledState::touch_speed [m/s]
+  double hand_force_max_ = 0.0;        ///< SettledState::hand_force_max [N]
   Hash64 motion_;
   std::uint64_t steps_;  ///< number of steps of the run
   EvaluationWindow judged_;

@@ -127,6 +127,17 @@ bool is_unbounded_by_force_limit(const LimitRow& row) {
   return is_limited && !row.limit.end.beyond && row.limit.end.value && row.question.rule.bounded;
 }
 
+/// Returns the sentence on touch and hand that a limit with dry friction depends on; empty if no run is at a limit.
+std::string touch_text(const LimitTable& table) {
+  if (table.is_grid())
+    return " Columns touch_speed_m_per_s and hand_force_max_N of limit.csv state both for the run at each limit.";
+  const FieldLimit& limit = table.first().limit;
+  if (!limit.end.value || !limit.settled.touch_speed) return "";
+  return fmt::format(" In the run at {}, the handle touches at {} mm/s and the hand pushes with at most {} N.",
+                     rounded_text(*limit.end.value, 6), significant(1e3 * *limit.settled.touch_speed),
+                     significant(limit.settled.hand_force_max));
+}
+
 /// Returns notes that explain the table's columns and marks.
 std::string notes_text(const LimitTable& table, const Layout& layout) {
   std::optional<double> friction;  // largest Coulomb friction over the handles [N]; empty without impedance devices
@@ -176,9 +187,11 @@ std::string notes_text(const LimitTable& table, const Layout& layout) {
       {table.first().question.path == kStiffnessPath && friction.has_value(),
        "device_model/README.md, \"Which K to quote?\", explains which of these stiffnesses to quote"},
       {friction > 0.0,
-       "dry friction can hold the tool if the hand presses slowly. The limit then depends on how this scene approaches "
-       "the surface, and is no property of the device. --set device.coulomb_N=0 gives the limit without dry friction. "
-       "The dry friction of every preset is our estimate"}};
+       "dry friction can hold the tool if the hand presses slowly. The limit then depends on the handle's speed at the "
+       "touch and on the force of the hand, and is no property of the device." +
+           touch_text(table) +
+           " --set device.coulomb_N=0 gives the limit without dry friction. The dry friction of every preset is our "
+           "estimate"}};
   std::string text;
   for (const auto& [holds, note] : notes)
     if (holds) text += layout.wrapped(note, 0);
