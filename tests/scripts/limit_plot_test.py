@@ -13,6 +13,10 @@ from hapbench_pictures.device_plot import (
     ALTERNATING_LABEL,
     BEYOND_LABEL,
     PUBLISHED_LABEL,
+    QUOTED,
+    QUOTED_LABEL,
+    UNQUOTED,
+    UNQUOTED_LABEL,
     device_of,
 )
 from hapbench_pictures.study_plot import draw_study
@@ -62,7 +66,8 @@ class Limits(Given):
             0.1,
         )
         self.assert_plot_shows(limit, "simulated limit", "stiffness K [N/m]", "mean")
-        # If the loop has no theoretical limit, the closed formulas for stability are not drawn.
+        # If the loop has no theoretical limit, the closed formulas for stability are not drawn. The linear limit is that
+        # of the same loop without friction.
         rubbed = made(
             "rubbed",
             "limit",
@@ -75,8 +80,10 @@ class Limits(Given):
             "device.coulomb_N=0.1",
         )
         plotted(rubbed)
-        for text in ("linear limit", "stable (Gil, Hulin)", "exact, undamped handle"):
-            self.assertNotIn(text, (rubbed / "plot.svg").read_text())
+        drawn = (rubbed / "plot.svg").read_text()
+        for text in ("stable (Gil, Hulin)", "exact, undamped handle"):
+            self.assertFalse(text in drawn, text)
+        self.assertTrue("linear limit" in drawn)
         for words, message in (
             ((over, limit), "one such folder alone"),
             ((limit, "--y", "force"), "allowed for it: --width, --dpi, --out"),
@@ -211,6 +218,11 @@ class Limits(Given):
             0.5,
         )
 
+    def of_variants(self):
+        """Computes limits of a preset device and of its soft and stiff ends. Returns the folder of the results."""
+        short = ("--set", "time.steps=200", "--resolution", 0.5)
+        return made("touch", "limit", "tap_wall", "--device", "touch", *short)
+
     def test_devices_over_a_field_have_it_as_their_axis(self):
         folder = self.over_field()
         rows = read_records(folder / "limit.csv")
@@ -281,6 +293,34 @@ class Limits(Given):
         self.assertTrue(all(line.get_mfc() == "white" for line in marks))
         plt.close(figure)
 
+    def test_limits_to_quote_have_rings(self):
+        """Checks that each limit to quote has a ring, and each row without one a mark at the edge, with and without
+        --over."""
+        folders = self.over_field(), self.of_variants()
+        for folder in folders:
+            rows = read_records(folder / "limit.csv")
+            first = rows[0]["device"]
+
+            def unquoted(row):
+                if row["device"] == first:
+                    row["quoted_limit"] = ""
+
+            rows = rewrite(folder / "limit.csv", unquoted)
+            figure = draw_study(folder, SHEETS["double"])
+            self.assertLessEqual({QUOTED_LABEL, UNQUOTED_LABEL}, set(legend_labels(figure)))
+            lines = figure.axes[0].lines
+            rings = [line for line in lines if line.get_markersize() == QUOTED["ms"]]
+            values = np.concatenate([curve.get_xydata().ravel() for curve in rings])
+            quoted = [row for row in rows if row["quoted_limit"]]
+            self.assertTrue(quoted)
+            for row in quoted:
+                self.assertIn(float(row["quoted_limit"]), values)
+            crosses = [line for line in lines if line.get_marker() == UNQUOTED["marker"]]
+            at_end = lambda row: row["stable_high"] and not row["first_unstable"]
+            without = [row for row in rows if not row["quoted_limit"] and not at_end(row)]
+            self.assertEqual(sum(len(line.get_xdata()) for line in crosses), len(without))
+            plt.close(figure)
+
     def test_alternating_runs_make_single_hollow_points(self):
         folder = self.over_field()
 
@@ -291,7 +331,11 @@ class Limits(Given):
         figure = draw_study(folder, SHEETS["double"])
         self.assertIn(ALTERNATING_LABEL, legend_labels(figure))
         self.assertNotIn("simulated limit", legend_labels(figure))
-        hollow = [line for line in figure.axes[0].lines if line.get_marker() == "o"]
+        hollow = [
+            line
+            for line in figure.axes[0].lines
+            if line.get_marker() == "o" and line.get_markersize() < QUOTED["ms"]
+        ]
         hollow = [line for line in hollow if np.isfinite(line.get_ydata()).any()]
         self.assertTrue(
             all((line.get_ls(), line.get_mfc()) == ("None", "white") for line in hollow)
@@ -377,17 +421,7 @@ class Limits(Given):
     def test_they_fit_every_sheet(self):
         folders = [
             self.over_field(),
-            made(
-                "touch",
-                "limit",
-                "tap_wall",
-                "--device",
-                "touch",
-                "--set",
-                "time.steps=200",
-                "--resolution",
-                0.5,
-            ),
+            self.of_variants(),
             made(
                 "z", "limit", "stability_z_width", "--resolution", 0.5, "--algorithms", "mean,proxy"
             ),

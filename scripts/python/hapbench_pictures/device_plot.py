@@ -22,6 +22,10 @@ ALTERNATING = {"marker": "o", "mfc": "white", "mew": 1.1, "ms": 4.2, "ls": "none
 # Style of a limit that is larger than the searched range, because all runs up to the end of the range are stable.
 BEYOND = {"ms": 4.2, "mfc": "white", "mew": 0.9}
 BEYOND_MARKERS = {"x": ">", "y": "^"}  # marker by the axis on which the limit is drawn
+# Style of the ring around the limit to quote, and of a mark at the edge for a row without one.
+QUOTED = {"marker": "o", "mfc": "none", "mew": 1.0, "ms": 9, "ls": "none"}
+UNQUOTED = {"marker": "x", "mew": 1.2, "ms": 4.5, "ls": "none"}
+QUOTED_LABEL, UNQUOTED_LABEL = "ring: limit to quote", "at the edge: no limit to quote"
 BEYOND_ROW = 5.5  # distance between the marks of two devices at the end of the range [points]
 NON_MONOTONIC = "non_monotonic_runs"
 BEYOND_LABEL = "stable to the end of the range: a row for each device"
@@ -64,6 +68,11 @@ def alternate(rows):
     return np.array([row.get(NON_MONOTONIC) not in (None, "", "0") for row in rows], bool)
 
 
+def without_quote(rows):
+    """Returns for each row True if it has no limit to quote although unstable runs were found."""
+    return ~np.isfinite(numbers(rows, "quoted_limit")) & ~simulated(rows)[1]
+
+
 def simulated_kinds(rows):
     """Returns three arrays with the simulated limits of the rows: limits that separate stable from unstable runs,
     limits of rows in which stable and unstable runs alternate, and limits at the end of the searched range. The limit
@@ -91,6 +100,8 @@ def legend_of_marks(rows, along):
         ("simulated limit", separated, SIMULATED),
         (ALTERNATING_LABEL, alternating, ALTERNATING),
         (BEYOND_LABEL, ends, {**BEYOND, "marker": BEYOND_MARKERS[along]}),
+        (QUOTED_LABEL, numbers(rows, "quoted_limit"), QUOTED),
+        (UNQUOTED_LABEL, np.where(without_quote(rows), 0.0, np.nan), UNQUOTED),
     )
     entries = [
         (Line2D([], [], color=BLACK, **{"ls": "none", **style}), label)
@@ -146,6 +157,7 @@ def draw_devices_over(found, sheet):
             series,
         )
         mark_ends(ax, found, of_panel, looks)
+        mark_quotes(ax, found, of_panel, looks)
         for name, value in published(of_panel).items():
             ax.axhline(value, color=looks[name].colour, lw=1.2, ls=PUBLISHED_LINE["ls"])
         ax.set_title(title)
@@ -187,13 +199,30 @@ def mark_ends(ax, found, rows, looks):
     ax.autoscale_view()
 
 
+def mark_quotes(ax, found, rows, looks):
+    """Draws a ring around each limit to quote, and a mark at the lower edge for each row without one. Each device has
+    its own row of marks; the rows lie above each other."""
+    inches = ax.get_figure().dpi_scale_trans
+    names = list(dict.fromkeys(map(device_of, rows)))
+    for line, name in enumerate(names):
+        mine = [row for row in rows if device_of(row) == name]
+        x, none, colour = found.along(mine), without_quote(mine), looks[name].colour
+        ax.plot(x, numbers(mine, "quoted_limit"), color=colour, **QUOTED)
+        higher = ScaledTranslation(0.0, (line + 0.7) * BEYOND_ROW / 72, inches)
+        edge = ax.get_xaxis_transform() + higher
+        ax.plot(x[none], np.zeros(none.sum()), color=colour, transform=edge, **UNQUOTED)
+    ax.update_datalim([(x, 0.0) for x in found.along(rows)], updatey=False)
+    ax.autoscale_view(scaley=False)
+
+
 def draw_devices(found, sheet):
     """Draws the linear and the simulated limit of each device, with a panel for each combination of scene and law."""
     panels, looks = panels_of(found.rows), looks_of(found.rows)
     devices = list(dict.fromkeys(row["device"] for row in found.rows))
     marks = legend_of_marks(found.rows, "x")
     rows, columns = sheet.grid(len(panels))
-    height = rows * (0.65 + 0.24 * len(devices)) + 0.4
+    labels = [label for _, label in marks]
+    height = rows * (0.65 + 0.24 * len(devices)) + legend_height(labels, sheet.width)
     figure, axes = sheet.panels(rows, columns, height, sharex=True, sharey=True)
     for ax, (title, of_panel) in zip(axes.flat, panels.items()):
         heights = np.array([devices.index(row["device"]) for row in of_panel], float)
@@ -224,6 +253,12 @@ def draw_devices(found, sheet):
                     lw=1.4,
                     ls=PUBLISHED_LINE["ls"],
                 )
+        inside = ax.get_yaxis_transform() + ScaledTranslation(4 / 72, 0.0, figure.dpi_scale_trans)
+        for y, row, none in zip(heights, of_panel, without_quote(of_panel)):
+            colour = looks[device_of(row)].colour
+            ax.plot(*numbers([row], "quoted_limit"), y, color=colour, **QUOTED)
+            if none:
+                ax.plot(0.0, y, color=colour, transform=inside, **UNQUOTED)
         ax.set(title=title, ylim=(len(devices) - 0.4, -0.6))
     for ax in axes.flat[len(panels) :]:
         ax.set_visible(False)

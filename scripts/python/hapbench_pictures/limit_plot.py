@@ -10,9 +10,18 @@ from hapbench.columns import is_number, numbers
 from hapbench_looks import by_class, distinguish, law_name, look_of_class
 from hapbench_style import BLACK, PAGE, PETROL, PLUM, SHEET, legend_above, legend_height
 
-from .device_plot import ALTERNATING_LABEL, alternate, draw_devices, draw_devices_over
+from .device_plot import (
+    ALTERNATING_LABEL,
+    UNQUOTED,
+    UNQUOTED_LABEL,
+    alternate,
+    draw_devices,
+    draw_devices_over,
+    linear,
+    without_quote,
+)
 from .given import axis
-from .over_axes import Axis, look_of, over_axes
+from .over_axes import Axis, look_of, over_axes, spread_logarithmically
 
 LIMIT, LIMIT_RUNS = "limit.csv", "limit_runs.csv"
 # Columns of limit.csv and their labels: the linear limit for the worst hand, and limits by closed formulas. If a row
@@ -89,10 +98,9 @@ class Limits:
 
     def lines(self, rows):
         found = [
-            ("linear limit", numbers(rows, "theoretical_limit"), THEORY),
+            ("linear limit", linear(rows), THEORY),
             *self.known(rows),
             ("simulated limit", separated(rows), FOUND),
-            ("limit to quote", numbers(rows, "quoted_limit"), QUOTED),
         ]
         return [
             (label, np.where(values > 0, values, np.nan), style)
@@ -101,18 +109,14 @@ class Limits:
         ]
 
     def theories(self):
-        """Returns the curves of the theoretical limit: (values of the last field of --over, limits). If several
-        algorithms have the same limits, their curve is returned once."""
+        """Returns the curves of the linear limit: (values of the last field of --over, limits). If several algorithms
+        have the same limits, their curve is returned once."""
         found = {}
         for name in self.algorithms:
             rows = [row for row in self.rows if row["algorithm"] == name]
-            limits = numbers(rows, "theoretical_limit")
+            limits = linear(rows)
             found.setdefault(limits.tobytes(), (self.along(rows), limits))
-        return [
-            (x, np.where(np.isfinite(limits), limits, np.nan))
-            for x, limits in found.values()
-            if np.isfinite(limits).any()
-        ]
+        return [(x, limits) for x, limits in found.values() if np.isfinite(limits).any()]
 
     def groups(self):
         """Returns lists of algorithms with identical simulated limits; the longest list is last."""
@@ -125,7 +129,8 @@ class Limits:
 
     def draw_classes(self, ax, algorithm):
         """Draws a mark for each run of an algorithm, with the colour of the run's class. The x axis is the last field
-        of --over, the y axis the searched field. Also draws the limits as lines."""
+        of --over, the y axis the searched field. Also draws the limits as lines, and the limits to quote as marks.
+        """
         runs, rows = (
             [row for row in of if row["algorithm"] == algorithm] for of in (self.runs, self.rows)
         )
@@ -140,6 +145,7 @@ class Limits:
         ]
         lines = [(label, x, values, style) for label, values, style in self.lines(rows)]
         over_axes(ax, self.axis(), Axis(axis(self.field), y, log=True), lines, marks)
+        ax.plot(x, numbers(rows, "quoted_limit"), **QUOTED)
         limits = limits[np.isfinite(limits)]
         if limits.size:
             ax.set_ylim(limits.min() / 20, limits.max() * 20)
@@ -150,9 +156,13 @@ def separated(rows):
     return np.where(alternate(rows), np.nan, numbers(rows, "limit"))
 
 
-def alternating(rows):
-    """Returns the simulated limits of the rows in which stable and unstable runs alternate; NaN for other rows."""
-    return np.where(alternate(rows), numbers(rows, "limit"), np.nan)
+def quoted_kinds(rows):
+    """Returns two arrays with the limits to quote: those that are reliable, and simulated limits near which stable and
+    unstable runs alternate. The limit of a row is in one of the arrays; the other has NaN for this row.
+    """
+    quoted = numbers(rows, "quoted_limit")
+    unreliable = alternate(rows) & (quoted == numbers(rows, "limit"))
+    return [np.where(of, quoted, np.nan) for of in (~unreliable, unreliable)]
 
 
 def draw_limits(files, sheet=SHEET, folder=""):
@@ -165,7 +175,7 @@ def draw_limits(files, sheet=SHEET, folder=""):
 
 def draw_strip(found, sheet):
     """Draws one line of marks for each algorithm: the class of every run over the searched field. Bars mark the
-    theoretical limit, the simulated limit, and the limit that the program recommends to quote (column quoted_limit).
+    linear limit, the simulated limit, and the limit that the program recommends to quote (column quoted_limit).
     """
     names = found.algorithms
     runs = [
@@ -184,16 +194,16 @@ def draw_strip(found, sheet):
     bars = [
         (
             label,
-            numbers(found.rows, key),
+            values,
             np.arange(len(names)),
             {"color": colour, "mew": wide, "marker": "|", "ms": 18, "ls": "none"},
         )
-        for key, label, colour, wide in (
-            ("theoretical_limit", "linear limit", PETROL, 3),
-            ("limit", "simulated limit", BLACK, 1.4),
-            ("quoted_limit", "limit to quote", PLUM, 2.4),
+        for values, label, colour, wide in (
+            (linear(found.rows), "linear limit", PETROL, 3),
+            (numbers(found.rows, "limit"), "simulated limit", BLACK, 1.4),
+            (numbers(found.rows, "quoted_limit"), "limit to quote", PLUM, 2.4),
         )
-        if np.isfinite(numbers(found.rows, key)).any()
+        if np.isfinite(values).any()
     ]
     figure, ((ax,),) = sheet.panels(1, 1, 1.6 + 0.3 * len(names))
     over_axes(
@@ -210,43 +220,18 @@ def draw_strip(found, sheet):
 
 
 def draw_over(found, sheet=PAGE):
-    """Draws the limit of every algorithm, its ratio to the theoretical limit, and the classes of the runs. Algorithms
-    with the same limits share a panel of classes."""
-    groups, has_theory = found.groups(), np.isfinite(numbers(found.rows, "theoretical_limit")).any()
-    rows, columns = sheet.grid(1 + has_theory + len(groups))
+    """Draws the limit to quote of every algorithm, the simulated limit divided by the linear limit, and the classes of
+    the runs. Algorithms with the same limits share a panel of classes."""
+    groups, has_linear = found.groups(), np.isfinite(linear(found.rows)).any()
+    rows, columns = sheet.grid(1 + has_linear + len(groups))
     entries = class_legend(found)
     labels = [label for _, label in entries]
     height = sheet.panel(2.5) * rows + 0.3 + legend_height(labels, sheet.width)
     figure, axes = sheet.panels(rows, columns, height)
     limit, *others = axes.flat
-    ratio, x = others.pop(0) if has_theory else None, found.axis()
-    curves = {
-        name: [row for row in found.rows if row["algorithm"] == name] for name in found.algorithms
-    }
-    of = lambda name, column: (found.along(curves[name]), column, look_of(name))
-    limits = [(law_name(name), *of(name, separated(rows))) for name, rows in curves.items()]
-    limits += [
-        (None, found.along(rows), alternating(rows), {**look_of(name), **HOLLOW})
-        for name, rows in curves.items()
-        if np.isfinite(alternating(rows)).any()
-    ]
-    over_axes(limit, x, Axis.of(axis(found.field), numbers(found.rows, "limit")), limits)
-    limit.set_title("limits (marks: simulated)" if has_theory else "simulated limit")
-    for theory in found.theories():
-        limit.plot(*theory, **THEORY, zorder=1)
-    if ratio:
-        finite = lambda theory: np.where(
-            np.isfinite(theory), theory, np.nan
-        )  # without a theoretical limit there is no ratio
-        ratios = [
-            (None, *of(name, separated(rows) / finite(numbers(rows, "theoretical_limit"))))
-            for name, rows in curves.items()
-        ]
-        over_axes(ratio, x, Axis("simulated /\nlinear limit", np.array([])), ratios)
-        low, high = min(ratio.dataLim.y0, 0.998), max(ratio.dataLim.y1, 1.002)
-        room = 0.05 * (high - low)
-        ratio.set(title="ratio to the linear limit", ylim=(low - room, high + room))
-        ratio.ticklabel_format(axis="y", useOffset=False)
+    draw_quoted(limit, found)
+    if has_linear:
+        draw_ratio(others.pop(0), found)
     for ax, group in zip(others, groups):
         found.draw_classes(ax, group[0])
         names = ", ".join(law_name(name) for name in group)
@@ -259,13 +244,68 @@ def draw_over(found, sheet=PAGE):
     return figure
 
 
+def curves(found):
+    """Returns the rows of each algorithm by its name."""
+    return {
+        name: [row for row in found.rows if row["algorithm"] == name] for name in found.algorithms
+    }
+
+
+def draw_quoted(ax, found):
+    """Draws the limits to quote as curves with marks, the simulated limits as thin dashed curves, and the linear
+    limits."""
+    series = []
+    for name, rows in curves(found).items():
+        x, (reliable, unreliable) = found.along(rows), quoted_kinds(rows)
+        series.append((law_name(name), x, reliable, look_of(name)))
+        if np.isfinite(unreliable).any():
+            series.append((None, x, unreliable, {**look_of(name), **HOLLOW}))
+        thin = {**look_of(name), "marker": "none", "lw": FOUND["lw"], "ls": FOUND["ls"]}
+        series.append((None, x, separated(rows), thin))
+    y = np.concatenate([values for _, _, values, _ in series])
+    over_axes(ax, found.axis(), Axis.of(axis(found.field), y), series)
+    ax.set_title("limit to quote (marks)")
+    for theory in found.theories():
+        ax.plot(*theory, **THEORY, zorder=1)
+    for name, rows in curves(found).items():
+        none = without_quote(rows)
+        if none.any():
+            ax.plot(
+                found.along(rows)[none],
+                np.full(none.sum(), 0.03),
+                color=look_of(name)["color"],
+                transform=ax.get_xaxis_transform(),
+                **UNQUOTED,
+            )
+
+
+def draw_ratio(ax, found):
+    """Draws the simulated limits divided by the linear limits."""
+    ratios = [
+        (None, found.along(rows), separated(rows) / linear(rows), look_of(name))
+        for name, rows in curves(found).items()
+    ]
+    y = np.concatenate([values for _, _, values, _ in ratios])
+    over_axes(ax, found.axis(), Axis.of("simulated /\nlinear limit", y), ratios)
+    ax.set_title("simulated / linear limit")
+    if not spread_logarithmically(y):
+        low, high = min(ax.dataLim.y0, 0.998), max(ax.dataLim.y1, 1.002)
+        room = 0.05 * (high - low)
+        ax.set_ylim(low - room, high + room)
+        ax.ticklabel_format(axis="y", useOffset=False)
+
+
 def class_legend(found):
     """Returns (handle, label) of each algorithm, line and class in the picture."""
     entries = [(Line2D([], [], **look_of(name)), law_name(name)) for name in found.algorithms]
     entries += [(Line2D([], [], **style), label) for label, _, style in found.lines(found.rows)]
-    if np.isfinite(alternating(found.rows)).any():
+    if np.isfinite(quoted_kinds(found.rows)[1]).any():
         hollow = Line2D([], [], color=BLACK, marker="o", ms=4.5, **HOLLOW)
         entries.append((hollow, ALTERNATING_LABEL))
+    if without_quote(found.rows).any():
+        entries.append((Line2D([], [], color=BLACK, **UNQUOTED), UNQUOTED_LABEL))
+    if np.isfinite(numbers(found.rows, "quoted_limit")).any():
+        entries.append((Line2D([], [], **QUOTED), "limit to quote"))
     for name in by_class(row["class"] for row in found.runs):
         title, colour, hatch = look_of_class(name)
         entries.append((Patch(facecolor=colour, hatch=hatch, edgecolor=PETROL, lw=0), title))
