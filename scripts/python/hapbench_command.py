@@ -40,6 +40,12 @@ def print_error(text):
     print(f"hapbench: error: {line}", file=sys.stderr)
 
 
+def print_warning(text):
+    """Prints a warning as one line on standard error, in the form of the program's warnings."""
+    line = "".join("?" if c < " " or c == "\x7f" else c for c in str(text))
+    print(f"hapbench: warning: {line}", file=sys.stderr)
+
+
 class Arguments(argparse.ArgumentParser):
     """An argument parser that prints an error as one line, without the usage."""
 
@@ -387,6 +393,17 @@ def finite_number(word):
     return value if math.isfinite(value) else math.nan
 
 
+def unique_keys(pairs):
+    """Returns the members of a JSON object as a dict. Fails if a key is repeated. A function for object_pairs_hook of
+    json.load."""
+    found = {}
+    for key, value in pairs:
+        if key in found:
+            fail(f"the key {quoted(key)} stands twice in one object; allowed: once")
+        found[key] = value
+    return found
+
+
 def shown(value):
     """Returns a JSON value as text for a message: one line of at most about 80 characters."""
     text = json.dumps(value, separators=(",", ":")).replace("\x7f", "\\u007f")
@@ -409,24 +426,42 @@ def refuse_source(out, source, what):
         fail(f"--out {out}: is the {what} itself; allowed: another file")
 
 
+def is_stream(file):
+    """Returns True for a pipe, a device, and a link to one of them."""
+    return file.exists() and not file.is_file() and not file.is_dir()
+
+
 def write(file, data):
-    """Creates or replaces a file atomically. `data`: text or bytes. If this fails, raises OSError with the name of the
-    file."""
+    """Creates or replaces a file atomically. `data`: text or bytes. If the file is a link, its target is created or
+    replaced. A pipe or a device is not replaced; the data are written into it. If this fails, raises OSError with the
+    name of the file."""
+    content = data if isinstance(data, bytes) else data.encode()
     try:
         file.parent.mkdir(parents=True, exist_ok=True)
-        scratch = file.with_name(f".{file.name}.{os.getpid()}.tmp")
-        _unfinished.add(scratch)
-        try:
-            with scratch.open("wb") as open_scratch:
-                open_scratch.write(data if isinstance(data, bytes) else data.encode())
-                open_scratch.flush()
-                scratch.replace(file)
-            _written.append(str(file))
-        finally:
-            scratch.unlink(missing_ok=True)
-            _unfinished.discard(scratch)
+        if is_stream(file):
+            with file.open("wb") as stream:
+                stream.write(content)
+        else:
+            _replace(file.resolve() if file.is_symlink() else file, content)
+        _written.append(str(file))
     except OSError as error:
         raise OSError(error.errno, error.strerror, str(file)) from error
+    except RuntimeError as error:  # Python 3.12 and older: links that form a cycle
+        raise OSError(errno.ELOOP, os.strerror(errno.ELOOP), str(file)) from error
+
+
+def _replace(file, content):
+    """Writes a temporary file beside `file`, and renames it to `file`."""
+    scratch = file.with_name(f".{file.name}.{os.getpid()}.tmp")
+    _unfinished.add(scratch)
+    try:
+        with scratch.open("wb") as open_scratch:
+            open_scratch.write(content)
+            open_scratch.flush()
+            scratch.replace(file)
+    finally:
+        scratch.unlink(missing_ok=True)
+        _unfinished.discard(scratch)
 
 
 def unwritable(error):

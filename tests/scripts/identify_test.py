@@ -1,5 +1,7 @@
 """Tests `hapbench import device` on logs of an independent simulator."""
 import json
+import os
+import threading
 import unittest
 from functools import partial
 
@@ -195,6 +197,30 @@ class Identify(Logs):
                 self.log(1e-5 * np.round(5.0 * self.trajectory / np.ptp(self.trajectory)))
             ),
         )
+
+    def test_exchanged_columns_are_named(self):
+        for kind in ("chirp", "steps"):
+            time, force = design(kind, 2.0, 0.08, 1000.0, 2.0, 0.1)
+            position = np.round(positions(time, force, HANDLE) / Q) * Q
+            error = self.refused(
+                self.log(position, time, force), "--columns", "force=position_m,position=force_N"
+            )
+            self.assertIn("Are the columns of force and position exchanged", error)
+            self.assertNotIn("hardly moves", error)
+
+    def test_a_device_that_is_written_into_a_pipe_has_no_picture(self):
+        pipe = self.root / "pipe"
+        os.mkfifo(pipe)
+        file, read = self.log(np.round(self.trajectory / Q) * Q), []
+        reader = threading.Thread(target=lambda: read.append(json.loads(pipe.read_text())))
+        reader.start()
+        done = run("import", "device", file, "--json", "--out", pipe)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        reader.join(timeout=10)
+        self.assertEqual(read[0]["type"], "impedance")
+        self.assertTrue(pipe.is_fifo())
+        self.assertIsNone(json.loads(done.stdout)["picture"])
+        self.assertFalse(pipe.with_suffix(".svg").exists())
 
     def test_it_names_what_a_log_does_not_show(self):
         file = self.log(np.round(self.trajectory / Q) * Q)

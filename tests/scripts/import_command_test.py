@@ -258,8 +258,17 @@ class Command(Given):
             ("[1]", "got [1]; allowed: an object"),
             ('{"colums": {}}', 'nearest valid name: "columns"'),
             ('{"floats": 1}', "floats: got 1; allowed: true, false"),
+            (
+                '{"max_gap": 1, "floats": false, "max_gap": 2}',
+                'the key "max_gap" stands twice in one object; allowed: once',
+            ),
+            ('{"scale": {"time": 1, "time": 0.001}}', 'the key "time" stands twice in one object'),
         ):
             self.assertIn(
                 "bad.json: ", found := refusal_of(LOG, "--preset", self.write(text, "bad.json"))
             )
             self.assertIn(problem, found)
+        self.assertIn(
+            'the key "time" stands twice',
+            refusal_of(LOG, "--preset", "hapi", "--set", 'scale={"time": 1, "time": 2}'),
+        )

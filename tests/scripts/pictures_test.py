@@ -127,7 +127,7 @@ class Columns(Given):
 
     def test_gaps_and_what_is_wrong(self):
         file = self.root / "wrong.csv"
-        file.write_text("a,b,c\r\n,,\r\n1,,3\r\n,2,3")
+        file.write_text("a,b,c\r\n,,\r\n1,,3\r\n,2,3\r\n")
         np.testing.assert_array_equal(
             list(columns.read_columns(file).values()),
             [[np.nan, 1, np.nan], [np.nan, np.nan, 2], [np.nan, 3, 3]],

@@ -10,7 +10,7 @@ from functools import cache, cached_property, lru_cache
 from pathlib import Path
 from typing import Any
 
-from .columns import read_columns, read_mixed, read_records
+from .columns import read_columns, read_mixed, read_records, read_text
 from .errors import ResultError
 from .table import Table, joined, unit_of
 
@@ -23,9 +23,7 @@ def read_json(file, **how):
     """Returns the content of a JSON file. `how`: keyword arguments of json.loads. Raises ResultError if the file cannot
     be read or parsed."""
     try:
-        return json.loads(file.read_text(encoding="utf-8"), **how)
-    except (OSError, UnicodeDecodeError) as error:
-        raise ResultError(f"{file}: cannot be read: {error}") from error
+        return json.loads(read_text(file), **how)
     except (ValueError, RecursionError) as error:
         raise ResultError(f"{file}: not JSON: {error}") from error
 

@@ -21,8 +21,8 @@ NOTES = [
     "Log: a CSV file (or a text table) with time, position of the tool and force on it, one row "
     "per step. Usual column names are found (t, px, py, pz, fx, fy, fz); --columns names others: "
     "time, position, force, orientation, velocity, contacts (number of contacts), measured (force "
-    'from a sensor). A log of one axis has one position and one force. Units in names, such as "x '
-    '[mm]", are applied.',
+    "from a sensor). A log of one axis has one position and one force; a planar log has two of each. "
+    'Units in names, such as "x [mm]", are applied.',
     "Fields of --set: force_by_tool=true (the log has the force of the tool on the object; audit "
     "reverses its sign), touch_N (a row with a larger force is in contact; default: any force), "
     'sample_rate_Hz (for a log without times), and those of "hapbench import stroke --help".',

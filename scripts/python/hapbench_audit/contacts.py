@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
+from hapbench_command import fail
 
 from .log import LONG_INTERVALS
 
@@ -42,9 +43,13 @@ class Contacts:
 
 
 def contacts_of(log):
-    """Returns the Contacts of a log, by the rule of rows_in_contact()."""
+    """Returns the Contacts of a log, by the rule of rows_in_contact(). Fails if no row is in contact or if all
+    forces are 0."""
     size = np.linalg.norm(log.force, axis=1)
     in_contact, threshold, rule = rows_in_contact(log, size)
+    if not in_contact.any() or not size.any():
+        problem = "no row has a force" if in_contact.any() else "no row is in contact"
+        fail(f"{problem}: {why_no_contact(log, size, threshold)}", log.file)
     interval = log.interval
     gap = np.diff(log.time) > LONG_INTERVALS * interval
     runs = runs_of(in_contact, gap)
@@ -98,6 +103,32 @@ def rows_in_contact(log, size):
         touch,
         f"force above {touch:.3g} N {ends}by 5 % of its 99th percentile and its noise, because the log has no rows "
         "without force (--set touch_N=... sets it)",
+    )
+
+
+def why_no_contact(log, size, threshold):
+    """Returns the reason why no row is in contact, and the option that may correct it."""
+    largest = float(size.max())
+    if not largest > 0.0 and log.measured is not None and log.measured.any():
+        measured = log.columns["measured"][0]["name"]
+        return f"every force is 0, but the log has measured forces: --columns force={measured} uses them"
+    if not largest > 0.0:
+        return (
+            f"every force is 0, in {log.columns_text('force')}; allowed: a log with contact (--columns force=... "
+            "reads other columns)"
+        )
+    if log.touch is not None:
+        return (
+            f"the largest force is {largest:.4g} N; allowed: a smaller touch_N, got {threshold:g}"
+        )
+    if log.contacts is not None:
+        return (
+            f"{log.columns_text('contacts')}, the number of contacts, is never above 0, but the largest force is "
+            f"{largest:.4g} N: --set touch_N=0 uses the force instead, --columns contacts=... another column"
+        )
+    return (
+        f"no force exceeds the threshold of {threshold:.4g} N, which the noise of the force requires; the largest "
+        f"force is {largest:.4g} N: --set touch_N=... sets the threshold"
     )
 
 

@@ -39,6 +39,8 @@ def expectations(words, audit):
         low, _, high = bound.rpartition(":")
         minimum = _number(word, low) if low else -math.inf
         maximum = _number(word, high)
+        if minimum > maximum:
+            fail(f"--expect: got {quoted(word)}, a minimum above the maximum; allowed: MIN:MAX")
         value = metrics[name]
         found.append(
             {

@@ -1,6 +1,5 @@
 """Reads the log of any engine: times, positions and forces in SI units, and further quantities if the log has columns
 for them."""
-import re
 from dataclasses import dataclass, field
 from functools import cached_property
 from types import SimpleNamespace
@@ -13,6 +12,8 @@ from hapbench_import.options import QUANTITIES, options_of
 from hapbench_import.recording import EXACT, Recording, open_recording
 from hapbench_import.samples import read_samples
 from hapbench_import.stroke import resolution_of
+
+from .usual_columns import extra_columns, with_usual_columns
 
 FEWEST = 20  # smallest number of samples of a log
 LONG_INTERVALS = 10.0  # number of mean intervals; a longer time step is a gap, which ends a contact
@@ -29,20 +30,6 @@ MAX_MISSING = 50
 # At each time stamp, of_mean_clock() shifts the mean clock towards the stamp by at least this fraction of the
 # difference.
 FOLLOWED = 0.05
-# Usual names of the first column of each quantity. Names are in lower case, without units and without any character
-# other than letters and digits.
-USUAL = {
-    "time": "time times t ts timestamp stamp secs simtime headerstamp clock",
-    "position": "px posx positionx poseposition posepositionx tipx toolx tcpx eex hipx hx pos0 p0 position0 x",
-    "force": "fx forcex wrenchforcex contactforcex fextx fcmdx commandedx commandedforcex forcecommandedx force0 f0",
-    "velocity": "vx velx velocityx twistlinearx vel0 v0",
-    "measured": "measuredx measuredforcex forcemeasuredx fmeasuredx fsensorx",
-    "contacts": "colliding contacts ncontacts ncon numcontacts contactcount",
-    "orientation": "qw qx quatw quatx orientationw orientationx poseorientationx",
-}
-# Further usual names for a log of one axis.
-ALONE = {"position": "position pos x y z", "force": "force f", "velocity": "velocity vel v"}
-ALONE["measured"] = "measured measuredforce forcemeasured"
 TOUCH = "touch_N="  # prefix of the field touch_N in --set
 EXTRA = ("velocity", "measured", "contacts")  # quantities that `hapbench import` does not read
 ALL = [name for name in QUANTITIES] + list(EXTRA)
@@ -58,7 +45,7 @@ class Log:
     velocity: np.ndarray | None = None  # velocity of the tool: x, y, z in each row [m/s]
     measured: np.ndarray | None = None  # force of a sensor: x, y, z in each row [N]
     contacts: np.ndarray | None = None  # number of contacts in each row
-    axes: int = 3  # 1 for a log of one axis
+    axes: int = 3  # number of axes: 1, 2 for a planar log, or 3
     # Columns that were read: a dict from quantity to columns, in the format of Columns.used() of hapbench_import.
     columns: dict = field(default_factory=dict)
     columns_not_read: list = field(default_factory=list)
@@ -82,6 +69,11 @@ class Log:
         if np.abs(off).max() <= 1e-3 * mean:
             return float(mean)
         return float(steps[self.missing == 0].mean())
+
+    def columns_text(self, quantity):
+        """Returns numbers and names of the columns of a quantity for a message, such as "columns 2 fx, 3 fy"."""
+        titles = [f"{part['column']} {part['name']}".rstrip() for part in self.columns[quantity]]
+        return f"column{'s' if len(titles) > 1 else ''} {', '.join(titles)}"
 
     @cached_property
     def missing(self):
@@ -204,10 +196,10 @@ def log_of(recording, options, wanted):
         if not np.isfinite(values).all():
             read.notes.append(f"{quantity}: not a number in some rows: skipped")
             continue
-        extra[quantity] = values
+        extra[quantity] = values if quantity == "contacts" else on_axes(values, axes)
         used[quantity] = [
             {"component": part, "column": column + 1, "name": names.names[column]}
-            for part, column in zip("xyz" if len(found) == 3 else [quantity], found)
+            for part, column in zip(axes if len(found) > 1 else [quantity], found)
         ]
     used = {
         quantity: [part for part in parts if not part["name"].startswith(ABSENT)]
@@ -221,10 +213,10 @@ def log_of(recording, options, wanted):
         samples.position,
         samples.force,
         samples.turn if samples.has_roll else None,
-        vector(extra.get("velocity"), frame),
-        None if "measured" not in extra else sign * vector(extra["measured"], frame),
+        None if "velocity" not in extra else extra["velocity"] @ frame,
+        None if "measured" not in extra else sign * extra["measured"] @ frame,
         extra["contacts"][:, 0] if "contacts" in extra else None,
-        axes,
+        len(axes),
         used,
         names.others(used),
         read.scales,
@@ -306,176 +298,14 @@ def times_of(read):
     return read.samples.time - read.samples.time[0]
 
 
-def vector(values, frame):
-    """Returns rows of three components in the frame of the scene, or None without values. Components that a log of one
-    axis lacks are 0. `frame`: matrix by which each row is multiplied from the right."""
-    if values is None:
-        return None
-    return np.pad(values, ((0, 0), (0, 3 - values.shape[1]))) @ frame
+def on_axes(values, axes):
+    """Returns rows of three components. Components of axes that the log lacks are 0. `values`: one column for each of
+    `axes`, such as "xz"."""
+    found = np.zeros((len(values), 3))
+    found[:, ["xyz".index(axis) for axis in axes]] = values
+    return found
 
 
 def quanta(values):
     """Returns the resolution of each column; 0 if its numbers have full precision or do not change."""
     return np.array([resolution_of(column) or 0.0 for column in values.T])
-
-
-def key_of(name):
-    return re.sub(r"[^a-z0-9]", "", name.lower())
-
-
-class UsualNames:
-    """Finds columns by their usual names."""
-
-    def __init__(self, names):
-        self._keys = {}
-        for name, bare, unit in zip(names.names, names.bare, names.units):
-            for text in (name, bare, bare.removesuffix(f"_{unit.text}") if unit else bare):
-                key = key_of(text)
-                for ending in ("", "mpers", "m", "s", "n"):  # endings of SI units, as in px_m
-                    if ending == "" or re.search(r"_(m|s|N|m_per_s)$", text):
-                        self._keys.setdefault(key.removesuffix(ending) or key, name)
-
-    def find(self, words):
-        return next((self._keys[word] for word in words.split() if word in self._keys), None)
-
-
-def with_usual_columns(recording, options):
-    """Adds to options.columns the columns with usual names, for quantities that the user did not name. Returns
-    (recording, number of axes). For a log of one axis, the recording gets columns of zeros for the missing axes.
-    """
-    names = Names(recording)
-    usual = UsualNames(names)
-    parts = {"position": ("px", "py", "pz"), "force": ("mfx", "mfy", "mfz")}
-    given = {
-        quantity
-        for quantity in ("time", "position", "force", "orientation")
-        if quantity in options.columns or set(parts.get(quantity, ())) & set(options.columns)
-    }
-    if options.sample_rate_Hz:
-        given.add("time")
-    for quantity in ("time", "position", "force"):
-        if quantity in given:
-            continue
-        name = usual.find(USUAL[quantity]) or usual.find(ALONE.get(quantity, ""))
-        if name is None:
-            names.fail(
-                quantity,
-                f"no usual name; --columns {quantity}=NAME or number names it{of_one_axis(usual)}",
-            )
-        options.columns[quantity] = [name]
-    if "orientation" not in given and not options.orientation:
-        name = usual.find(USUAL["orientation"])
-        if name is not None:
-            options.columns["orientation"] = [name]
-            options.optional = options.optional | {"orientation"}
-    alone = alone_columns(names, options, parts)
-    if len(alone) < 2 or None in alone.values():
-        return recording, 3
-    added = len(names.names) + 1
-    for quantity, components in parts.items():
-        del options.columns[quantity]
-        columns = [alone[quantity] + 1, added, added + 1]
-        added += 2
-        options.columns |= {part: [str(at)] for part, at in zip(components, columns)}
-        if quantity in options.named:
-            options.named = options.named - {quantity} | set(components)
-    return with_zeros(recording, 4), 1
-
-
-def of_one_axis(usual):
-    """Returns a hint if the log has usual names of position and force for the y axis or for the z axis: the option that
-    reads the log as a log of one axis. Returns an empty text for other logs."""
-    for axis in "yz":
-        found = usual.find(f"p{axis} pos{axis} position{axis}"), usual.find(f"f{axis} force{axis}")
-        if all(found):
-            return "; for a log of one axis: --columns position={},force={}".format(*found)
-    return ""
-
-
-def alone_columns(names, options, parts):
-    """Returns a dict from each quantity of `parts` that the options name to its column. The value is None if the
-    quantity has three columns (x, y and z) and not a single column."""
-    found = {
-        quantity: names.find(
-            "", options.columns[quantity], ("_x", ".x", "x", "[0]", "_0", ".0", "0")
-        )
-        for quantity in parts
-        if quantity in options.columns
-    }
-    for quantity, (column, _) in found.items():
-        if column is None:
-            names.unknown(quantity, options.columns[quantity])
-    numbers = [column for column, by_number in found.values() if by_number]
-    # A number usually names the first of three columns. It names a single column if the columns would otherwise overlap
-    # or lie beyond the last column.
-    are_alone = len(numbers) > 0 and (
-        max(numbers) + 3 > len(names.names)
-        or (len(numbers) == 2 and abs(numbers[0] - numbers[1]) < 3)
-    )
-
-    def alone(column, by_number):
-        if column is None or (by_number and not are_alone):
-            return None
-        if by_number:
-            return column
-        return column if names.components(column, ("x", "y", "z")) is None else None
-
-    return {quantity: alone(*one) for quantity, one in found.items()}
-
-
-def with_zeros(recording, count):
-    """Returns the recording with `count` additional columns of zeros."""
-    added = [f"{ABSENT}_{i}" for i in range(count)]
-    if recording.is_binary:
-        zeros = [np.zeros(len(recording.rows))] * count
-        arrays = [recording.rows[name] for name in recording.names] + zeros
-        rows = np.rec.fromarrays(arrays, names=recording.names + added)
-        return Recording(
-            recording.file, recording.names + added, rows, recording.row_numbers, "row"
-        )
-    width = len(recording.names)
-    rows = [row + [b"0"] * count if len(row) == width else row for row in recording.rows]
-    return Recording(
-        recording.file,
-        recording.names + added,
-        rows,
-        recording.row_numbers,
-        recording.row_word,
-        recording.notes,
-        recording._decimal,
-    )
-
-
-def extra_columns(names, quantity, word, axes):
-    """Returns the columns of a quantity of EXTRA (velocity, measured force, number of contacts). `word`: name or number
-    of a column that the user gave, or None. Fails if the log does not have this column or the columns of the y and z
-    components. If `word` is None, searches for a column with a usual name, and returns None if the log does not have
-    such a column or the columns of the y and z components. `axes`: number of axes of the log."""
-    if word is not None:
-        column, by_number = names.find(quantity, [word], ("_x", ".x", "x", "[0]", "_0", ".0", "0"))
-        if column is None:
-            names.unknown(quantity, [word])
-    else:
-        usual = UsualNames(names)
-        name = usual.find(USUAL[quantity])
-        if name is None and axes == 1:
-            name = usual.find(ALONE.get(quantity, ""))
-        if name is None:
-            return None
-        column, by_number = names.index(quantity, name), False
-    if quantity == "contacts":
-        return [column]
-    if axes == 1:
-        return [column]
-    if by_number:
-        if column + 3 > len(names.in_file()):
-            names.fail(quantity, f"takes columns {column + 1} ... {column + 3}")
-        return [column, column + 1, column + 2]
-    found = names.components(column, ("x", "y", "z"))
-    if found is None and word is not None:
-        names.fail(
-            quantity,
-            f"the names do not say which columns go with {quoted(names.names[column])}; "
-            f"allowed: {quantity}={column + 1} for it and the two columns after it",
-        )
-    return found

@@ -13,6 +13,7 @@ from hapbench_command import (
     fail,
     file_word,
     finite_number,
+    is_stream,
     leave,
     refuse_source,
     require_name,
@@ -32,7 +33,15 @@ from hapbench_import.stroke import columns_text, number_text
 from .fit import MASS, fit
 from .log import read_log
 from .model import IDENTIFIABLE_FRICTION, KINDS, NAMES, design, range_of, required_force
-from .units import LONGEST_STEP, is_likely, is_usual, likely_units, scale_option, turned_round
+from .units import (
+    LONGEST_STEP,
+    is_likely,
+    is_usual,
+    likely_units,
+    may_be_exchanged,
+    scale_option,
+    turned_round,
+)
 
 NOTES = [
     "Log: a CSV file of one axis while no hand holds the handle: time, commanded force and "
@@ -66,6 +75,7 @@ UNITS = {
     "offset_N": "N",
 }
 UNTRUSTED = "The true values can lie outside of the intervals: do not read them as 95 % intervals"
+EXCHANGED = "Are the columns of force and position exchanged (--columns force=NAME,position=NAME)?"
 NEGLIGIBLE = 1e-3  # largest offset that counts as zero, as a fraction of the largest force
 # Largest number of samples in the picture, which limits the size of the picture of a long log.
 MAX_DRAWN = 6000
@@ -179,9 +189,10 @@ def identify(options, out):
         handle = f"a handle of {found.values[MASS]:.3g} kg and an encoder step of {log.encoder_step:.3g} m"
         refuse_units(options, log, f"the fit gives {handle}", found)
     if parameters["handle_mass_kg"]["value"] is None:
+        exchanged = f" {EXCHANGED}" if may_be_exchanged(log) else ""
         fail(
             f"the mass cannot be identified from this log: the simulated position is off by {found.rms:.3g} m "
-            "(rms). Is a hand or a spring on the handle, or is a sign or a unit wrong? "
+            f"(rms).{exchanged} Is a hand or a spring on the handle, or is a sign or a unit wrong? "
             '"hapbench import device --design" makes a suitable signal',
             options.log,
         )
@@ -200,8 +211,10 @@ def identify(options, out):
     }
     missing = not_in_log()
     write(Path(out), json.dumps(device, indent=2) + "\n")
-    picture = Path(out).with_suffix(".svg")
-    draw(picture, log, found)
+    # A pipe or a device, such as /dev/stdout, is in no folder of results.
+    picture = None if is_stream(Path(out)) else Path(out).with_suffix(".svg")
+    if picture:
+        draw(picture, log, found)
     table = [
         [
             f"{name} [{UNITS[name]}]",
@@ -222,7 +235,7 @@ def identify(options, out):
         "scales": log.scales,
         "device": out,
         "not_in_log": missing,
-        "picture": str(picture),
+        "picture": picture and str(picture),
         "warnings": warnings,
     }
 
@@ -320,13 +333,16 @@ def refuse_units(options, log, problem, found=None):
 
 
 def units_text(options, log, found):
-    """Returns a text about the likely units of a log; empty if other units do not explain the log."""
+    """Returns a text about the likely units of a log, or about columns that are exchanged; empty if neither explains
+    the log."""
     given = given_scales(options)
     text = " or ".join(
         f"{text}: {scale_option(factors, given)}"
         for text, factors in likely_units(log, found)
         if factors
     )
+    if not text and may_be_exchanged(log):
+        return EXCHANGED
     return f"{text[0].upper()}{text[1:]}." if text else ""
 
 

@@ -19,6 +19,7 @@ SCORED, PIECE, SHORT_PIECE = (
 KEPT, DISTINCT, BLOCKS = 8, 3, 12
 LONGEST = 20.0  # largest delay in the search [samples]
 FEWEST_COUNTS = 10.0
+MAX_TRAVEL = 0.8  # largest usual travel of a handle [m]
 DELAYS = np.arange(0.0, 8.5, 0.5)  # delays of the starting values of the search [samples]
 SMOOTHINGS = (0.02, 0.05, 0.1)  # full widths of the smoothing kernel [s]
 GRID = [
@@ -167,6 +168,13 @@ def _fit(log, simulate):
     noise, travel = noise_of(log.position[known]), np.ptp(position)
     count = max(log.encoder_step, 1e-9 * travel)
     if travel < FEWEST_COUNTS * max(count, noise):
+        if travel > MAX_TRAVEL:
+            fail(
+                f"the position has a range of {travel:.3g} m and {travel / count:.3g} steps of {count:.3g} m, which is "
+                "no position of a handle. Are the columns of force and position exchanged (--columns "
+                "force=NAME,position=NAME), or is the position in other units (--scale position=0.001 is for "
+                "millimetres)?"
+            )
         fail(
             f"the handle hardly moves: its range is {travel:.3g} m, {travel / count:.3g} encoder steps, with "
             f"noise of {noise:.3g} m, so that nothing can be identified. Use a larger force, or "

@@ -6,13 +6,13 @@ import math
 
 import numpy as np
 
-from .fit import MASS, fit
+from .fit import MASS, MAX_TRAVEL, fit
 
 TIMES = {1.0: "s", 1e-3: "ms", 1e-6: "us", 1e-9: "ns"}
 POSITIONS = {1.0: "m", 1e-3: "mm", 1e-2: "cm", 1e-6: "um"}
 FORCES = {1.0: "N", 1e-3: "mN", 1e3: "kN", 9.80665e-3: "gf", 9.80665: "kgf"}
 # Usual ranges in logs of haptic devices: time step [s], travel [m], peak force [N] and handle mass [kg].
-STEPS, TRAVELS, PEAKS, MASSES = (1e-5, 0.05), (1e-3, 0.8), (0.05, 60.0), (5e-3, 5.0)
+STEPS, TRAVELS, PEAKS, MASSES = (1e-5, 0.05), (1e-3, MAX_TRAVEL), (0.05, 60.0), (5e-3, 5.0)
 LONGEST_STEP = 0.2  # largest median interval of a log that is fitted without --scale [s]
 COARSEST = 1e-3  # largest plausible step of an encoder [m]
 ACCEPTED = (1e-3, 20.0)  # masses of handles that are accepted without --scale [kg]
@@ -36,6 +36,14 @@ def turned_round(log, found):
 def is_usual(log, mass):
     """Returns True if mass, travel and force are in the usual ranges of a haptic device."""
     return _within(mass, MASSES) and _travel(log) <= TRAVELS[1] and _peak(log) <= PEAKS[1]
+
+
+def may_be_exchanged(log):
+    """Returns True if the column of the position may have forces, and the column of the force may have positions: the
+    range of the positions is too large for a handle, and the values fit the other quantity."""
+    return (
+        _travel(log) > MAX_TRAVEL and _within(_travel(log), PEAKS) and _within(_peak(log), TRAVELS)
+    )
 
 
 def likely_units(log, found=None):

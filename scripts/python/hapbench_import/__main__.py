@@ -23,6 +23,8 @@ NOTES = [
     "qw, qx, qy, qz, mfx, mfy, mfz. The name of a first column also selects the other components, by their names (x, "
     "y, z). A column number, counted from 1, also selects the columns after it.",
     'Units in column names, such as "x [mm]", are applied; --scale overrides them.',
+    "A quaternion in columns named qw, qx, qy, qz is also read if --columns does not name it; --orientation none "
+    "ignores it.",
     "Orientation: none, axis (direction out of the tip), quat_wxyz, quat_xyzw, axis_angle (axis, "
     "angle) or matrix (r11, r12 ... r33, row by row). The orientation rotates the tool's frame into "
     "the frame of the scene.",

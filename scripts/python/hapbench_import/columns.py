@@ -21,8 +21,18 @@ UNITS = {
 # Endings of column names that are certainly units, as in x_mm. Other endings, as in x_m and x_cm, may have another
 # meaning.
 _ENDINGS = "ms msec us usec ns nsec mm um mN kN deg".split()
-_UNCLEAR_ENDINGS = ("cm", "in", "inch", "nm")
-_BRACKETED = re.compile(r"\s*([\[(])\s*([^\[\]()]*?)\s*[\])]\s*$")
+_BRACKETED = re.compile(r"\s*([\[({<])\s*([^\[\](){}<>]*?)\s*[\])}>]\s*$")
+# Brackets in front of further words, as in "x (mm) raw".
+_BRACKETED_INSIDE = re.compile(r"\s*([\[({<])\s*([^\[\](){}<>]*?)\s*[\])}>](?=\s*\w)")
+_BETWEEN_WORDS = re.compile(r"[_\s.:,/-]+")
+# Names directly in front of a unit, as in xmm, tipXmm and timems.
+_HEADS = {
+    "time": re.compile(r"(?i:t|time|stamp|timestamp)"),
+    "position": re.compile(
+        r"((|.*[^A-Za-z])(?i:p|pos|position|tip|tool)?[xyzXYZ]|.*[a-z][XYZ])|(|.*[^A-Za-z]|[xyz])(?i:pos|position)"
+    ),
+    "force": re.compile(r"(|.*[^A-Za-z])(?i:f[xyz]?|force[xyz]?)"),
+}
 # Patterns of names, in lower case and without units, that state the quantity of a column.
 NAMED_AS = {
     "force": re.compile(r"f_?[xyz]|.*force.*"),
@@ -42,19 +52,36 @@ class Unit:
 
 
 def without_unit(name):
-    """Returns (name, Unit or None) of a column name: "x [mm]", "x/mm" and "x, mm" are x in mm. Brackets around a number
-    or a component, as in q[0], contain an index and no unit."""
+    """Returns (name, Unit or None) of a column name: "x [mm]", "x/mm", "x, mm" and "x mm" are x in mm. Brackets around
+    a number or a component, as in q[0], contain an index and no unit."""
     found = _BRACKETED.search(name)
     if found and found[2] in ("", "-", "1"):
         return name[: found.start()] if found[2] != "1" else name, None
     if found and not found[2].isdigit() and found[2] not in ("x", "y", "z", "w"):
         return name[: found.start()], Unit(found[2], found[1] == "[")
+    found = _BRACKETED_INSIDE.search(name)
+    if found and any(found[2] in known for known in UNITS.values()) and found[2] not in "xyzw":
+        return name[: found.start()] + name[found.end() :], Unit(found[2], found[1] == "[")
     for mark in "/,":
         head, _, ending = name.rpartition(mark)
         if head and any(ending.strip() in known for known in UNITS.values()):
             return head.strip(), Unit(ending.strip(), True)
+    for mark in " :-":
+        head, _, ending = name.rpartition(mark)
+        if head.strip() and ending in _ENDINGS:
+            return head.strip(), Unit(ending, True)
     head, _, ending = name.rpartition("_")
     return name, Unit(ending, True) if head and ending in _ENDINGS else None
+
+
+def unit_in(quantity, text):
+    """Returns the name of the unit in UNITS that `text` is, or None. Upper case and lower case are equal, except if
+    upper case is another prefix: MN are meganewtons, and mN are millinewtons."""
+    known = UNITS[quantity]
+    if text in known:
+        return text
+    is_mega = text[:1] == "M" and text[1:] in known
+    return text.lower() if text.lower() in known and not is_mega else None
 
 
 def substituted(name, tokens):
@@ -103,6 +130,7 @@ class Names:
 
     def __init__(self, recording):
         self.file, self.names = recording.file, recording.names
+        self.stated_units, self._other_headers = recording.stated_units, recording.other_headers
         parts = [without_unit(name.lstrip("%# ")) for name in self.names]
         self.bare, self.units = [bare for bare, _ in parts], [unit for _, unit in parts]
 
@@ -130,11 +158,12 @@ class Names:
         the name."""
         if not name:
             return None
-        for names in (self.names, self.bare):
-            if names.count(name) > 1:
+        # The header may have a unit instead of a name; see without_unit().
+        for names, text in ((self.names, name), (self.bare, name), (self.names, f"[{name}]")):
+            if names.count(text) > 1:
                 self.fail(quantity, f"two columns are named {quoted(name)}: give its number")
-            if name in names:
-                return names.index(name)
+            if text in names:
+                return names.index(text)
         return None
 
     def find(self, quantity, words, endings=("_x", ".x")):
@@ -155,6 +184,9 @@ class Names:
         near = nearest(word, known_names)
         if len(known_names) == 1 and word in known_names[0]:
             near = "; allowed between columns: commas, semicolons, tabs or blanks"
+        for line, others in self._other_headers:
+            if word in others:
+                near = f"; line {line} has this name, but another line is the header: give a number"
         self.fail(quantity, f"got {quoted(word)}{near}")
 
     def indices(self, names):
@@ -228,10 +260,13 @@ def scale_of(names, quantity, columns, given, notes):
     unit in the column names, or 1 without a known unit."""
     unit = names.unit(quantity, columns)
     known = UNITS[quantity]
-    factor = None if unit is None else known.get(unit.text, known.get(unit.text.lower()))
+    found = None if unit is None else unit_in(quantity, unit.text)
+    factor = None if found is None else known[found]
     title = names.title(columns[0]) if columns else ""
     if unit and factor is None and given is None:
         problem = f"column {title}: the unit {quoted(unit.text)} is unknown"
+        if unit.text[:1] == "M" and unit.text.lower() in known:
+            problem += f" (it begins with mega; {unit.text.lower()} begins with milli)"
         if unit.is_sure:
             names.fail(
                 quantity, f"{problem}: give the unit with --scale {quantity}=..., in {SI[quantity]}"
@@ -241,20 +276,47 @@ def scale_of(names, quantity, columns, given, notes):
         notes.append(
             f"column {title} says {unit.text}, a scale of {factor:g}; --scale {quantity}={given:g} was used"
         )
-    if unit is None and given is None and quantity == "position":
-        notes += unclear_endings(names, columns)
+    if unit is None and given is None:
+        notes += unclear_units(names, quantity, columns)
     return given if given is not None else factor if factor is not None else 1.0
 
 
-def unclear_endings(names, columns):
-    """Returns a list with a note about the first column name with an ending that may be a unit or another abbreviation:
-    x_cm may be in centimetres, or the x of a centre of mass. The list is empty if no name has such an ending.
+def unclear_units(names, quantity, columns):
+    """Returns a list with at most one note about a unit that the columns of a quantity may have. The name of a column
+    may contain the unit, or a comment of the file may state it. The values are read in the SI unit.
     """
     for column in columns:
-        ending = names.names[column].rpartition("_")[2]
-        if ending in _UNCLEAR_ENDINGS and names.names[column] != ending:
-            factor = UNITS["position"][ending]
+        unit = unclear_unit(quantity, names.names[column])
+        if unit:
+            factor = UNITS[quantity].get(unit, UNITS[quantity].get(unit.lower()))
+            factors = (
+                f"{factor:g}" if unit_in(quantity, unit) else f"1e6 (mega) or {factor:g} (milli)"
+            )
             return [
-                f"column {names.title(column)} is read as m; if its name says {ending}, --scale position={factor:g}"
+                f"column {names.title(column)} is read as {SI[quantity]}; if its name says {unit}, "
+                f"--scale {quantity}={factors}"
+            ]
+    for line, unit in names.stated_units if columns else ():
+        if UNITS[quantity].get(unit, 1.0) != 1.0:
+            return [
+                f"line {line} states the unit {unit}, but column {names.title(columns[0])} is read as {SI[quantity]}; "
+                f"if {unit} is its unit, --scale {quantity}={UNITS[quantity][unit]:g}"
             ]
     return []
+
+
+def unclear_unit(quantity, name):
+    """Returns a unit that the name of a column may contain, or None. The unit is not an SI unit, and the name may have
+    another meaning: x_cm may be in centimetres, or the x of a centre of mass."""
+    known = {unit for unit, factor in UNITS[quantity].items() if factor != 1.0}
+    words = [word for word in _BETWEEN_WORDS.split(name) if word]
+    for at, word in enumerate(words if len(words) > 1 else ()):
+        # The preposition "in" is a unit only at the end of a name.
+        if (word in known or word.lower() in known) and (word != "in" or at == len(words) - 1):
+            return word
+    for end in range(1, len(name) - 1) if quantity in _HEADS else ():
+        unit = name[end:]
+        is_unit = (unit in known or unit.lower() in known) and unit.lower() != "in"
+        if is_unit and _HEADS[quantity].fullmatch(name[:end]):
+            return unit
+    return None

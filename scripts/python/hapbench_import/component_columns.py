@@ -1,4 +1,6 @@
 """Finds the columns of each quantity and of its components in a recording. The options name the columns."""
+import re
+
 from .columns import NAMED_AS, Names, scale_of
 from .options import ORIENTATIONS
 
@@ -14,6 +16,56 @@ LETTERS = {
 }
 # Components of all representations of an orientation, named as in --columns.
 PARTS = list(dict.fromkeys(sum(ORIENTATIONS.values(), ())))
+
+
+# Usual names of the w component of the tool's quaternion, in lower case and without other characters than letters.
+USUAL_W = ("qw", "quatw", "quaternionw", "orientationw", "poseorientationw", "posequaternionw")
+# Names that state an orientation in a kind other than a quaternion, by their first column.
+OTHER_ORIENTATIONS = {
+    "axis": ("axis_x", "axis_y", "axis_z"),
+    "matrix": ORIENTATIONS["matrix"],
+    "Euler angles": ("roll", "pitch", "yaw"),
+}
+
+
+def add_usual_orientation(recording, options):
+    """Adds the columns of a quaternion with usual names to options.columns, if the options neither name an orientation
+    nor exclude it. Adds a note to the recording about this quaternion, or about columns of an orientation that are
+    not read."""
+    if options.orientation is not None or {"orientation", *PARTS} & set(options.columns):
+        return
+    names = Names(recording)
+    found = [
+        (re.sub(r"[^a-z]", "", name.lower()) in USUAL_W, column)
+        for column, name in enumerate(names.bare)
+        if re.search(r"(?i)(^|[^a-z])(q|quat|quaternion|orientation|rotation)[^a-z]*w$", name)
+        and names.components(column, ("w", "x", "y", "z"), numbers=False)
+    ]
+    usual = [column for is_usual, column in found if is_usual]
+    if len(usual) == 1:
+        options.columns["orientation"] = [str(names.names[usual[0]])]
+        quaternion = names.components(usual[0], ("w", "x", "y", "z"), numbers=False)
+        recording.notes.append(
+            "the orientation is read from the columns "
+            f"{', '.join(map(names.title, quaternion))}, by their names (--orientation none: the tool does not rotate)"
+        )
+        return
+    unread = [(names.title(column), names.names[column]) for _, column in found] + [
+        (", ".join(of), names.names[names.bare.index(of[0])])
+        for of in OTHER_ORIENTATIONS.values()
+        if names.indices(of)
+    ]
+    if unread:
+        title, name = unread[0]
+        how = (
+            "convert Euler angles into a quaternion"
+            if name == "roll"
+            else f"--columns orientation={name} reads it"
+        )
+        recording.notes.append(
+            f"the file has an orientation, {title}, that was not named, so the tool does not rotate ({how}; "
+            "--orientation none omits this warning)"
+        )
 
 
 def one_axis(group):

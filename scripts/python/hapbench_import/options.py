@@ -5,7 +5,16 @@ import sys
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from hapbench_command import Faults, fail, finite_number, plain, quoted, require_name, shown
+from hapbench_command import (
+    Faults,
+    fail,
+    finite_number,
+    plain,
+    quoted,
+    require_name,
+    shown,
+    unique_keys,
+)
 
 PRESETS = Path(__file__).resolve().parents[3] / "scenarios" / "library" / "presets"
 DECIMALS = ("auto", "comma", "point")
@@ -144,13 +153,15 @@ def _read_preset(file):
     """Returns the JSON object of a preset's file. Its fields are options. Users copy and modify such files."""
     try:
         with open(file, encoding="utf-8-sig") as stream:
-            preset = json.load(stream)
+            preset = json.load(stream, object_pairs_hook=unique_keys)
     except OSError as error:
         fail(f"cannot be read: {error.strerror}", file)
     except json.JSONDecodeError as error:
         fail(f"is not JSON: syntax error at line {error.lineno}, column {error.colno}", file)
     except (ValueError, RecursionError):
         fail("is not JSON in UTF-8", file)
+    except Faults as faults:
+        fail(faults.list[0][1], file)
     if not isinstance(preset, dict):
         fail(f"a preset: got {shown(preset)}; allowed: an object", file)
     return preset
@@ -182,7 +193,7 @@ def _assignments(option, words):
 def _value(word):
     """Parses a value of --set: JSON, or a list of numbers and words separated by commas."""
     try:
-        return json.loads(word)
+        return json.loads(word, object_pairs_hook=unique_keys)
     except ValueError:
         return [_value(part) for part in word.split(",")] if "," in word else word
 
@@ -212,6 +223,10 @@ def _is_number(value):
         and not isinstance(value, bool)
         and abs(value) <= sys.float_info.max
     )
+
+
+def _is_positive(value):
+    return _is_number(value) and value > 0
 
 
 def _is_column(value):
@@ -306,8 +321,8 @@ _FIELDS = {
     "shift": ("three numbers", _is_vector, _vector),
     "decimal": ("a text", lambda v: isinstance(v, str), _named("decimal", DECIMALS)),
     "held_rows": ("a text", lambda v: isinstance(v, str), _named("held_rows", ("thin", "keep"))),
-    "max_speed": ("a number", _is_number, lambda _, v: float(v)),
-    "max_gap": ("a number", _is_number, lambda _, v: float(v)),
+    "max_speed": ("a number > 0", _is_positive, lambda _, v: float(v)),
+    "max_gap": ("a number > 0", _is_positive, lambda _, v: float(v)),
     "frame": (
         "a list of texts",
         lambda v: isinstance(v, list) and all(isinstance(one, str) for one in v),

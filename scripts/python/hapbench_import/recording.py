@@ -28,6 +28,7 @@ HAPI_FIELDS = {
 }
 _NUMERIC = b"0123456789eE.+-\n"
 CHUNK = 1 << 24  # number of bytes read at once
+DAY = 86_400_000_000_000  # [ns]
 EXACT = 2.0**53  # integers up to this value are exact in a double
 
 
@@ -40,6 +41,8 @@ class Recording:
     def __init__(self, file, names, rows, row_numbers, row_word="line", notes=(), decimal="auto"):
         self.file, self.names, self.rows, self.row_numbers = file, names, rows, row_numbers
         self.row_word, self.notes, self._decimal = row_word, list(notes), decimal
+        # Table.stated_units and Table.other_headers of a text
+        self.stated_units, self.other_headers = [], []
         self.is_binary = isinstance(rows, np.ndarray)
         # True if no note about decimal commas is needed, because the user has chosen them or the note already exists.
         self._is_comma_noted = decimal == "comma"
@@ -121,6 +124,7 @@ class Recording:
                     self.file,
                 )
             if known:
+                nanoseconds = self._past_midnight(nanoseconds)
                 self._note_times_of_day(column, nanoseconds.index(known[0]))
                 return 0, np.array(
                     [math.nan if n is None else 1e-9 * (n - known[0]) for n in nanoseconds]
@@ -135,6 +139,23 @@ class Recording:
         return origin, np.array(
             [float(int(cell) - origin) if ok else math.nan for cell, ok in zip(cells, whole)]
         )
+
+    def _past_midnight(self, times):
+        """Returns times of day [ns] that increase over midnight. A time without a date that is a day earlier than the
+        time before it, except for at most an hour, is after midnight. `times`: None in a row without a time.
+        """
+        found, days, before = [], 0, None
+        for row, time in enumerate(times):
+            if time is not None and before is not None and 0 < time - before + DAY < DAY // 24:
+                days += 1
+                self.notes.append(
+                    f"{self.row_word} {self.row_numbers[row]}: the clock passes midnight; the times after it are of "
+                    "the next day"
+                )
+            if time is not None and abs(time) < 2 * DAY:  # times with a date are larger
+                before = time
+            found.append(None if time is None else time + days * DAY)
+        return found
 
     def _cells(self, column):
         cells = [row[column] if len(row) > column else b"" for row in self.rows]
@@ -222,7 +243,9 @@ def open_recording(file, options):
         if options.format == "hapi"
         else read_table(data, file, options.format == "traj")
     )
-    return Recording(file, table.names, table.rows, table.lines, "line", table.notes, decimal)
+    found = Recording(file, table.names, table.rows, table.lines, "line", table.notes, decimal)
+    found.stated_units, found.other_headers = table.stated_units, table.other_headers
+    return found
 
 
 def _content(file):

@@ -9,13 +9,14 @@ from hapbench_command import MAX_FAULTS, Faults, fail
 
 from .clock import likely_unit
 from .columns import scale_text
+from .component_columns import add_usual_orientation
 from .samples import DOWN, Samples, read_samples
 
 STIFFNESS = 20000.0  # default of rendering.stiffness_N_per_m [N/m]
 MAX_SAMPLES = 1e7
 LONG_INTERVALS = 10.0  # duration in median intervals above which an interval is a gap
 USUAL_RATES = (1.0, 1e5)  # usual rates of recordings [Hz]
-LONGEST, SHORTEST = 3.0, 1e-5  # largest and smallest plausible length of a hand's stroke [m]
+LONGEST, SHORTEST = 1.0, 1e-5  # largest and smallest plausible length of a hand's stroke [m]
 FASTEST = 5.0  # largest plausible speed of a hand [m/s]
 # Plausible numbers of days in the time column of a recording whose times are dates: the years 1982 to 2091 as
 # days since 1900, and the same years as days since the year 0.
@@ -26,6 +27,7 @@ MAX_NOT_READ = 12  # largest number of unread columns that the table names
 
 def import_stroke(recording, options):
     """Returns (Stroke that a scenario can replay, properties of the recording for the JSON)."""
+    add_usual_orientation(recording, options)
     read = read_samples(recording, options)
     clock, is_regular = clock_of(read.samples.time)
     gaps = gaps_in(read, clock["interval_s"]["median"], options.max_gap)
@@ -429,7 +431,7 @@ def _warnings(read, gaps, found):
     if not SHORTEST <= extent <= LONGEST:
         warnings.append(
             f"the tip's positions span {extent:.4g} m, which is unusual for a hand: is the scale right? "
-            "(--scale position=0.001 is for millimetres)"
+            "(--scale position=0.001 is for millimetres, position=0.01 for centimetres)"
         )
     warnings += _clock_warnings(found)
     if found["tip_direction"][2] > 0.5:

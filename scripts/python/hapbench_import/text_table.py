@@ -9,10 +9,18 @@ from dataclasses import dataclass, field
 
 from hapbench_command import fail, finite_number, quoted
 
-from .columns import UNITS
+from .header_units import (
+    are_distinct,
+    names_and_units,
+    stated_units,
+    units_of,
+    with_commented_units,
+    with_units,
+)
 
 MAX_COLUMNS = 1000
 MAX_ABOVE = 40  # largest number of lines above the header of a file
+MAX_LINES_OF_CELL = 50  # largest number of lines of a quoted cell
 MAX_HEADERS = 8  # largest number of lines of a header
 SAMPLED = 20  # number of lines in each sample from which the separator is determined
 SEPARATORS = (b",", b";", b"\t", None)  # None stands for blanks
@@ -39,6 +47,10 @@ PACKED = {
 }
 UNPACKED = "a text, such as CSV (unpack or export the file)"
 ENDINGS = {b"\0": "zero", b"\x1a": "Ctrl-Z, which ends a text on old systems"}
+# Start and end of a quoted cell with line breaks.
+_OPENING = re.compile(rb'(^|[,;\t ])\s*"[^"]*$')
+_CLOSING = re.compile(rb'^[^"]*"\s*([,;\t ]|$)')
+_OF_UNITS = re.compile(rb"^\s*[Uu]nits?\s*[:=]\s*")  # words in front of units in a comment
 _QUOTED_OR_PLAIN = re.compile(rb'"([^"]*)"|(\S+)')
 _NOT_A_NUMBER = re.compile(rb"[+-]?(nan|inf|infinity)", re.IGNORECASE)
 
@@ -51,6 +63,10 @@ class Table:
     separator: bytes | None
     # Texts about skipped or repaired parts of the file; each kind is mentioned once.
     notes: list = field(default_factory=list)
+    # Units in comments that do not state which columns have them: (line number, unit).
+    stated_units: list = field(default_factory=list)
+    # Comments that could also be the header: (line number, names).
+    other_headers: list = field(default_factory=list)
 
 
 def read_table(data, file, by_blanks=False, names_of=None):
@@ -59,7 +75,7 @@ def read_table(data, file, by_blanks=False, names_of=None):
     as the rows. `names_of`: function that makes the names from the words of the first line, which is then always the
     header; None if there is no such function."""
     notes = []
-    lines, comments = _lines(_utf8(data, file, notes))
+    lines, comments = _lines(_utf8(data, file, notes), notes)
     if not lines:
         fail("no samples; allowed: a line for each", file)
     separator = None if by_blanks else _separator([line for _, line in _sample(lines)])
@@ -73,10 +89,21 @@ def read_table(data, file, by_blanks=False, names_of=None):
         names, lines = names_of(words), lines[1:]
     else:
         names, number, lines = _names_in_header(lines, separator, notes)
-    header_line = number if names else None
-    if not names:
-        header_line, names = _commented_header(comments, number, len(words), separator)
-    ignored = [at for at, _ in comments if at != header_line]
+    first_row = lines[0][0] if lines else number + 1
+    above = [one for one in comments if one[0] < first_row] if names_of is None else []
+    used, headers = [], _commented_headers(above, len(words), separator)
+    if not names or units_of(names):
+        names, used = names_and_units(([(number, names)] if names else []) + headers, notes)
+    else:
+        names, used = with_commented_units(names, headers, notes)
+    if (
+        len(lines) > 1
+        and names
+        and _are_column_numbers([split(line, separator) for _, line in lines[:4]])
+    ):
+        notes.append(f"line {lines[0][0]} has the numbers of the columns and was skipped")
+        lines = lines[1:]
+    ignored = [at for at, _ in comments if at not in used]
     if ignored:
         notes.append(
             f"{counted(len(ignored), 'comment line')} skipped, the first: line {ignored[0]}"
@@ -87,6 +114,8 @@ def read_table(data, file, by_blanks=False, names_of=None):
         [number for number, _ in lines],
         separator,
         notes,
+        [one for one in stated_units(above) if one[0] not in used],
+        [one for one in headers if one[0] not in used],
     )
     _drop_trailing_separators(table)
     _refuse_decimal_commas_between_commas(table, file)
@@ -154,20 +183,53 @@ def _wide_encoding(data):
     return None
 
 
-def _lines(data):
+def _lines(data, notes):
     """Returns two lists of (number, line): the lines of data, and the comments, which begin with # or %. Blank lines
-    are skipped. A line ends with LF, CR LF or CR."""
+    are skipped. A line ends with LF, CR LF or CR. A line break in a quoted cell does not end a line.
+    """
     raw = data.split(b"\n")
     if any(b"\r" in line.rstrip(b"\r") for line in raw):
         raw = data.replace(b"\r\n", b"\n").replace(b"\r", b"\n").split(b"\n")
+    numbered = enumerate(raw, 1)
+    if b'"' in data:
+        numbered = _with_whole_cells(list(numbered), notes)
     lines, comments = [], []
-    for number, line in enumerate(raw, 1):
+    for number, line in numbered:
         # A tab at the end of a line may separate an empty cell.
         bare = line.strip(_BLANK)
         if bare.strip(b',;\t "'):  # a line with only empty cells counts as blank
             kept = line.strip(b" \r") if b"\t" in line else bare
             (comments if bare[0] in b"#%" else lines).append((number, kept))
     return lines, comments
+
+
+def _with_whole_cells(lines, notes):
+    """Returns `lines`, a list of (number, line), in which the lines of a quoted cell with line breaks are joined by
+    blanks. The joined line has the number of the first line."""
+    found, at, joined = [], 0, []
+    while at < len(lines):
+        number, line = lines[at]
+        last = at
+        if line.count(b'"') % 2 and _OPENING.search(line):
+            closing = (
+                i
+                for i in range(at + 1, min(at + MAX_LINES_OF_CELL, len(lines)))
+                if b'"' in lines[i][1]
+            )
+            last = next(closing, at)
+            is_end = lines[last][1].count(b'"') % 2 and _CLOSING.search(lines[last][1])
+            if last > at and is_end:
+                line = b" ".join(part.strip(b"\r") for _, part in lines[at : last + 1])
+                joined.append(number)
+            else:
+                last = at
+        found.append((number, line))
+        at = last + 1
+    if joined:
+        notes.append(
+            f"{counted(len(joined), 'quoted cell')} with a line break read as one cell, the first: line {joined[0]}"
+        )
+    return found
 
 
 def split(line, separator):
@@ -279,11 +341,11 @@ def _names_in_header(lines, separator, notes):
     if len(lines) <= len(block) or not is_row(split(lines[len(block)][1], separator)):
         block = block[:1]
     numbers, below = [number for number, _ in lines[: len(block)]], lines[len(block) :]
-    units = _units_of([word.encode("utf-8", "surrogateescape") for word in block[-1]])
+    units = units_of(block[-1])
     if len(block) > 1 and units:
         notes.append(f"line {numbers[len(block) - 1]} has the units of the columns")
         block.pop()
-    elif len(block) == 2 and not _are_distinct(block[1]) and _are_distinct(block[0]):
+    elif len(block) == 2 and not are_distinct(block[1]) and are_distinct(block[0]):
         # The second line has repeated words and the first line has not. The second line therefore has units, even if a
         # unit is unknown. scale_of() reports an unknown unit when its column is read.
         units = block.pop()
@@ -292,7 +354,7 @@ def _names_in_header(lines, separator, notes):
         units = []
     names = block[-1]
     if len(block) > 1:
-        if not _are_distinct(names):
+        if not are_distinct(names):
             names = [".".join(filter(None, parts)) for parts in zip(*block)]
         lines_of = f"lines {numbers[0]} ... {numbers[len(block) - 1]}"
         notes.append(
@@ -300,39 +362,33 @@ def _names_in_header(lines, separator, notes):
             if names is block[-1]
             else f"{lines_of} are the header: the names of columns join them, as in {quoted(names[-1])}"
         )
-    if units:
-        names = [f"{name} [{unit}]" if unit else name for name, unit in zip(names, units)]
-    return names, numbers[len(block) - 1], below
+    return with_units(names, units), numbers[len(block) - 1], below
 
 
-def _are_distinct(names):
-    """Returns True if no name occurs twice. Several columns may have an empty name."""
-    named = [name for name in names if name]
-    return len(set(named)) == len(named)
-
-
-def _units_of(words):
-    """Returns the units in a line of the header if the line has only units; "" for a column without a unit. Returns an
-    empty list if a word is not a unit, or if no column has a unit."""
-    words = [word.decode("utf-8", "replace").strip("[]()") for word in words]
-    is_unit = [
-        word in ("", "-") or any(word in known for known in UNITS.values()) for word in words
-    ]
-    if not all(is_unit) or not any(word not in ("", "-") for word in words):
-        return []
-    return ["" if word == "-" else word for word in words]
-
-
-def _commented_header(comments, before, count, separator):
-    """Returns (line number, names) of a commented header, such as "% time,x,y,z", above the line number `before`.
-    Returns (None, []) if there is none with `count` names."""
+def _commented_headers(comments, count, separator):
+    """Returns (line number, words) of each comment that can be a line of the header, such as "% time,x,y,z", the last
+    comment first. The comment has `count` words. A word in front of units, as in "# units: s,mm", is not a cell.
+    """
+    found = []
     for number, comment in reversed(comments):
-        text = comment.lstrip(b"#% \t")
+        text = _OF_UNITS.sub(b"", comment.lstrip(b"#% \t"))
         # A comment often has blanks between its names, even if the numbers have another separator.
         for words in (split(text, separator), split(text, None)):
-            if number < before and len(words) == count and (names := _header(words)):
-                return number, names
-    return None, []
+            if len(words) == count and (names := _header(words)):
+                found.append((number, names))
+                break
+    return found
+
+
+def _are_column_numbers(rows):
+    """Returns True if the first of `rows` has the numbers of the columns, counted from 0 or 1. The values of the next
+    rows then have decimals."""
+    first, *others = rows
+    return (
+        len(first) > 2
+        and first in ([b"%d" % (i + start) for i in range(len(first))] for start in (0, 1))
+        and all(any(b"." in cell or b"," in cell for cell in row) for row in others)
+    )
 
 
 def _drop_trailing_separators(table):

@@ -4,7 +4,7 @@ from itertools import cycle
 
 import numpy as np
 
-from hapbench.columns import numbers
+from hapbench.columns import number_in, numbers
 from hapbench.errors import InputError
 from hapbench_looks import SERIES
 from hapbench_report.markup import column
@@ -33,7 +33,8 @@ def draw_converge(files, sheet=SHEET):
             numbers(rows, "error_estimate") / np.abs(numbers(rows, "result")[-1]),
             verdict["observed_order"],
         )
-        label = f"{column(verdict['metric'])[0]}, {f'order {float(order):.2f}' if order else 'no order'}"
+        known = f"order {number_in(verdict, 'observed_order'):.2f}" if order else "no order"
+        label = f"{column(verdict['metric'])[0]}, {known}"
         series.append(
             (
                 label,
@@ -56,7 +57,7 @@ def draw_converge(files, sheet=SHEET):
         (h, error) for (_, h, error, _), verdict in zip(series, orders) if verdict["observed_order"]
     ]
     if ordered:
-        (h, error), formal = ordered[0], float(orders[0]["formal_order"])
+        (h, error), formal = ordered[0], number_in(orders[0], "formal_order")
         at = np.nanargmax(error)
         series.append(
             (

@@ -5,7 +5,7 @@ import numpy as np
 from matplotlib.lines import Line2D
 from matplotlib.transforms import ScaledTranslation
 
-from hapbench.columns import numbers
+from hapbench.columns import number_in, numbers
 from hapbench_looks import SERIES, law_name
 from hapbench_style import BLACK, GREY, PUBLISHED_LINE, legend_above, legend_height
 
@@ -85,7 +85,7 @@ def simulated_kinds(rows):
 def published(rows):
     """Returns the published limit [N/m] by device. Devices without a published limit are left out."""
     return {
-        device_of(row): float(row["published_N_per_m"])
+        device_of(row): number_in(row, "published_N_per_m")
         for row in rows
         if row.get("published_N_per_m")
     }

@@ -3,16 +3,18 @@ the fields in which the runs differ, and formats the names of fields for legends
 import json
 import os
 import re
+from collections import Counter
 from pathlib import Path
 
 from hapbench.columns import read_records
 from hapbench.errors import InputError
-from hapbench_command import nearest
+from hapbench_command import nearest, print_warning
 from hapbench_looks import distinguish, law_name
+from hapbench_report.completeness import gaps_of
 from hapbench_report.markup import column
 from hapbench_report.runs import load_run, load_runs
 
-SUMMARY, SWEEP = "summary.json", "sweep.csv"
+SUMMARY, SWEEP, COMPARISON = "summary.json", "sweep.csv", "comparison.csv"
 # Matches the name of a repetition's folder in a comparison with --seeds.
 SEED_FOLDER = re.compile(r"seed_(\d+)")
 # Titles of fields whose names are too short to be clear, and symbols of fields in formulas.
@@ -43,9 +45,10 @@ def given_sweep(words):
     return given_alone(words, [SWEEP], "is a sweep")
 
 
-def given_runs(words):
+def given_runs(words, with_contacts=False):
     """Returns the runs in the order of the arguments, each folder once. A folder of a comparison stands for the runs
-    that its table names."""
+    that its table names. Prints a warning for each table that lacks rows, and keeps the warnings in Run.gaps.
+    `with_contacts`: true to check contacts.csv as well."""
     found = {}
     for word in words:
         folder = Path(word)
@@ -57,29 +60,66 @@ def given_runs(words):
                 '"compare" or "sweep" '
                 f"wrote{nearest(folder.name, [beside.name for beside in folder.parent.glob('*/')])}"
             )
-        runs = [load_run(folder, folder.name)] if (folder / SUMMARY).is_file() else compared(folder)
+        runs, lacks = (
+            ([load_run(folder, folder.name)], [])
+            if (folder / SUMMARY).is_file()
+            else compared(folder)
+        )
+        if lacks and not runs:
+            raise InputError(lacks[0])
         if not runs:
             raise InputError(
                 f"{folder}: holds neither {SUMMARY} nor folders with one nor {SWEEP}; allowed: a folder that "
                 '"hapbench run", "compare" or "sweep" wrote (the folder of a replay: only for "hapbench plot")'
             )
+        runs[0].gaps = lacks
         for run in runs:
             found.setdefault(os.path.realpath(run.folder), run)
+    for run in found.values():
+        run.gaps = [*run.gaps, *gaps_of(run, with_contacts)]
+        for text in run.gaps:
+            print_warning(text)
     distinguish(run.algorithm for run in found.values())
     return list(found.values())
 
 
 def compared(folder):
-    """Returns the runs below a folder of a comparison. Runs that an earlier comparison left in the folder are
-    skipped."""
-    table = folder / "comparison.csv"
-    runs = load_runs(folder)
-    if not table.is_file():
-        return runs
-    named = [row.get("algorithm") for row in read_records(table)]
-    return sorted(
-        (run for run in runs if run.algorithm in named), key=lambda run: named.index(run.algorithm)
+    """Returns (runs below a folder of a comparison, texts about runs that are missing). Runs that the comparison's table
+    does not name are skipped."""
+    runs, tables = load_runs(folder), [folder / COMPARISON]
+    if not tables[0].is_file():
+        tables = sorted(folder.glob(f"*/{COMPARISON}"))
+        return runs, [
+            text for table in tables for text in lacking(table, read_records(table), runs)
+        ]
+    rows = read_records(tables[0])
+    if not rows:
+        raise InputError(f"{tables[0]}: line 2: missing; allowed: a row for each run")
+    named = list(dict.fromkeys(row["algorithm"] for row in rows))
+    return (
+        sorted(
+            (run for run in runs if run.algorithm in named),
+            key=lambda run: named.index(run.algorithm),
+        ),
+        lacking(tables[0], rows, runs),
     )
+
+
+def lacking(table, rows, runs):
+    """Returns texts about the laws of which a comparison's table or the folders beside it lack runs. `rows`: rows of the
+    table. `runs`: runs of the folders."""
+    beside = Counter(run.algorithm for run in runs if table.parent in run.folder.parents)
+    named = Counter(row["algorithm"] for row in rows)
+    found = []
+    for law in {**named, **beside}:
+        if named[law] > beside[law]:
+            runs_of = f"{named[law] - beside[law]} of {named[law]} runs of {law}"
+            found.append(f"{table}: {runs_of} missing: no {SUMMARY} below {table.parent / law}")
+        elif not named[law]:
+            found.append(
+                f"{table}: no row of {law}; the runs of {law} in this folder are not drawn"
+            )
+    return found
 
 
 def labels(runs):

@@ -6,7 +6,8 @@ import numpy as np
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from hapbench.columns import is_number, numbers
+from hapbench.columns import is_number, number_in, numbers
+from hapbench.errors import InputError
 from hapbench_looks import by_class, distinguish, law_name, look_of_class
 from hapbench_style import BLACK, PAGE, PETROL, PLUM, SHEET, legend_above, legend_height
 
@@ -51,6 +52,12 @@ class Limits:
     def __init__(self, files, folder):
         self.rows, self.runs = (files.records(f"{folder}{name}") for name in (LIMIT, LIMIT_RUNS))
         self.field, given = self.rows[0]["field"], list(self.rows[0])
+        for row in self.rows:
+            if row["field"] not in self.runs[0]:
+                raise InputError(
+                    f"{self.runs[0].file}: line 1: no column {row['field']}, which line {row.line} of {LIMIT} names; "
+                    "one of the files is not a table that hapbench wrote"
+                )
         self.over = [
             name for name in given[: given.index("algorithm")] if name not in ("scenario", "device")
         ]
@@ -183,7 +190,7 @@ def draw_strip(found, sheet):
             name,
             *zip(
                 *(
-                    (float(row[found.field]), names.index(row["algorithm"]))
+                    (number_in(row, found.field), names.index(row["algorithm"]))
                     for row in found.runs
                     if row["class"] == name
                 )

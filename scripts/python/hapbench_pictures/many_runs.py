@@ -61,7 +61,12 @@ def many_sections(scenes, runs, words):
     found = (
         ("summary", "Summary", "Summary", summary(scenes, runs)),
         ("seeds", "Differences", "Differences between laws, over the seeds", seeds_section(scenes)),
-        ("warnings", "Warnings", "Warnings", grouped(scenes, lambda run: map(text, run.warnings))),
+        (
+            "warnings",
+            "Warnings",
+            "Warnings",
+            grouped(scenes, lambda run: map(text, [*run.gaps, *run.warnings])),
+        ),
         ("diagnosis", "Diagnosis", "Problems found, and what to try", grouped(scenes, diagnosed)),
         (
             "replay",

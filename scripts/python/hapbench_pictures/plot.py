@@ -5,7 +5,7 @@ from pathlib import Path
 
 from hapbench.columns import is_number
 from hapbench.errors import InputError
-from hapbench_command import write
+from hapbench_command import print_warning, write
 from hapbench_style import DPI, SHEETS, picture
 
 from .given import common_folder, given_alone, given_runs, given_sweep
@@ -124,6 +124,8 @@ def of_sweep(folder, options, sheet):
             f"--metric: got {','.join(options.metric)}; allowed for a sweep: one column of sweep.csv"
         )
     sweep = Sweep(folder, next(iter(options.metric), None), options.where)
+    if sweep.gap:
+        print_warning(sweep.gap)
     if not options.quiet:
         print("".join(f"{line}\n" for line in sensitivity_table(sweep)), end="")
     return draw_sweep(sweep, sheet)

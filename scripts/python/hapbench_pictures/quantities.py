@@ -8,9 +8,10 @@ import numpy as np
 
 from hapbench.columns import header, read_columns
 from hapbench.errors import InputError
+from hapbench.results import at
 from hapbench_command import SCHEMA, nearest
 from hapbench_report.markup import column
-from hapbench_report.recording import settled_rows
+from hapbench_report.recording import REQUIRED, settled_rows
 
 from .ranking_values import failed
 
@@ -156,11 +157,14 @@ class Samples:
             wanted.setdefault(q.file, {"time_s"}).update(q.columns)
         present, self.failed = tables_of(run), failed(run)
         if TRAJECTORY not in present:
+            was_there = at(run.scenario, "/record/trajectory") is True and not run.trials
             raise InputError(
-                f"{run.folder}: has no {TRAJECTORY}; run it with --set {switch_of(TRAJECTORY)}=true"
+                f"{run.folder}: has no {TRAJECTORY}; "
+                + ("the file was removed: repeat the run" if was_there else "run it with ")
+                + ("" if was_there else f"--set {switch_of(TRAJECTORY)}=true")
             )
         tables = {
-            file: read_columns(run.folder / file, sorted(columns))
+            file: finite_columns(run.folder / file, sorted(columns))
             for file, columns in wanted.items()
             if file in present
         }
@@ -191,6 +195,15 @@ class Samples:
         """Returns (times, lower bounds, upper bounds) of a quantity; None if this run did not record it."""
         table = self.tables.get(q.file, {})
         return (table["time_s"], *q.of(table)) if set(q.columns) <= set(table) else None
+
+
+def finite_columns(file, names):
+    """Returns the columns of a table. Infinite numbers become NaN, which is not drawn. Raises InputError if a number of
+    the columns REQUIRED is missing or not finite."""
+    columns = read_columns(
+        file, names, required=REQUIRED if file.name == TRAJECTORY else ["time_s"]
+    )
+    return {name: np.where(np.isfinite(of), of, np.nan) for name, of in columns.items()}
 
 
 def settled_range(curves):

@@ -2,11 +2,15 @@
 rendered force or the set position), the late calls, and the difference of two logs. A haptic loop or
 `hapbench run --replay` writes a log."""
 import json
+from contextlib import suppress
+from io import BytesIO
 from pathlib import Path
 
 import numpy as np
 
+from hapbench.columns import CUT_LINE, ENCODING, is_finite_number, text_of
 from hapbench.errors import InputError
+from hapbench.results import number_or_none
 from hapbench_looks import SERIES
 from hapbench_style import GREY, SETTINGS, curve, legend_above, legend_height, plt
 
@@ -44,8 +48,13 @@ def log_of(path):
         )
     if not file.is_file():
         return None
-    with file.open(encoding="utf-8", errors="replace") as lines:
-        return file if lines.readline().startswith(HEADER) else None
+    with file.open(encoding=ENCODING, errors="replace") as lines:
+        is_log = lines.readline().startswith(HEADER)
+    if path.is_dir() and not is_log:
+        raise InputError(
+            f'{file}: line 1: does not begin with "{HEADER}"; allowed: a log of a loop'
+        )
+    return file if is_log else None
 
 
 class Log:
@@ -53,12 +62,9 @@ class Log:
     device, and True if the call is late or the previous call is missing."""
 
     def __init__(self, file):
-        with file.open(encoding="utf-8") as lines:
-            about = json.loads(lines.readline().removeprefix(HEADER))
-            names = lines.readline().strip().split(",")
-            self.columns, self.title, factor = MODES[about["mode"]]
-            wanted = [names.index(name) for name in ("call", "time_ns", *self.columns)]
-            rows = np.loadtxt(lines, delimiter=",", usecols=wanted, ndmin=2)
+        about, names, rows = log_text(file)
+        self.columns, self.title, factor = MODES[about["mode"]]
+        rows = log_numbers(file, names, rows, ("call", "time_ns", *self.columns))
         if not len(rows):
             raise InputError(f"{file}: holds no call")
         self.name = f"{about['scenario']}, {'replay' if file.name == REPLAY else file.stem}"
@@ -67,6 +73,55 @@ class Log:
         self.late = np.append(
             False, (np.diff(self.time) > LATE * self.period) | (np.diff(self.call) > 1)
         )
+
+
+def log_text(file):
+    """Returns (object of the first line, names of the columns, bytes of the rows) of a log."""
+    data = file.read_bytes()
+    first, _, rest = data.partition(b"\n")
+    second, _, rows = rest.partition(b"\n")
+    try:
+        about = json.loads(text_of(first, file).removeprefix(HEADER))
+    except ValueError as error:
+        raise InputError(f"{file}: line 1: not JSON: {error}") from error
+    if not isinstance(about, dict) or about.get("mode") not in MODES:
+        raise InputError(f"{file}: line 1: no mode; allowed: {', '.join(MODES)}")
+    period = number_or_none(about.get("period_s"))
+    if not isinstance(about.get("scenario"), str) or period is None:
+        raise InputError(f"{file}: line 1: no scenario or no period_s; allowed: a log of a loop")
+    if rows and not rows.endswith(b"\n"):
+        raise InputError(f"{file}: line {rows.count(10) + 3}: {CUT_LINE}")
+    return about, text_of(second, file, 2).strip().split(","), rows
+
+
+def log_numbers(file, names, rows, wanted):
+    """Returns the columns `wanted` of a log, one row for each line. Raises InputError for a missing column and for a
+    field that is not a finite number."""
+    absent = [name for name in wanted if name not in names]
+    if absent:
+        raise InputError(f"{file}: line 2: no column {absent[0]}; allowed: a log of a loop")
+    if not rows.strip():
+        raise InputError(f"{file}: holds no call")
+    columns = [names.index(name) for name in wanted]
+    with suppress(ValueError):
+        found = np.loadtxt(
+            BytesIO(rows), delimiter=",", usecols=columns, ndmin=2, comments=None, encoding="utf-8"
+        )
+        if np.isfinite(found).all():
+            return found
+    for line, row in enumerate(rows.splitlines(), 3):
+        fields = text_of(row, file, line).split(",")
+        if len(fields) != len(names):
+            raise InputError(
+                f"{file}: line {line}: got {len(fields)} fields; allowed: {len(names)}"
+            )
+        for name, column in zip(wanted, columns):
+            if not is_finite_number(fields[column]):
+                got = fields[column][:40] or "an empty field"
+                raise InputError(
+                    f"{file}: line {line}: {name}: got {got}; allowed: a finite number"
+                )
+    raise InputError(f"{file}: is not a log that hapbench wrote")
 
 
 def draw_logs(files, sheet):

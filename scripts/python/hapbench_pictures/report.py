@@ -51,7 +51,7 @@ def report(options):
             f'{options.runs[0]}: is a sweep; allowed: folders of runs ("hapbench plot" draws a sweep; with '
             '--keep-runs it keeps its runs, in the folder "runs")'
         )
-    runs = given_runs(options.runs)
+    runs = given_runs(options.runs, with_contacts=True)
     scenes = scenes_of(runs, map(Path, options.runs))
     page = whole_page(
         many_sections(scenes, runs, options.runs)
@@ -108,7 +108,7 @@ def sections(runs, names, words):
             "warnings",
             "Warnings",
             "Warnings",
-            texts_section(runs, names, lambda run: map(text, run.warnings)),
+            texts_section(runs, names, lambda run: map(text, [*run.gaps, *run.warnings])),
         ),
         (
             "diagnosis",

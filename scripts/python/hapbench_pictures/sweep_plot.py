@@ -9,9 +9,9 @@ from matplotlib import colors
 from matplotlib.patches import Patch, Rectangle
 from scipy.stats import spearmanr
 
-from hapbench.columns import is_number, read_records
+from hapbench.columns import is_number, number_in, read_records
 from hapbench.errors import InputError
-from hapbench.results import at, read_object
+from hapbench.results import at, objects, read_object
 from hapbench_command import nearest, output_of_program, table_text
 from hapbench_looks import by_class, look_of_class
 from hapbench_style import PETROL, SETTINGS, SHEET, legend_above, plt
@@ -43,6 +43,9 @@ class Sweep:
     def __init__(self, folder, metric, where=()):
         file = folder / "sweep.csv"
         self.name, rows = folder.name, read_records(file)
+        plan_file = folder / "sweep.json"
+        plan = read_object(plan_file) if plan_file.is_file() else {}
+        self.gap = gap_of(file, rows, plan)
         kept = runs_that_meet(folder, where) if where else None
         self.rows = [row for row in rows if kept is None or row["index"] in kept]
         if not self.rows:
@@ -50,10 +53,17 @@ class Sweep:
                 f"{file}: holds no row{' with ' + ' and '.join(where) if rows else ''}"
             )
         names = list(self.rows[0])
-        plan = read_object(folder / "sweep.json") if (folder / "sweep.json").is_file() else {}
-        self.axes = at(plan, "/vary") or [
+        if "outcome" not in names:
+            raise InputError(f"{file}: line 1: no column outcome; allowed: the table of a sweep")
+        self.axes = objects(plan, "vary", plan_file) or [
             {"path": name} for name in names[1 : names.index("outcome")]
         ]
+        for i, entry in enumerate(self.axes):
+            if not isinstance(entry.get("path"), str):
+                raise InputError(f"{plan_file}: /vary/{i}/path: missing; allowed: a field")
+            if is_numeric(entry):
+                for row in self.rows:
+                    number_in(row, entry["path"], may_be_empty=False, is_finite=True)
         self.fields, self.sampled = [entry["path"] for entry in self.axes], "sample" in plan
         self.of_file = at(plan, "/sample/method") == "points"
         metrics = [
@@ -75,12 +85,8 @@ class Sweep:
         # For each class of failed runs, True for the runs of this class. A run fails if it diverges, is not computed or
         # has an unexpected outcome. The metrics of failed runs have no meaning.
         self.classes = {name: failed & (outcomes == name) for name in by_class(outcomes[failed])}
-        self.values = np.array(
-            [
-                float(row[self.metric]) if is_number(row[self.metric]) and not bad else np.nan
-                for row, bad in zip(self.rows, failed)
-            ]
-        )
+        values = [number_in(row, self.metric, is_finite=True) for row in self.rows]
+        self.values = np.array([np.nan if bad else value for value, bad in zip(values, failed)])
 
     def column(self, field):
         """Returns the values of a field as an array of numbers if all are numbers, otherwise as a list of texts."""
@@ -141,6 +147,35 @@ class Sweep:
     def is_cloud(self):
         """Returns True if the points form no grid that a picture can show."""
         return len(self.fields) > 2 or self.sampled and len(self.fields) > 1
+
+
+def is_numeric(entry):
+    """Returns True if all values of a field are numbers. `entry`: description of the field in sweep.json."""
+    values = entry.get("values")
+    if isinstance(values, list) and values:
+        return all(is_number(str(value)) for value in values)
+    return "range" in entry
+
+
+def gap_of(file, rows, plan):
+    """Returns a text that states which rows sweep.csv lacks. The text is empty if the table is complete, or if
+    sweep.json does not state the number of runs. The program writes sweep.csv when all runs are finished. `rows`: rows
+    of the table. `plan`: content of sweep.json."""
+    runs = plan.get("runs")
+    if isinstance(runs, bool) or not isinstance(runs, int) or runs <= 0:
+        return ""
+    for row in rows:
+        if not row["index"].isdecimal():
+            raise InputError(row.fault("index", "the number of a run"))
+    found = {int(row["index"]) for row in rows}
+    first = next((run for run in range(runs) if run not in found), None)
+    if first is not None:
+        return f"{file}: {len(rows)} of {runs} rows; the first missing row is of run {first}; the file was cut or edited"
+    return (
+        f"{file}: {len(rows)} rows, but sweep.json states {runs} runs; one of the files was edited"
+        if len(rows) != runs
+        else ""
+    )
 
 
 def draw_sweep(sweep, sheet=SHEET):

@@ -4,7 +4,7 @@ import json
 import numpy as np
 from matplotlib.lines import Line2D
 
-from hapbench.columns import numbers
+from hapbench.columns import number_in, numbers
 from hapbench.errors import InputError
 from hapbench_looks import distinguish, law_name
 from hapbench_style import BLACK, GREY, RED, SHEET, legend_above, number_ticks
@@ -36,11 +36,11 @@ class Trials:
             [factor * numbers(rows, name) for name, (_, factor) in QUANTITIES.items()]
         )
         self.feasible = np.array([row["feasible"] == "true" for row in rows], dtype=bool)
-        stiffness = float(law[STIFFNESS] or "nan")
+        stiffness = number_in(law, STIFFNESS)
         self.chosen = np.array(
             [
                 row["feasible"] == "true"
-                and np.isclose(float(row[STIFFNESS]), stiffness, rtol=1e-12)
+                and np.isclose(number_in(row, STIFFNESS), stiffness, rtol=1e-12)
                 and all(row[name] == law[name] for name in SETTING if name in row)
                 for row in rows
             ],
@@ -71,7 +71,10 @@ def draw_tune(files, sheet=SHEET):
 def bounds_of(laws):
     """Returns for each of QUANTITIES the list of its bounds from --bound. All lists are empty if the table does not
     have the column `bounds`, which older versions did not write."""
-    given = json.loads(laws[0].get("bounds") or "{}")
+    try:
+        given = json.loads(laws[0].get("bounds") or "{}")
+    except ValueError as error:
+        raise InputError(laws[0].fault("bounds", f"a JSON object ({error})")) from error
     return [
         [factor * value for value in given.get(name, {}).values()]
         for name, (_, factor) in QUANTITIES.items()

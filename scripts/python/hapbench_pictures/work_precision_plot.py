@@ -5,7 +5,7 @@ from itertools import cycle
 import numpy as np
 from matplotlib.lines import Line2D
 
-from hapbench.columns import numbers
+from hapbench.columns import number_in, numbers
 from hapbench.errors import InputError
 from hapbench_looks import SERIES, distinguish, law_name
 from hapbench_style import GREY, PLATE, SHEET, legend_above, note, number_ticks
@@ -43,7 +43,7 @@ def draw_model_errors(files, sheet=SHEET):
     """
     errors, times = files.records(MODEL_ERRORS), files.records(MODEL_TIMES)
     median, p99_9 = (1e6 * numbers(times, name) for name in ("step_median_s", "step_p99_9_s"))
-    deadline = 1e6 * float(times[0]["deadline_s"])
+    deadline = 1e6 * number_in(times[0], "deadline_s")
     shared = is_true(errors, "shares_reference")
     distinguish(row["problem"] for row in errors)
     quantities = (
@@ -109,7 +109,7 @@ def draw_work_precision(files, sheet=SHEET):
     integrators = list(dict.fromkeys(row["integrator"] for row in errors))
     looks = dict(zip(integrators, cycle(SERIES)))
     is_knee = is_true(times, "knee")
-    requested = 1e6 * float(errors[0]["asked_error_m"])
+    requested = 1e6 * number_in(errors[0], "asked_error_m")
     rows, columns = sheet.grid(len(problems))
     # Processor times of laws can differ by a factor of a thousand, so each panel has its own range of times.
     figure, axes = sheet.panels(rows, columns, 0.5 + (sheet.panel(2.4) + 0.2) * rows, sharey=True)
@@ -204,7 +204,7 @@ def draw_front(ax, errors, cost, error, chosen, is_knee):
         if len(labelled) < MAX_LABELS and all(away.max() >= 1 for away in distances):
             labelled.append(row)
             ax.annotate(
-                f"{1e3 * float(errors[row]['step_s']):.3g}",
+                f"{1e3 * number_in(errors[row], 'step_s'):.3g}",
                 (cost[row], error[row]),
                 xytext=(-3.5, -3),
                 textcoords="offset points",

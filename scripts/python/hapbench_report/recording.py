@@ -29,6 +29,9 @@ MEASURED_COLUMNS = (
     "ratio_max",
     "depth_max_m",
 )
+# Columns of trajectory.csv in which the program writes a finite number in every row: a run ends before these numbers
+# exceed their bounds.
+REQUIRED = ("step", *MEASURED_COLUMNS[:10], "depth_max_m", "colliding")
 CONTACT_COLUMNS = (
     "x_m",
     "y_m",
@@ -167,27 +170,34 @@ class Recording:
         self.run, self.tool = run, tool_profile(run.scenario, run.summary)
         # All recorded rows. The sound and the times of extreme values need them.
         self.columns = read_columns(
-            run.folder / "trajectory.csv", ("step", *MEASURED_COLUMNS, "colliding")
+            run.folder / "trajectory.csv",
+            ("step", *MEASURED_COLUMNS, "colliding"),
+            required=REQUIRED,
         )
         self.shown = rows_to_show(self.columns)
         tensors = self.rows_of("stiffness_tensor", TENSOR_COLUMNS)
         self.tensors = (
             [of_row[0] for of_row in tensors] if all(tensors) else None
         )  # None if the stiffness tensors were not recorded
+        contact = (*CONTACT_COLUMNS, *NORMAL_COLUMNS)
         self.contacts = self.rows_of(
-            "contacts", (*CONTACT_COLUMNS, *NORMAL_COLUMNS)
+            "contacts", contact, contact
         )  # contacts of every shown row, with their normals
 
-    def rows_of(self, table, columns):
+    def rows_of(self, table, columns, required=()):
         """Returns for each shown row the list of the rows of `table` with the same step, in the order of the file. All
-        lists are empty if the table was not recorded."""
+        lists are empty if the table was not recorded. `required`: columns in which every field must be a finite number.
+        """
         steps = self.columns["step"][self.shown]
         rows = {step: [] for step in steps.tolist()}
         if table in self.run.tables:
             found = np.column_stack(
                 list(
                     read_columns(
-                        self.run.folder / f"{table}.csv", ("step", *columns), may_be_empty=True
+                        self.run.folder / f"{table}.csv",
+                        ("step", *columns),
+                        may_be_empty=True,
+                        required=("step", *required),
                     ).values()
                 )
             )

@@ -4,7 +4,8 @@ from functools import cached_property
 from pathlib import Path
 
 from hapbench import results
-from hapbench.results import at, member, number_or_none
+from hapbench.errors import ResultError
+from hapbench.results import at, member, number_or_none, objects, read_object
 
 from .markup import cell, heading_cell, table, text
 
@@ -13,9 +14,10 @@ REPLAY_DIRECTORY = "replay"
 
 
 class Run(results.Run):
-    """A run that a page shows. `path`: folder of the run, relative to the folder of the results."""
+    """A run that a page shows. `path`: folder of the run, relative to the folder of the results. `gaps`: texts about
+    rows and numbers that its tables lack."""
 
-    path = ""
+    path, gaps = "", ()
 
     @property
     def name(self):
@@ -48,7 +50,7 @@ class Run(results.Run):
         entry in columns.json."""
         file = self.folder / "columns.json"
         documented = (
-            {entry["name"] for entry in results.read_json(file).get("summary.json", ())}
+            {entry.get("name") for entry in objects(read_object(file), results.SUMMARY, file)}
             if file.is_file()
             else set()
         )
@@ -74,6 +76,12 @@ def load_run(directory, path):
     run = results.load_run(directory, Run)
     for key in ("metrics", "provenance", "targets", "tolerances"):
         member(run.summary, key, dict, directory / results.SUMMARY)
+    for key in ("algorithm", "outcome"):
+        if not isinstance(run.summary.get(key), str):
+            raise ResultError(
+                f"{directory / results.SUMMARY}: line 1: no field {key}; allowed: the summary of a run, which the "
+                "program writes"
+            )
     run.path = path
     return run
 

@@ -1,0 +1,168 @@
+"""Tests how `hapbench audit` finds the columns and the axes of a log, and which logs and options it rejects."""
+import json
+import os
+import unittest
+
+import numpy as np
+from fixture import PROGRAM, hapbench, scratch_folder
+
+os.environ.setdefault("HAPBENCH_PROGRAM", str(PROGRAM))
+
+from hapbench import InputError, audit  # noqa: E402  (finds the program in the environment)
+
+TIME = 0.001 * np.arange(1200)  # [s]
+STIFFNESS = 800.0  # [N/m]
+DEPTH = -1.5e-3 + 2e-3 * np.cos(25.0 * TIME)  # position along the normal; the wall is at 0 [m]
+NORMAL = np.where(DEPTH < 0.0, -STIFFNESS * DEPTH, 0.0)  # [N]
+ALONG, ACROSS = 1e-3 * np.sin(13.0 * TIME), -0.2 * NORMAL
+ZERO = np.zeros(len(TIME))
+
+
+def text_of(log):
+    rows = zip(*(values.tolist() for values in log.values()))
+    return "\n".join([",".join(log), *(",".join(map(repr, row)) for row in rows)]) + "\n"
+
+
+def log(names, *columns):
+    return dict(zip(names.split(","), (TIME, *columns)))
+
+
+def names_of(found, quantity):
+    return [part["name"] for part in found["columns"][quantity]]
+
+
+class Axes(unittest.TestCase):
+    def assert_planar(self, found, names):
+        self.assertEqual(names_of(found, "position") + names_of(found, "force"), names)
+        (warning,) = [one for one in found["warnings"] if "the log has the axes" in one]
+        self.assertIn(f"--columns position={names[1]},force={names[3]}", warning)
+
+    def test_a_planar_log_is_a_log_of_three_axes_with_zeros(self):
+        """The work of a planar log is the sum over both axes. It equals the work of the log with columns of zeros."""
+        of_plane = {
+            "y": audit(log("t,x,y,z,fx,fy,fz", ALONG, DEPTH, ZERO, ACROSS, NORMAL, ZERO)),
+            "z": audit(log("t,x,y,z,fx,fy,fz", ALONG, ZERO, DEPTH, ACROSS, ZERO, NORMAL)),
+        }
+        work = float(np.sum(NORMAL[:-1] * np.diff(DEPTH) + ACROSS[:-1] * np.diff(ALONG)))
+        for names in ("t,x,y,fx,fy", "t,px,pz,fx,fz", "t,tip_x,tip_y,load_x,load_y"):
+            first, whole = names.split(","), of_plane[names[-1]]
+            given = {"position": first[1], "force": first[3]} if "tip" in names else {}
+            for columns in (given, {"position": 2, "force": 4}):
+                found = audit(log(names, ALONG, DEPTH, ACROSS, NORMAL), columns=columns)
+                self.assert_planar(found, first[1:])
+                self.assertAlmostEqual(found["energy"]["work_J"], work, delta=1e-12)
+                for section in ("energy", "metrics", "stiffness"):
+                    self.assertEqual(found[section], whole[section], (names, section))
+                self.assertEqual(whole["warnings"], [])
+
+    def test_velocities_of_a_planar_log_are_read(self):
+        speeds = np.gradient(ALONG, TIME), np.gradient(DEPTH, TIME)
+        planar = audit(log("t,px,pz,fx,fz,vx,vz", ALONG, DEPTH, ACROSS, NORMAL, *speeds))
+        whole = audit(
+            log(
+                "t,px,py,pz,fx,fy,fz,vx,vy,vz",
+                *(ALONG, ZERO, DEPTH, ACROSS, ZERO, NORMAL, speeds[0], ZERO, speeds[1]),
+            )
+        )
+        self.assertEqual(names_of(planar, "velocity"), ["vx", "vz"])
+        self.assertEqual(planar["stiffness"], whole["stiffness"])
+
+    def test_one_axis_of_a_planar_log_can_be_named(self):
+        planar = log("t,x,y,fx,fy", ALONG, DEPTH, ACROSS, NORMAL)
+        for columns, position, force in (
+            ({"position": "y", "force": "fy"}, DEPTH, NORMAL),
+            ({"px": "x", "mfx": "fx"}, ALONG, ACROSS),
+        ):
+            found = audit(planar, columns=columns)
+            work = float(np.sum(force[:-1] * np.diff(position)))
+            self.assertAlmostEqual(found["energy"]["work_J"], work, delta=1e-12)
+            self.assertEqual(len(found["columns_not_read"]), 2)
+
+    def test_different_axes_of_position_and_force_are_refused(self):
+        for names, option, count in (
+            ("t,x,y,f", "py=y,mfy=f", 1),
+            ("t,x,y,fx", "px=x,mfx=fx", 1),
+            ("t,x,y,z,force", "pz=z,mfz=force", 1),
+            ("t,x,y,fx,fy,fz", "px=x,py=y,mfx=fx,mfy=fy", 2),
+            ("t,x,y,z,fx,fz", "px=x,pz=z,mfx=fx,mfz=fz", 2),
+            ("t,x,z,fx,fy", "px=x,mfx=fx", 1),
+        ):
+            columns = [DEPTH if name[-1] in "xyz" else NORMAL for name in names.split(",")[1:]]
+            with self.assertRaisesRegex(InputError, f"the same axes, as with --columns {option};"):
+                audit(log(names, *columns))
+            # The option of the message is accepted.
+            given = dict(word.split("=") for word in option.split(","))
+            found = audit(log(names, *columns), columns=given)
+            self.assertEqual(len(found["columns"]["position"]), count)
+
+    def test_a_log_without_times_names_the_rate(self):
+        columns = ALONG, ZERO, DEPTH, ACROSS, ZERO, NORMAL
+        for names in ("px,py,pz,fx,fy,fz", "dt,px,py,pz,fx,fy,fz"):
+            given = dict(zip(names.split(",")[-6:], columns))
+            if names.startswith("dt"):
+                given = {"dt": 0.001 + ZERO} | given
+            with self.assertRaises(InputError) as caught:
+                audit(given)
+            self.assertIn("--set sample_rate_Hz=", str(caught.exception))
+            self.assertNotIn("position=", str(caught.exception))
+
+
+class Contact(unittest.TestCase):
+    def test_a_log_without_contact_is_refused(self):
+        base = "t,x,y,z,fx,fy,fz"
+        position, none = (ALONG, ZERO, DEPTH), (ZERO, ZERO, ZERO)
+        still, pushed = position + none, position + (ZERO, ZERO, NORMAL)
+        measured = "force_measured_x,force_measured_y,force_measured_z"
+        for names, columns, touch, problem in (
+            (base, still, None, "no row is in contact: every force is 0, in columns 5 fx, 6 fy"),
+            (base, still, 0.0, "no row is in contact: every force is 0"),
+            (base, pushed, 1e3, "the largest force is 2.8 N; allowed: a smaller touch_N, got 1000"),
+            (f"{base},contacts", (*pushed, ZERO), None, "column 8 contacts.*--set touch_N=0 uses"),
+            (
+                f"{base},{measured}",
+                (*still, ZERO, ZERO, NORMAL),
+                None,
+                "every force is 0.*--columns force=force_measured_x",
+            ),
+            (f"{base},contacts", (*still, 1.0 + ZERO), None, "no row has a force"),
+        ):
+            with self.assertRaisesRegex(InputError, problem):
+                audit(log(names, *columns), touch=touch)
+
+    def test_the_command_exits_with_status_2(self):
+        file = scratch_folder(self) / "log.csv"
+        file.write_text(text_of(log("t,x,fx", DEPTH, ZERO)))
+        out = file.parent / "out"
+        self.assertIn("no row is in contact", hapbench("audit", file, "--out", out, expected=2))
+        self.assertFalse(out.exists())
+
+    def test_a_few_rows_in_contact_are_audited(self):
+        for rows in ([300], [300, 301], [300, 700], [0], [len(TIME) - 1]):
+            force = ZERO.copy()
+            force[rows] = 1.0
+            found = audit(log("t,x,f", DEPTH, force))
+            self.assertIsNone(found["stiffness"])
+            self.assertEqual(sum(one["rows"] for one in found["contacts"]), len(rows))
+        file = scratch_folder(self) / "log.csv"
+        file.write_text(text_of(log("t,x,f", DEPTH, force)))
+        written = file.parent / "out" / "audit.json"
+        hapbench("audit", file, "--out", written.parent, "--device", "touch")
+        self.assertEqual(len(json.loads(written.read_text())["contacts"]), 1)
+
+
+class Values(unittest.TestCase):
+    def test_impossible_values_are_refused(self):
+        file = scratch_folder(self) / "log.csv"
+        file.write_text(text_of(log("t,x,f", DEPTH, NORMAL)))
+        for option, word, problem in (
+            ("--expect", "energy_mJ=2:1", '"energy_mJ=2:1", a minimum above the maximum'),
+            ("--set", "max_speed=-1", "max_speed: got -1; allowed: a number > 0"),
+            ("--set", "max_gap=0", "max_gap: got 0; allowed: a number > 0"),
+            ("--set", "max_speed=true", "max_speed: got true; allowed: a number > 0"),
+        ):
+            out = file.parent / "out"
+            self.assertIn(problem, hapbench("audit", file, option, word, "--out", out, expected=2))
+
+
+if __name__ == "__main__":
+    unittest.main()
