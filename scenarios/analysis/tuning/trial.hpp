@@ -57,6 +57,18 @@ struct ContactOfTrial {
   RenderingConfig rendering = {};  ///< rendering settings with which `linear` was computed
 };
 
+/// The largest or the smallest value of a metric over the evaluated variants.
+struct ExtremeValue {
+  double value;
+  std::string text;  ///< the value for the user, with the name of the variant that has it
+};
+
+/// One end of the range that a limit allows for a metric.
+struct LimitEnd {
+  std::string metric;
+  bool is_max;  ///< true: the maximum; false: the minimum
+};
+
 /// A setting with a stiffness, evaluated for one law. G: the required gain margin.
 struct TuneTrial {
   TuneSetting setting = {};
@@ -72,9 +84,13 @@ struct TuneTrial {
   bool settled = false;       ///< true if the run of the scene itself is settled at K
   bool limits_alone = false;  ///< true if only limits on metrics are violated, as far as the trial was evaluated
   MetricValues metrics = {};  ///< metrics of the run of the scene itself; empty if not measured
-  /// Worst value of each limited metric over the evaluated variants, and the low-vibration numbers of the scene itself.
-  MetricValues worst = {};
-  std::map<std::string, std::string> worst_text = {};  ///< the values in `worst` as text for the user
+  /// Largest value of each limited metric over the evaluated variants, and the low-vibration numbers of the scene
+  /// itself.
+  std::map<std::string, ExtremeValue> largest = {};
+  std::map<std::string, ExtremeValue> smallest = {};  ///< smallest value of each limited metric
+  /// Text for the user about each limited metric that has no value in one of the variants. Such a metric has no largest
+  /// and no smallest value.
+  std::map<std::string, std::string> missing = {};
   /// Error estimate of each metric in `metrics`: its largest change by the refinements that were made so far. Empty if
   /// no refinement was made, for example because the metrics exceed their limits by far.
   MetricValues error = {};
@@ -96,6 +112,12 @@ struct TuneTrial {
   bool feasible() const { return binding.empty(); }
   /// Returns the largest rendered stiffness [N/m].
   double rendered() const { return stiffness * lambda_max; }
+  /// Returns the largest value (for a maximum) or the smallest value (for a minimum) of a limited metric; null if the
+  /// metric has no value.
+  const ExtremeValue* extreme(const LimitEnd& end) const;
+  /// Returns the strictest value of a limit that the trial keeps: the extreme() value of the metric with its error
+  /// added to a maximum, or subtracted from a minimum. Empty if the metric has no value.
+  std::optional<double> kept(const LimitEnd& end) const;
   /// Marks the trial as infeasible.
   void fail(std::string constraint, std::string reason);
 };

@@ -37,22 +37,25 @@ StabilityRule rule_for(const Scenario& scenario, const SceneVariant& variant) {
   return rule;
 }
 
-/// Stores the worst value of a limited metric over the variants in the trial. Stores no value if the metric has no
-/// value in one of the runs.
-void note_worst(TuneTrial& trial, const std::string& name, const MetricBound& bound,
-                std::span<const MetricValues> metrics, std::span<const SceneVariant> variants) {
+/// Stores the largest and the smallest value of a limited metric over the variants in the trial. Stores no value if the
+/// metric has no value in one of the runs.
+void note_extremes(TuneTrial& trial, const std::string& name, std::span<const MetricValues> metrics,
+                   std::span<const SceneVariant> variants) {
+  trial.largest.erase(name);
+  trial.smallest.erase(name);
   for (std::size_t i = 0; i < metrics.size(); ++i) {
     const auto value = value_in(metrics[i], name);
     if (!value) {
-      trial.worst.erase(name);
-      trial.worst_text[name] = name + " has no value" + with(variants[i]);
+      trial.largest.erase(name);
+      trial.smallest.erase(name);
+      trial.missing[name] = name + " has no value" + with(variants[i]);
       return;
     }
-    const auto [worst, is_first] = trial.worst.try_emplace(name, *value);
-    const bool is_worse = bound.max ? *value > worst->second : *value < worst->second;
-    if (!is_first && !is_worse) continue;
-    worst->second = *value;
-    trial.worst_text[name] = fmt::format("{} {:.4g}{}", name, *value, with(variants[i]));
+    const ExtremeValue here{*value, fmt::format("{} {:.4g}{}", name, *value, with(variants[i]))};
+    ExtremeValue& largest = trial.largest.try_emplace(name, here).first->second;
+    ExtremeValue& smallest = trial.smallest.try_emplace(name, here).first->second;
+    if (*value > largest.value) largest = here;
+    if (*value < smallest.value) smallest = here;
   }
 }
 
@@ -115,11 +118,15 @@ LoadedScenario Trials::load(const TuneSetting& setting, double stiffness, const 
 // ---- Searches
 
 void Trials::begin_search(TuneLimits limits) {
-  limits_ = std::move(limits);
-  requested_.clear();
+  change_limits(std::move(limits));
   refutations_.clear();
   exact_refutations_ = false;
   smallest_unstable_ = std::numeric_limits<double>::infinity();
+}
+
+void Trials::change_limits(TuneLimits limits) {
+  limits_ = std::move(limits);
+  requested_.clear();
   search_runs_ = 0;
 }
 
@@ -198,6 +205,13 @@ std::vector<double> Trials::feasible_stiffnesses(const TuneSetting& setting) con
   for (const auto& [key, trial] : all_)
     if (key.first == setting && requested_.contains(&trial) && trial.feasible()) stiffnesses.push_back(key.second);
   return stiffnesses;
+}
+
+std::vector<TuneTrial> Trials::feasible_trials() const {
+  std::vector<TuneTrial> trials;
+  for (const auto& [key, trial] : all_)
+    if (requested_.contains(&trial) && trial.feasible()) trials.push_back(trial);
+  return trials;
 }
 
 std::vector<const TuneTrial*> Trials::nearest(std::size_t count) {
@@ -349,10 +363,10 @@ bool Trials::needs_depth(const TuneTrial& trial, Need need) const {
   const MetricValues violated = violated_limits(trial);
   if (need <= Need::softness && !violated.empty()) return false;
   for (const auto& [name, bound] : limits_.metrics) {
-    const auto value = value_in(trial.worst, name);
-    if (!depends_on_sampled_depth(name) || !value) continue;
+    const ExtremeValue *max = trial.extreme({name, true}), *min = trial.extreme({name, false});
+    if (!depends_on_sampled_depth(name) || max == nullptr || min == nullptr) continue;
     if (name != "inside_max_m") return true;
-    const double largest = *value + trial.depth_within, smallest = *value - trial.depth_within;
+    const double largest = max->value + trial.depth_within, smallest = min->value - trial.depth_within;
     double factor = 1.0;  // largest possible factor by which the depth is beyond its limit
     if (bound.max && largest > *bound.max) factor = ratio_beyond(largest, *bound.max);
     if (bound.min && smallest < *bound.min) factor = std::max(factor, ratio_beyond(*bound.min, smallest));
@@ -468,8 +482,7 @@ void Trials::measure_scene(TuneTrial& trial) {
     if (const Metric* depth = find_metric(run.metrics, "inside_max_m"))
       trial.depth_within = depth->tolerance().value_or(kInfinite);
     for (const Diagnosed& number : low_vibration_numbers(scene.loaded(), run)) {
-      trial.worst[number.rule] = number.value;
-      trial.worst_text[number.rule] = number.says;
+      trial.largest.insert_or_assign(number.rule, ExtremeValue{number.value, number.says});
     }
     // Forces below half the resolution of the device are rounded to zero.
     const auto* device = std::get_if<ImpedanceDeviceConfig>(&scene.scenario().device);
@@ -487,7 +500,7 @@ void Trials::measure_scene(TuneTrial& trial) {
           fmt::format("explicit integration of friction is unstable in the run (number of unstable steps: {:g})",
                       steps)};
   });
-  for (const auto& [name, bound] : question_.limits) note_worst(trial, name, bound, {&trial.metrics, 1}, variants_);
+  for (const auto& [name, bound] : question_.limits) note_extremes(trial, name, {&trial.metrics, 1}, variants_);
 }
 
 /// Measures in all variants the metrics for which the user has set limits.
@@ -501,10 +514,7 @@ void Trials::measure_variants(TuneTrial& trial) {
     metrics[i + 1] =
         metrics_of(run_with_shell(checked(load(trial.setting, trial.stiffness, variants_[i + 1])), shell_));
   });
-  for (const auto& [name, bound] : question_.limits) {
-    trial.worst.erase(name);
-    note_worst(trial, name, bound, metrics, variants_);
-  }
+  for (const auto& [name, bound] : question_.limits) note_extremes(trial, name, metrics, variants_);
 }
 
 /// Raises the error of each metric of the trial (TuneTrial::error) to the change of this metric by a refinement, if the
@@ -540,9 +550,23 @@ void Trials::judge_limits(TuneTrial& trial) const {
   if (first == violated.end()) first = violated.begin();
   const std::string& name = first->first;
   const auto limit = limits_.metrics.find(name);
-  trial.too_soft = limit != limits_.metrics.end() && limit->second.max && violates_only_depths(trial);
-  const double error = value_in(trial.error, name).value_or(0.0);
-  trial.fail(name, trial.worst_text.at(name) + (error > 0.0 ? fmt::format(" +- {:.2g}", error) : ""));
+  const LimitEnd end{name, !violates_end(trial, {name, false})};
+  trial.too_soft = limit != limits_.metrics.end() && limit->second.max && end.is_max && violates_only_depths(trial);
+  trial.fail(name, violation_text(trial, end));
+}
+
+/// Returns the text for the user about a metric that violates one end of its limit. If the limit is a range, the text
+/// names the violated end.
+std::string Trials::violation_text(const TuneTrial& trial, const LimitEnd& end) const {
+  const ExtremeValue* extreme = trial.extreme(end);
+  if (extreme == nullptr) return trial.missing.at(end.metric);
+  std::string text = extreme->text;
+  if (const double error = value_in(trial.error, end.metric).value_or(0.0); error > 0.0)
+    text += fmt::format(" +- {:.2g}", error);
+  const auto limit = limits_.metrics.find(end.metric);
+  if (limit == limits_.metrics.end() || !limit->second.min) return text;
+  if (end.is_max) return text + fmt::format(", above the maximum {:g}", *limit->second.max);
+  return text + fmt::format(", below the minimum {:g}", *limit->second.min);
 }
 
 // ---- Limits on metrics
@@ -550,18 +574,26 @@ void Trials::judge_limits(TuneTrial& trial) const {
 MetricValues Trials::violated_limits(const TuneTrial& trial) const {
   MetricValues violated;
   for (const auto& [name, bound] : limits_.metrics) {
-    const auto value = value_in(trial.worst, name);
-    const double error = value_in(trial.error, name).value_or(0.0);
-    if (!value) violated[name] = kInfinite;
-    if (value && bound.min && *value - error < *bound.min) violated[name] = ratio_beyond(*bound.min, *value - error);
-    if (value && bound.max && *value + error > *bound.max) violated[name] = ratio_beyond(*value + error, *bound.max);
+    const auto largest = trial.kept({name, true}), smallest = trial.kept({name, false});
+    double factor = largest && smallest ? 1.0 : kInfinite;
+    if (smallest && bound.min && *smallest < *bound.min) factor = ratio_beyond(*bound.min, *smallest);
+    if (largest && bound.max && *largest > *bound.max) factor = std::max(factor, ratio_beyond(*largest, *bound.max));
+    if (factor > 1.0) violated[name] = factor;
   }
   if (limits_.allow_vibration) return violated;
   for (const auto& [rule, threshold] : rules_) {
-    const auto value = value_in(trial.worst, rule);
-    if (value && *value > threshold) violated[rule] = ratio_beyond(*value, threshold);
+    const ExtremeValue* found = trial.extreme({rule, true});
+    if (found != nullptr && found->value > threshold) violated[rule] = ratio_beyond(found->value, threshold);
   }
   return violated;
+}
+
+bool Trials::violates_end(const TuneTrial& trial, const LimitEnd& end) const {
+  const auto limit = limits_.metrics.find(end.metric);
+  const auto kept = trial.kept(end);
+  if (limit == limits_.metrics.end() || !kept) return false;
+  const auto& allowed = end.is_max ? limit->second.max : limit->second.min;
+  return allowed && (end.is_max ? *kept > *allowed : *kept < *allowed);
 }
 
 bool Trials::violates_only_depths(const TuneTrial& trial) const {

@@ -43,6 +43,12 @@ enum class Need {
 struct TuneLimits {
   std::map<std::string, MetricBound> metrics = {};  ///< limits of the user
   bool allow_vibration = false;                     ///< see TuneQuestion
+
+  /// Returns one end of the limit on a metric; empty for no limit. Precondition: `metrics` has the metric.
+  std::optional<double>& at(const LimitEnd& end) {
+    MetricBound& bound = metrics.at(end.metric);
+    return end.is_max ? bound.max : bound.min;
+  }
 };
 
 /// Evaluates and stores all trials of one law.
@@ -81,6 +87,8 @@ class Trials {
   /// Starts a search with these limits: forgets which trials were requested, which were refuted, and the smallest
   /// unstable K.
   void begin_search(TuneLimits limits);
+  /// The same as begin_search(), but keeps the refutations and the smallest unstable K.
+  void change_limits(TuneLimits limits);
   const TuneLimits& limits() const { return limits_; }
   /// Returns true if the search has reached its maximum number of runs (kMaxTuneRuns). New trials then fail.
   bool is_exhausted() const { return search_runs_ >= kMaxTuneRuns; }
@@ -107,6 +115,8 @@ class Trials {
   const TuneTrial* stiffest_feasible() const;
   /// Returns the stiffnesses of the feasible trials of a setting in this search [N/m].
   std::vector<double> feasible_stiffnesses(const TuneSetting& setting) const;
+  /// Returns copies of the feasible trials of this search, by setting and K.
+  std::vector<TuneTrial> feasible_trials() const;
   /// Returns up to `count` trials of this search that violate only limits, at most one for each setting, the smallest
   /// excess() first.
   std::vector<const TuneTrial*> nearest(std::size_t count);
@@ -131,9 +141,9 @@ class Trials {
 
   // ---- Limits on metrics
 
-  /// Returns the violated limits of a trial, each with the factor > 1 by which the worst value and its error are beyond
-  /// the limit. A limited metric without a value has an infinite factor. A low-vibration rule without a value counts as
-  /// kept.
+  /// Returns the violated limits of a trial, each with the factor > 1 by which the extreme value and its error are
+  /// beyond the limit. If both ends of a limit are violated, returns the larger factor. A limited metric without a
+  /// value has an infinite factor. A low-vibration rule without a value counts as kept.
   MetricValues violated_limits(const TuneTrial& trial) const;
   /// Returns true for the name of a low-vibration rule.
   bool is_rule(const std::string& name) const { return rules_.contains(name); }
@@ -189,6 +199,8 @@ class Trials {
   bool needs_depth(const TuneTrial& trial, Need need) const;
   bool violates_limits(const TuneTrial& trial) const { return !violated_limits(trial).empty(); }
   bool violates_only_depths(const TuneTrial& trial) const;
+  bool violates_end(const TuneTrial& trial, const LimitEnd& end) const;
+  std::string violation_text(const TuneTrial& trial, const LimitEnd& end) const;
   void report_runs() const;
   void judge_limits(TuneTrial& trial) const;
   void evaluate_motion(TuneTrial& trial);

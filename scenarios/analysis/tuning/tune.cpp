@@ -23,14 +23,14 @@ void evaluate_along_stiffness(Trials& trials, const TuneTrial& choice) {
   }
 }
 
-/// Searches with the current limits until a choice passes its verification; `any`: true if the choice need not be the
-/// stiffest feasible trial. Returns an empty choice if no feasible trial passes.
-std::optional<TuneTrial> verified_choice(Trials& trials, bool any, TunedLaw& law) {
+/// Searches with the current limits until a choice passes its verification. The choice is the stiffest feasible trial;
+/// with `strictest`, it is the trial of TuneSearch::strictest(). Returns an empty choice if no feasible trial passes.
+std::optional<TuneTrial> verified_choice(Trials& trials, const std::optional<LimitEnd>& strictest, TunedLaw& law) {
   constexpr int kMaxVerifications = 60;
   TuneSearch search(trials);
   for (int i = 0; i < kMaxVerifications; ++i) {
     trials.begin_purpose("search");
-    const std::optional<TuneTrial> choice = any ? search.first_feasible() : search.best();
+    const std::optional<TuneTrial> choice = strictest ? search.strictest(*strictest) : search.best();
     // A choice that fails its verification refutes trials of similar settings. If no choice is left, restrict every
     // refutation to the setting that failed, and repeat the search.
     if (!choice && trials.restrict_refutations()) continue;
@@ -39,7 +39,7 @@ std::optional<TuneTrial> verified_choice(Trials& trials, bool any, TunedLaw& law
     if (choice && !trials.evaluated(*choice, Need::excess).feasible()) continue;
     trials.begin_purpose("verification");
     if (choice && !is_verified(trials, *choice, law)) continue;
-    if (choice) {
+    if (choice && !strictest) {
       law.binding = search.beyond().binding;
       law.why = search.beyond().why;
     }
@@ -52,20 +52,24 @@ std::optional<TuneTrial> verified_choice(Trials& trials, bool any, TunedLaw& law
 /// this trial becomes the choice.
 void explain_or_find(Trials& trials, TunedLaw& law) {
   const TuneLimits limits = trials.limits();
-  const auto is_feasible = [&](const TuneLimits& other) {
+  const auto search = [&](const TuneLimits& other, const std::optional<LimitEnd>& strictest) {
     TunedLaw unused;
     trials.begin_search(other);
-    return verified_choice(trials, /*any=*/true, unused).has_value();
+    return verified_choice(trials, strictest, unused);
   };
   const bool was_exhausted = trials.is_exhausted();
-  explain(trials, is_feasible, law);
+  explain(trials, search, law);
   trials.set_aim("");
   trials.begin_search(limits);
   trials.recall_all();
-  if (trials.stiffest_feasible() != nullptr) law.choice = verified_choice(trials, /*any=*/false, law);
+  if (trials.stiffest_feasible() != nullptr) law.choice = verified_choice(trials, {}, law);
   if (law.choice) {
     law.relax.clear();
     return;
+  }
+  if (law.why.empty()) {
+    law.binding = "settled";
+    law.why = "every feasible setting that was found failed its verification";
   }
   law.verified = 0;
   law.limits = {};
@@ -81,7 +85,7 @@ TunedLaw tuned_law(const TuneQuestion& question, const std::string& algorithm) {
   TunedLaw law;
   law.algorithm = algorithm;
   Trials trials(question, algorithm);
-  law.choice = verified_choice(trials, /*any=*/false, law);
+  law.choice = verified_choice(trials, {}, law);
   if (!law.choice) explain_or_find(trials, law);
   if (law.choice) {
     law.overrides = trials.overrides(law.choice->setting, law.choice->stiffness);

@@ -49,9 +49,9 @@ struct TunedLaw {
 ///
 /// The search (tune_search.hpp) finds the feasible setting with the largest K. This choice is then verified
 /// (verification.hpp). If the verification fails, the search is repeated without this choice. If nothing is feasible,
-/// searches with relaxed limits confirm the relaxations that TunedLaw::relax names. If one of these searches finds a
-/// trial that keeps all original limits, this trial becomes the choice. Throws InputError if the tool's position is
-/// prescribed, and Stopped.
+/// searches with relaxed limits confirm the relaxations that TunedLaw::relax names (relaxation.hpp). If one of these
+/// searches finds a trial that keeps all original limits, this trial becomes the choice. Throws InputError if the
+/// tool's position is prescribed, and Stopped.
 TunedLaw tuned_law(const TuneQuestion& question, const std::string& algorithm);
 
 }  // namespace hapbench

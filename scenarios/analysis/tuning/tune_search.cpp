@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <utility>
 
 #include "scenarios/scene/scenario.hpp"
@@ -39,9 +40,17 @@ std::vector<TuneSetting> settings_of(const TuneRanges& ranges, const Scenario& s
   return settings;
 }
 
-constexpr double kFinestRatio = 1.004;  // factor on zeta and mass at which refinement ends
+constexpr double kFinestRatio = 1.004;   // factor on zeta and mass at which refinement ends
+constexpr double kFinestDescent = 1.01;  // factor on K, zeta and mass at which a descent ends
 
 }  // namespace
+
+double stricter(double value, const LimitEnd& end, double factor) {
+  const double scaled = end.is_max == (value > 0.0) ? value / factor : value * factor;
+  // A value of 0 has no multiple: return the next number.
+  constexpr double kInfinite = std::numeric_limits<double>::infinity();
+  return value == 0.0 ? std::nextafter(value, end.is_max ? -kInfinite : kInfinite) : scaled;
+}
 
 TuneSearch::TuneSearch(Trials& trials) : trials_(trials) {
   const Scenario scene = trials.load({}, trials.ranges().stiffness.from).scenario;
@@ -63,9 +72,40 @@ std::optional<TuneTrial> TuneSearch::best() {
   return best_;
 }
 
-std::optional<TuneTrial> TuneSearch::first_feasible() {
+std::optional<TuneTrial> TuneSearch::strictest(const LimitEnd& end) {
+  const TuneLimits limits = trials_.limits();
   search_settings();
-  return best_;
+  if (!best_) return best_;
+  trials_.begin_purpose("search for the strictest bound");
+  const std::vector<TuneTrial> known = trials_.feasible_trials();
+  // Each accepted trial tightens the limit. A trial that violates the limit in the run of the scene itself needs no
+  // further runs.
+  TuneTrial at = require_stricter(*best_, end);
+  const auto accept = [&](const TuneTrial& trial) {
+    const Range range = stiffnesses();
+    const TuneTrial& next = trials_.trial_at(trial.setting, std::clamp(trial.stiffness, range.from, range.to));
+    if (!next.feasible()) return false;
+    at = require_stricter(next, end);
+    return true;
+  };
+  for (const TuneTrial& trial : known) accept(trial);
+  for (double ratio = math::pow(10.0, 0.25); ratio > kFinestDescent; ratio = std::sqrt(ratio))
+    while (std::ranges::any_of(neighbours(at, ratio), accept)) {
+    }
+  trials_.change_limits(limits);
+  return best_ = trials_.trial_at(at.setting, at.stiffness);
+}
+
+/// Sets one end of a limit so that only trials with a stricter value than the value of `trial` are feasible. Returns
+/// the trial with the errors of its metrics.
+TuneTrial TuneSearch::require_stricter(const TuneTrial& trial, const LimitEnd& end) {
+  constexpr double kImprovement = 1.005;
+  const TuneTrial exact =
+      depends_on_sampled_depth(end.metric) ? trials_.with_errors(trial) : trials_.evaluated(trial, Need::all);
+  TuneLimits limits = trials_.limits();
+  limits.at(end) = stricter(*exact.kept(end), end, kImprovement);
+  trials_.change_limits(std::move(limits));
+  return exact;
 }
 
 /// Finds the best trial of the initial settings. If no initial setting is feasible, finds a feasible trial by finer
@@ -207,7 +247,6 @@ void TuneSearch::approach(const TuneTrial& start) {
     at = &next;
     return true;
   };
-  constexpr double kFinestDescent = 1.01;  // factor on K, zeta and mass at which a descent ends
   for (double ratio = math::pow(10.0, 0.25); ratio > kFinestDescent && !best_; ratio = std::sqrt(ratio))
     while (!best_ && std::ranges::any_of(neighbours(*at, ratio), is_better)) {
     }

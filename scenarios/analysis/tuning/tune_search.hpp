@@ -11,6 +11,9 @@
 /// Search for the setting with the largest feasible stiffness K.
 namespace hapbench {
 
+/// Returns a value of one end of a limit that is stricter by a factor > 1: smaller for a maximum, larger for a minimum.
+double stricter(double value, const LimitEnd& end, double factor);
+
 /// Searches the settings of a law for the largest feasible K.
 ///
 /// The initial settings combine damping ratios zeta, spaced by factors of about 10^(1/4), with up to three virtual
@@ -29,8 +32,10 @@ class TuneSearch {
 
   /// Returns the feasible trial with the largest K; empty if no trial is feasible.
   std::optional<TuneTrial> best();
-  /// Returns any feasible trial; empty under the same condition as best(). Cheaper.
-  std::optional<TuneTrial> first_feasible();
+  /// Returns a feasible trial that keeps a strict value of one end of a limit (TuneTrial::kept()). From the feasible
+  /// trial with the strictest value, a pattern search goes to neighbours with a value stricter by at least 0.5 %. Empty
+  /// under the same condition as best(). Precondition: the current limits have the metric of `end`.
+  std::optional<TuneTrial> strictest(const LimitEnd& end);
   /// Returns the infeasible trial just above the best trial's K. If the best trial is at the end of the search range,
   /// returns a trial that has only the binding "range". Precondition: best() returned a trial.
   const TuneTrial& beyond() const { return beyond_; }
@@ -48,6 +53,7 @@ class TuneSearch {
   void scan_finely(const TuneSetting& setting);
   void refine();
   void approach(const TuneTrial& start);
+  TuneTrial require_stricter(const TuneTrial& trial, const LimitEnd& end);
   std::vector<TuneTrial> neighbours(const TuneTrial& trial, double ratio) const;
 
   Trials& trials_;

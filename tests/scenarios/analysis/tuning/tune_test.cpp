@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "device_model/theory/linear_loops.hpp"
@@ -102,7 +103,7 @@ TEST(Tune, KeepsLimitsAndNamesTheBindingConstraint) {
   asked.limits["force_rms_above_30Hz_N"].max = 0.7 * buzz;
   const TunedLaw quiet = tuned_law(asked, "shaped_stiffness");
   ASSERT_TRUE(quiet.choice) << quiet.why;
-  EXPECT_LE(quiet.choice->worst.at("force_rms_above_30Hz_N"), 0.7 * buzz);
+  EXPECT_LE(quiet.choice->largest.at("force_rms_above_30Hz_N").value, 0.7 * buzz);
   EXPECT_LE(quiet.choice->stiffness, 1.01 * free.choice->stiffness);
   // The metrics reported for the choice are the metrics of a run.
   const Result run = run_scenario(checked(load_scenario(asked.scenario, quiet.overrides)), std::nullopt, false);
@@ -135,6 +136,73 @@ TEST(Tune, NamesTheLimitToRelaxAndByHowMuch) {
   EXPECT_GT(needed, 1e-6);
   asked.limits["inside_max_m"].max = needed;
   EXPECT_TRUE(tuned_law(asked, "shaped_stiffness").choice) << none.relax;
+}
+
+/// Returns a small question: a hand holds a handle and presses the tool into a plane. The variants "hands" add hands of
+/// 100 and 1000 N/m.
+TuneQuestion pressed_plane() {
+  TuneQuestion asked = question("impedance_at_wall", {"time.duration_s=0.6"});
+  asked.threads = 2;
+  asked.damping_ratio = {0.3, 0.6};
+  return asked;
+}
+
+/// Returns the bounds of a text such as "relax inside_max_m to 0.0003:0.002 (now 0.0003:0.001)" for one metric.
+MetricBound printed_bound(const std::string& relax, const std::string& metric) {
+  MetricBound bound;
+  double first = 0.0, second = 0.0;
+  const std::string text = relax.substr(std::min(relax.size(), relax.find("relax " + metric)));
+  const int count = std::sscanf(text.c_str(), ("relax " + metric + " to %lf:%lf").c_str(), &first, &second);
+  if (count == 2) bound.min = first;
+  if (count >= 1) bound.max = count == 2 ? second : first;
+  return bound;
+}
+
+/// Checks that questions that differ only in their bound agree: the relaxation of each infeasible question has the same
+/// value, a question with this value is feasible, and a question with a bound that is stricter by 10 % is infeasible.
+TEST(Tune, NamesTheSmallestRelaxationForEveryStricterBound) {
+  for (const auto& [metric, bounds] : {std::pair<const char*, std::vector<double>>{"inside_max_m", {1e-6, 5e-5}},
+                                       {"force_rms_above_30Hz_N", {1e-6, 1e-4}}}) {
+    TuneQuestion asked = pressed_plane();
+    std::vector<double> relaxed;
+    for (const double bound : bounds) {
+      asked.limits[metric].max = bound;
+      const TunedLaw none = tuned_law(asked, "shaped_stiffness");
+      ASSERT_FALSE(none.choice) << metric << " <= " << bound;
+      EXPECT_EQ(none.binding, metric);
+      relaxed.push_back(printed_bound(none.relax, metric).max.value_or(0.0));
+      EXPECT_GT(relaxed.back(), bound) << none.relax;
+    }
+    EXPECT_EQ(relaxed[0], relaxed[1]) << metric;
+    asked.limits[metric].max = relaxed[0];
+    EXPECT_TRUE(tuned_law(asked, "shaped_stiffness").choice) << metric << " <= " << relaxed[0];
+    asked.limits[metric].max = 0.9 * relaxed[0];
+    EXPECT_FALSE(tuned_law(asked, "shaped_stiffness").choice) << metric << " <= " << 0.9 * relaxed[0];
+  }
+}
+
+/// Checks a range that the runs of the hands cannot keep: a hand of 100 N/m presses the tool less deep into the plane
+/// than the other hands. The named relaxation is feasible, and every run of its choice keeps the range.
+TEST(Tune, KeepsBothEndsOfARangeInEveryRun) {
+  const std::string metric = "inside_settled_m";
+  TuneQuestion asked = pressed_plane();
+  asked.limits[metric] = {3e-4, 4e-4};
+  const TunedLaw none = tuned_law(asked, "shaped_stiffness");
+  ASSERT_FALSE(none.choice);
+  EXPECT_EQ(none.binding, metric);
+  EXPECT_NE(none.why.find("below the minimum 0.0003"), std::string::npos) << none.why;
+  const MetricBound bound = printed_bound(none.relax, metric);
+  ASSERT_TRUE(bound.min && bound.max) << none.relax;
+  EXPECT_LT(*bound.min, 3e-4);
+  EXPECT_EQ(*bound.max, 4e-4);
+  asked.limits[metric] = bound;
+  const TunedLaw law = tuned_law(asked, "shaped_stiffness");
+  ASSERT_TRUE(law.choice) << none.relax;
+  EXPECT_GE(law.choice->kept({metric, false}), bound.min);
+  EXPECT_LE(law.choice->kept({metric, true}), bound.max);
+  EXPECT_LT(law.choice->smallest.at(metric).value, law.choice->metrics.at(metric));
+  EXPECT_FALSE(law.binding.empty());
+  EXPECT_FALSE(law.why.empty());
 }
 
 /// Returns true if a grid of K and zeta has a trial that keeps all constraints.
