@@ -8,6 +8,7 @@
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/run/clock_coverage.hpp"
 #include "scenarios/run/load_module.hpp"
+#include "scenarios/run/scene_warnings.hpp"
 #include "scenarios/scene/field_files.hpp"
 #include "scenarios/scene/named_files.hpp"
 #include "scenarios/scene/tools.hpp"
@@ -52,7 +53,9 @@ CheckedScenario checked(LoadedScenario loaded, Libraries libraries) {
   }
   if (scenario.rendering.contact_source == kTrace) {
     const std::int64_t every = scenario.rendering.multi_rate ? scenario.rendering.multi_rate->every : 1;
-    if (auto warning = trace_clock_warning(*loaded.files.at(kContactFile).trace(), scenario.time, every))
+    const ContactTrace& trace = *loaded.files.at(kContactFile).trace();
+    if (auto warning = trace_clock_warning(trace, scenario.time, every)) warnings.push_back(std::move(*warning));
+    if (auto warning = trace_size_warning(trace, *make_tool(scenario, loaded.files)))
       warnings.push_back(std::move(*warning));
   }
   return CheckedScenario(std::move(loaded), std::move(warnings));

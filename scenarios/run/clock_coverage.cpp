@@ -97,8 +97,10 @@ bool sees_few_samples(Samples samples, const RunTimes& run) {
 /// Counts that show how many contact queries of a run a trace covers.
 struct TraceCoverage {
   std::uint64_t queries = 0;  ///< number of steps in which the run searches contacts
-  std::uint64_t covered = 0;  ///< number of these steps for which the trace has a time within half a time step
-  std::uint64_t times = 0;    ///< number of times in the trace that lie within the run
+  std::uint64_t covered = 0;  ///< number of these steps for which the trace has a time within kTraceWindow
+  /// Number of these steps that are not covered although they lie between two successive times of the trace that are
+  /// less than 1.9 query intervals apart: the trace goes on, but its clock does not meet the steps.
+  std::uint64_t between = 0;
 };
 
 /// Returns the TraceCoverage of a trace whose clock counts `per_second` units in a second: divides the times of the
@@ -106,14 +108,18 @@ struct TraceCoverage {
 TraceCoverage coverage_of(const ContactTrace& trace, const RunTimes& run, std::int64_t every, double per_second) {
   TraceCoverage coverage;
   coverage.queries = static_cast<std::uint64_t>((run.steps - 1.0) / static_cast<double>(every)) + 1;
+  const double window = kTraceWindow * run.step, query = run.step * static_cast<double>(every);
   const auto& times = trace.times;
-  std::int64_t last = -1;
-  auto at = std::partition_point(times.begin(), times.end(),
-                                 [&](const auto& t) { return t.time / per_second < -0.5 * run.step; });
-  for (; at != times.end() && at->time / per_second <= run.end + 0.5 * run.step; ++at, ++coverage.times) {
-    const auto step = static_cast<std::int64_t>(std::round(at->time / per_second / run.step));
-    if (step != last && step % every == 0 && static_cast<double>(step) < run.steps) ++coverage.covered;
-    last = step;
+  const auto time_of = [&](std::size_t i) { return times[i].time / per_second; };
+  std::size_t after = 0;  // index of the first time of the trace that is not before the query
+  for (std::uint64_t k = 0; k < coverage.queries; ++k) {
+    const double now = static_cast<double>(k) * query;
+    while (after < times.size() && time_of(after) < now) ++after;
+    const bool has_before = after > 0, has_after = after < times.size();
+    const bool is_covered =
+        (has_before && now - time_of(after - 1) <= window) || (has_after && time_of(after) - now <= window);
+    coverage.covered += is_covered;
+    coverage.between += !is_covered && has_before && has_after && time_of(after) - time_of(after - 1) < 1.9 * query;
   }
   return coverage;
 }
@@ -173,6 +179,11 @@ std::string trace_problem(const ContactTrace& trace, const RunTimes& run, std::i
       return fmt::format(
           "the trace is slower than the run: rendering.contacts.every={:.0f} plays the contacts of a slower loop",
           std::max(2.0, std::round(interval / run.step)));
+    if (coverage.between > 0)
+      return fmt::format(
+          "{} of them lie between two times of the trace and have no contact although the trace goes on: its clock does "
+          "not have the run's step; time.step_s={:.4g} plays every time, or resample the trace",
+          coverage.between, interval / static_cast<double>(every));
     if (last + 1.5 * std::max(query, interval) < run.end)
       return fmt::format("the trace ends before the run: if the tool is still in contact then, set time.steps={:.0f}",
                          std::floor(last / run.step + 0.5) + 1.0);
@@ -203,7 +214,10 @@ std::optional<Warning> stroke_clock_warning(const Stroke& stroke, const TimeFiel
                     start, stop, run.end, start > run.end ? "first" : "last", unit != nullptr ? "; " : "",
                     unit != nullptr ? unit->advice : ""));
   }
-  if (samples.size() < 2) return std::nullopt;
+  if (samples.size() < 2)
+    return run.steps < 2.0
+               ? std::nullopt
+               : std::optional(warning("the stroke has a single sample: the tool stands still in all steps"));
   const std::string both =
       facts(fmt::format("stroke has {} samples", samples.size()), start, stop, samples.size(), run);
   // Warn if another unit of time fits better, or if the sample interval is unlikely.

@@ -7,6 +7,7 @@
 
 #include "scenarios/run/quantity_text.hpp"
 #include "scenarios/run/scene_distances.hpp"
+#include "scenarios/scene/named_files.hpp"
 #include "sim/tool/mesh_tool.hpp"
 
 namespace hapbench {
@@ -42,6 +43,27 @@ std::string scale_question(const Scenario& scenario, const ToolShape& tool, cons
   if (size >= kTooSmall * 2.0 * tool.half_width() && size <= kTooLarge * tool.reach()) return "";
   if (std::holds_alternative<MeshToolFields>(scenario.tool)) return "are tool.scale and the environment's size right?";
   return size_question(scenario.environment);
+}
+
+std::optional<Warning> trace_size_warning(const ContactTrace& trace, const ToolShape& tool) {
+  if (trace.contacts.empty()) return std::nullopt;
+  double deepest = 0.0;
+  Box points = {trace.contacts.front().point, trace.contacts.front().point};
+  for (const ContactTrace::Contact& contact : trace.contacts) {
+    deepest = std::max(deepest, contact.depth);
+    points.min = points.min.cwiseMin(contact.point);
+    points.max = points.max.cwiseMax(contact.point);
+  }
+  const auto warning = [](std::string text) {
+    return Warning{"trace_size", std::string(kContactFile),
+                   text + ": are depth_m and the points of the trace in metres?"};
+  };
+  if (deepest > tool.reach())
+    return warning(fmt::format("the deepest contact of the trace, {}, is deeper than the tool is long, {}",
+                               length_text(deepest), length_text(tool.reach())));
+  if (points.size().maxCoeff() > kLongestObject)
+    return warning(fmt::format("the points of the trace span {}", size_text(points)));
+  return std::nullopt;
 }
 
 std::string frame_problem(const Box& tool) {

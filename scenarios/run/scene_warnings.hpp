@@ -7,6 +7,7 @@
 
 #include "scenarios/scene/load_scenario.hpp"
 #include "scenarios/scene/scenario.hpp"
+#include "sim/contact/trace_source.hpp"
 #include "sim/tool/tool_shape.hpp"
 
 /// Checks a scene for likely mistakes before it runs. Returns warnings, and questions that name the field that
@@ -36,6 +37,10 @@ const char* size_question(const Environment& environment);
 /// Returns a question about the field that is most likely wrong if the sizes of tool and environment are out of
 /// proportion; otherwise an empty text.
 std::string scale_question(const Scenario& scenario, const ToolShape& tool, const Box& environment);
+
+/// Returns a warning if the sizes of a contact trace are probably in a wrong unit: a contact is deeper than the tool's
+/// length, or the points span more than kLongestObject.
+std::optional<Warning> trace_size_warning(const ContactTrace& trace, const ToolShape& tool);
 
 /// Returns a text that describes an unusual position or orientation of a tool in the tool frame, such as "is longer
 /// across its axis than along it". Empty if nothing is unusual. `tool`: bounding box of the tool in the tool frame, in

@@ -34,7 +34,7 @@ void TraceSource::contacts_at(const ToolPose&, ContactBuffer& contacts) noexcept
   if (at != times.begin() && (at == times.end() || now - std::prev(at)->time < at->time - now)) --at;
 
   // Copy the contacts of this time if it is at most half a step away from the time of the step.
-  if (at != times.end() && std::abs(at->time - now) <= 0.5 * dt_) {
+  if (at != times.end() && std::abs(at->time - now) <= kTraceWindow * dt_) {
     const std::size_t end = trace_->end_of(static_cast<std::size_t>(at - times.begin()));
     for (std::size_t i = at->first; i < end; ++i) {
       const auto& [point, gradient, depth] = trace_->contacts[i];

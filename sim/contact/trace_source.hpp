@@ -30,6 +30,10 @@ struct ContactTrace {
   std::size_t max_contacts() const;
 };
 
+/// Largest distance of the times of a trace and of a step that has its contacts, in time steps: half a step, and a
+/// tolerance for the rounding of recorded times, which may all lie in the middle between two steps.
+inline constexpr double kTraceWindow = 0.5 * (1.0 + 1e-6);
+
 /// Plays back a contact trace. A step gets the contacts recorded nearest to its time, or none if the nearest
 /// time is more than half a step away. The pose has no effect, so the tool should move as in the recording. A
 /// contact's index is its number, from 0, among the contacts recorded at the same time. Its normal is the reversed

@@ -280,11 +280,29 @@ class Start {
     return points();
   }
 
+  /// Throws InputError if a point of --at or --path is further from the bounding box of the surface than the box is
+  /// large: its coordinates are then in another unit or in another frame. Also if a point of --path is repeated. `box`:
+  /// in the side's frame.
+  void check_requested_points(const Box& box) const {
+    const char* const option = options_.at.empty() ? "--path" : "--at";
+    for (std::size_t i = 0; i < requested_points_.size(); ++i) {
+      const double distance = distance_to(box, to_world_.transpose() * requested_points_[i]);
+      if (distance > diagonal(box))
+        fail_in_option(option,
+                       fmt::format("got a point {} away from the surface, which is {} large; allowed: metres, in "
+                                   "the frame of the scene (\"hapbench validate\" prints the bounds)",
+                                   length_text(distance), size_text(box)));
+      if (i > 0 && requested_points_[i] == requested_points_[i - 1])
+        fail_in_option(option, fmt::format("got point {} twice; allowed: points that differ", i));
+    }
+  }
+
   /// Places the tool above the surface, and sets the motion of the hand.
   void place_tool() {
     const std::vector<SurfacePoint> shell = points_facing_side();
     const std::string count = has_type("environment", "mesh") ? "" : fmt::format("{} points", shell.size());
     const Box box = bounds_of(shell);
+    check_requested_points(box);
     const Vec3 top = top_of(shell, box);
     press_target_ = to_micrometres(side_sign() * (top.z() + 0.5 * diameter_ - kPressDepth));
     if (has_type("hand", "drag")) {
@@ -409,6 +427,7 @@ class Start {
   SurfacePath surface_path() {
     const std::vector<SurfacePoint> points = points_facing_side();
     const PointShell shell(points, 0.0);
+    check_requested_points(bounds_of(points));
     if (!requested_points_.empty()) {
       std::vector<Vec3> legs;
       for (const Vec3& point : requested_points_) legs.emplace_back(to_world_.transpose() * point);

@@ -221,6 +221,22 @@ TEST_F(NewOnASheet, StartsAtTheGivenPoint) {
   EXPECT_NEAR(path_given["initial"]["position_m"][0].get<double>(), -0.002, 2e-4);
 }
 
+/// Checks points in another unit or frame, and a point that is given twice.
+TEST_F(NewOnASheet, RefusesPointsFarFromTheSurface) {
+  const auto refused = [&](const std::vector<std::string>& points, const char* says) {
+    std::vector<std::string> words = {"new", "drag",      "--from", path("down.obj"), "--extent",
+                                      "8mm", "--side=-z", "--out",  path("far.json")};
+    words.insert(words.end(), points.begin(), points.end());
+    const ProgramRun run = hapbench(words);
+    EXPECT_EQ(run.status, 2) << run.out;
+    EXPECT_NE(run.err.find(says), std::string::npos) << run.err;
+    EXPECT_FALSE(std::filesystem::exists(path("far.json")));
+  };
+  refused({"--at", "2,-1,0.6"}, "away from the surface");
+  refused({"--path", "0.002,-0.001,0.0006", "--path", "2,1,0.6"}, "away from the surface");
+  refused({"--path", "0.002,-0.001,0.0006", "--path", "0.002,-0.001,0.0006"}, "twice");
+}
+
 TEST_F(NewOnASheet, ComesFromEverySideOfAClosedBody) {
   test::write_plainly(directory_ / "cube.obj", test::obj_text(test::cube(0.001)));
   const auto made_of_cube = [&](const std::string& kind, const std::string& side) {

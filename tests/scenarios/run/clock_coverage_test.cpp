@@ -61,6 +61,10 @@ TEST(StrokeClock, IsNamedWithItsUnit) {
   EXPECT_TRUE(contains(stroke_warning(times(0, 2e-9, 51)), "multiply the times by 10^6"));
 }
 
+TEST(StrokeClock, IsNamedIfItHasASingleSample) {
+  EXPECT_TRUE(contains(stroke_warning({0.0}), "a single sample"));
+}
+
 TEST(StrokeClock, IsNamedIfItEndsEarly) {
   const std::string text = stroke_warning(times(0, 0.002, 26));
   EXPECT_TRUE(contains(text, "covers 50.5 % of the steps")) << text;
@@ -81,6 +85,23 @@ TEST(TraceClock, IsAcceptedIfStepsFindTheirTimes) {
   EXPECT_EQ(trace_warning(times(0.05, 0.0005, 100)), "") << "the tool comes from above";
   EXPECT_EQ(trace_warning(times(0, 0.004, 25), 8), "") << "a slower loop";
   EXPECT_EQ(trace_warning(times(0, 0.0005, 1000)), "") << "longer than the run";
+}
+
+/// Checks a log whose times all lie in the middle between two steps, with rounding errors.
+TEST(TraceClock, IsAcceptedInTheMiddleOfTheSteps) {
+  for (const double shift : {-1e-12, 0.0, 1e-12})
+    EXPECT_EQ(trace_warning(times(0.00025 + shift, 0.0005, 200)), "") << shift;
+}
+
+TEST(TraceClock, IsNamedIfItsRateDiffersALittle) {
+  for (const double interval : {0.00057, 0.00053}) {
+    const std::string text = trace_warning(times(0, interval, 200));
+    EXPECT_TRUE(contains(text, "its clock does not have the run's step")) << interval << ": " << text;
+  }
+  // A tool that loses contact for single steps has no times there.
+  std::vector<double> gaps = times(0, 0.0005, 200);
+  for (std::size_t i = 10; i < gaps.size(); i += 9) gaps.erase(gaps.begin() + static_cast<std::ptrdiff_t>(i));
+  EXPECT_EQ(trace_warning(gaps), "");
 }
 
 TEST(TraceClock, IsNamedWithItsUnit) {
