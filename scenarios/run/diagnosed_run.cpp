@@ -21,18 +21,21 @@ namespace {
 
 /// Smallest number of steps in the last quarter from which drift and vibration frequency are computed.
 constexpr std::uint64_t kMinQuarterSteps = 10;
-/// Smallest stiffness of the search for the linear limit, in units of K. A loop that is unstable at this stiffness
-/// counts as unstable at any stiffness.
+/// Smallest stiffness of the search for the linear limit, in units of K.
 constexpr double kSmallestStiffness = 1e-9;
+/// A loop whose largest stable stiffness is at most this fraction of K counts as unstable at any stiffness: nothing
+/// could be felt. The fraction is far above the rounding errors of the eigenvalues, which alone make a loop without
+/// damping stable up to about 1e-10 m / dt^2, with the mass m.
+constexpr double kNegligibleStiffness = 1e-4;
 
 /// Returns the largest stable K [N/m] of a tool on permanent springs. The springs have the largest stiffness ratio
 /// lambda of the run. Empty without a linear loop.
-Number springs_limit(const DiagnosedRun& run) {
+Number springs_limit(const DiagnosedRun& run, const Scenario& scenario) {
   const Number lambda = run.metric("ratio_max");
-  const double K = run.scenario().rendering.stiffness;
-  if (!lambda || !(*lambda > 0.0) || contact_step_matrix(run.scenario(), *lambda).size() == 0) return std::nullopt;
+  const double K = scenario.rendering.stiffness;
+  if (!lambda || !(*lambda > 0.0) || contact_step_matrix(scenario, *lambda).size() == 0) return std::nullopt;
   constexpr double kMax = 2.0;  // upper end of the search range, in units of K; a limit above it is not relevant
-  Scenario at = run.scenario();
+  Scenario at = scenario;
   return first_stability_limit(kSmallestStiffness * K, kMax * K, [&](double stiffness) {
     at.rendering.stiffness = stiffness;
     return contact_step_matrix(at, *lambda);
@@ -41,23 +44,24 @@ Number springs_limit(const DiagnosedRun& run) {
 
 /// Returns the largest K [N/m] at which the linear loop is stable, with the contact linearised near the last step in
 /// contact. Empty without contact or without a linear loop.
-Number surface_limit(const DiagnosedRun& run) {
-  if (!run.observations.last_contact || has_multi_rate_contacts(run.scenario())) return std::nullopt;
-  const CheckedScenario scenario = checked(run.loaded);
+Number surface_limit(const DiagnosedRun& run, const LoadedScenario& loaded) {
+  if (!run.observations.last_contact || has_multi_rate_contacts(loaded.scenario)) return std::nullopt;
+  const CheckedScenario scenario = checked(loaded);
   return linear_stiffness_limit(scenario, make_shell(scenario.scenario(), scenario.files()),
                                 *run.observations.last_contact);
 }
 
 /// Returns K divided by the largest stable K of the linear loop in contact. Empty without contact or without a loop.
-/// Rounded to six digits, so that builds with different rounding errors give the same result.
-Number ratio_to_stability_limit(const DiagnosedRun& run) {
-  const double K = run.scenario().rendering.stiffness;
+/// Rounded to six digits, so that builds with different rounding errors give the same result. `loaded`: the scenario of
+/// the run, or a variant of it.
+Number ratio_to_stability_limit(const DiagnosedRun& run, const LoadedScenario& loaded) {
+  const double K = loaded.scenario.rendering.stiffness;
   if (!(K > 0.0) || !run.is_free()) return std::nullopt;
   // Without a hand, a tool has no equilibrium on a surface. The derivative of the force at a pose that is no
   // equilibrium contains the change of the normal, which pushes the tool sideways at any K. Without an equilibrium,
   // therefore use the limit of a tool on permanent springs.
   const bool has_equilibrium = !run.has_springs() && run.has_hand();
-  const Number limit = has_equilibrium ? surface_limit(run) : springs_limit(run);
+  const Number limit = has_equilibrium ? surface_limit(run, loaded) : springs_limit(run, loaded.scenario);
   if (!limit) return std::nullopt;
   return rounded_to_digits(K / std::max(kSmallestStiffness * K, *limit), 6);
 }
@@ -73,13 +77,12 @@ bool looks_unstable(const DiagnosedRun& run) {
 /// Returns ratio_to_stability_limit() if looks_unstable(run) is true, else an empty value.
 Number ratio_in_vibration(const DiagnosedRun& run) {
   if (!looks_unstable(run)) return std::nullopt;
-  if (!run.ratio_to_limit) run.ratio_to_limit = ratio_to_stability_limit(run);
+  if (!run.ratio_to_limit) run.ratio_to_limit = ratio_to_stability_limit(run, run.loaded);
   return *run.ratio_to_limit;
 }
 
 bool is_unstable_at_any_stiffness(double ratio) {
-  constexpr double kRounding = 1e-3;  // larger than the relative rounding error of a number with six digits
-  return ratio >= (1.0 - kRounding) / kSmallestStiffness;
+  return ratio >= 1.0 / kNegligibleStiffness;
 }
 
 }  // namespace
@@ -162,6 +165,13 @@ Number unstable_loop(const DiagnosedRun& run) {
   return ratio && is_unstable_at_any_stiffness(*ratio) && !unstable_alone(run) ? Number(1.0) : std::nullopt;
 }
 
+bool is_stable_at_some_stiffness(const DiagnosedRun& run, const std::function<void(Scenario&)>& change) {
+  LoadedScenario changed = run.loaded;
+  change(changed.scenario);
+  const Number ratio = ratio_to_stability_limit(run, changed);
+  return ratio && !is_unstable_at_any_stiffness(*ratio) && unstable_without_wall(changed.scenario).empty();
+}
+
 Number coarseness(const DiagnosedRun& run) {
   // kSufficientContacts: number of contacts in a step that gives a smooth force. kMinSpacings: shortest path in contact
   // for which coarseness() has a value, in units of the point spacing.
@@ -199,7 +209,10 @@ Number damping_share(const DiagnosedRun& run) {
   if (!lambda || !run.is_free() || s.rendering.hunt_crossley) return std::nullopt;
   double B = *lambda * normal_damping(s.rendering);
   if (const auto& most = s.rendering.max_damping) B = std::min(B, *most);
-  const double mass = device != nullptr ? device->handle_mass : s.rendering.mass;
+  // The mass of a passive hand is fixed to the handle.
+  const auto* hand = std::get_if<MassSpringDamperHandFields>(&s.hand);
+  const double handle_mass = device != nullptr ? device->handle_mass + (hand != nullptr ? hand->mass : 0.0) : 0.0;
+  const double mass = device != nullptr ? handle_mass : s.rendering.mass;
   return B * s.time.step / mass / (device != nullptr ? 2.0 : s.integrator.type->damper_limit);
 }
 
@@ -241,6 +254,7 @@ std::string buzz_frequency(const DiagnosedRun& run) {
   Eigen::Index axis = 0;
   if (last.rows < kMinQuarterSteps || !(last.high_squares.maxCoeff(&axis) > 0.0)) return "";
   const double turns = static_cast<double>(last.high_sign_changes[static_cast<std::size_t>(axis)]);
+  if (turns < 2.0) return "";  // a single jump of the force has no frequency
   return fmt::format(", at about {:.0f} Hz", 0.5 * turns / (run.scenario().time.step * static_cast<double>(last.rows)));
 }
 

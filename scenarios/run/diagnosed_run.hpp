@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -98,8 +99,10 @@ Number stability_limit_ratio(const DiagnosedRun& run);
 /// unstable even without contact, by its eigenvalues; otherwise an empty value.
 Number unstable_alone(const DiagnosedRun& run);
 /// Returns 1 if the run diverged, lost contact or vibrates, the linear loop with a contact is unstable even with a
-/// stiffness of almost zero, and unstable_alone() is empty; otherwise an empty value.
+/// stiffness of K / 10000, and unstable_alone() is empty; otherwise an empty value.
 Number unstable_loop(const DiagnosedRun& run);
+/// Returns true if the linear loop with a contact is stable at some stiffness of at least K / 10000 after `change`.
+bool is_stable_at_some_stiffness(const DiagnosedRun& run, const std::function<void(Scenario&)>& change);
 /// Returns the point spacing divided by the spacing at which four points would be in contact. The number of contacts is
 /// proportional to 1 / spacing^2. Empty if the path of the tip in contact is shorter than ten spacings, or if the
 /// contacts come from a recording or a module.

@@ -61,10 +61,9 @@ constexpr Rule kRules[] = {
      "1", kMaxLimitRatio, "K is {} times the linear stability limit", stability_limit_ratio, against_unstable_stiffness,
      no_more, true},
     {"loop",
-     "1 if the loop of device, hand, tool and contact is unstable at any K, in a run that vibrates, diverges or loses "
-     "contact",
-     "1", 0.5, "the loop is unstable at any K: its damping or the device's servo is the cause", unstable_loop,
-     against_unstable_loop},
+     "1 if the loop of device, hand, tool and contact is unstable even at K / 10000, in a run that vibrates, diverges "
+     "or loses contact",
+     "1", 0.5, "the loop is unstable even at K / 10000: K is not the cause", unstable_loop, against_unstable_loop},
     {"buzz", "rms of the force above 30 Hz, divided by the mean force in settled contact of a pressed tool", "1",
      kMaxBuzz, "the force vibrates: its rms above 30 Hz is {} times the mean force", buzz, against_buzz, buzz_frequency,
      true},

@@ -3,9 +3,13 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <functional>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "algorithms/registry.hpp"
+#include "algorithms/stages/damping_and_limits.hpp"
 #include "scenarios/run/scene_distances.hpp"
 
 namespace hapbench {
@@ -41,6 +45,43 @@ std::string laws_that_never_soften(const DiagnosedRun& run) {
 std::string damping_field(const RenderingConfig& rendering) {
   if (rendering.hunt_crossley) return parameter::kChi.field;
   return rendering.damping ? parameter::kDamping.field : damping_ratio_field();
+}
+
+/// A change of a scenario, and its words in an advice.
+struct LoopChange {
+  std::string remedy;
+  std::function<void(Scenario&)> change;
+};
+
+/// Multiplies the damping of the contacts. `if_zero`: damping ratio that replaces a damping of zero.
+void scale_damping(RenderingConfig& rendering, double factor, double if_zero) {
+  if (rendering.hunt_crossley) *rendering.hunt_crossley *= factor;
+  if (rendering.damping) *rendering.damping *= factor;
+  rendering.damping_ratio *= factor;
+  if (normal_damping(rendering) > 0.0 || rendering.hunt_crossley) return;
+  rendering.damping.reset();
+  rendering.damping_ratio = if_zero;
+}
+
+/// Returns the changes that can make a loop stable whose stiffness is not the cause.
+std::vector<LoopChange> loop_changes(const Scenario& scenario) {
+  const std::string damping = damping_field(scenario.rendering);
+  std::vector<LoopChange> changes = {{"a shorter time.step_s", [](Scenario& s) { s.time.step *= 0.1; }}};
+  const bool has_damping = normal_damping(scenario.rendering) > 0.0 || scenario.rendering.hunt_crossley;
+  if (has_damping)
+    changes.push_back({"a smaller " + damping, [](Scenario& s) { scale_damping(s.rendering, 0.1, 0.0); }});
+  changes.push_back({"a larger " + damping, [](Scenario& s) { scale_damping(s.rendering, 10.0, 0.7); }});
+  if (const auto* device = std::get_if<ImpedanceDeviceConfig>(&scenario.device)) {
+    const auto no_delay = [](Scenario& s) { std::get<ImpedanceDeviceConfig>(s.device).delay_samples = 0.0; };
+    if (device->delay_samples > 0.0) changes.push_back({"a shorter delay of the device", no_delay});
+  }
+  if (std::holds_alternative<AdmittanceDeviceConfig>(scenario.device)) {
+    changes.push_back({"a softer servo (device.servo.stiffness_N_per_m)",
+                       [](Scenario& s) { std::get<AdmittanceDeviceConfig>(s.device).servo.stiffness *= 0.1; }});
+    changes.push_back({"a shorter delay of device.servo",
+                       [](Scenario& s) { std::get<AdmittanceDeviceConfig>(s.device).servo.delay = 0; }});
+  }
+  return changes;
 }
 
 bool is_beyond(const Number& number, double threshold) {
@@ -121,6 +162,8 @@ std::string against_sinking(const DiagnosedRun& run) {
                          : "another motion.position: the script starts inside the environment";
   if (step_exceeds_half_width(run)) return kShorterStep;
   if (!run.is_free()) return "another motion.position, because the script moves the tool there";
+  if (is_too_stiff(run)) return "a smaller K: the rule \"edge\" names the stability limit";
+  if (is_beyond(unstable_loop(run), 0.5)) return against_unstable_loop(run);
   return "a larger K or a smaller hand force; if the rule \"soft\" is listed, another algorithm";
 }
 
@@ -139,14 +182,18 @@ std::string against_loss(const DiagnosedRun& run) {
            "and distances); if the tool came nearer until the end of the run, more time.steps";
   }
   if (is_too_stiff(run)) return "a smaller K: the rule \"edge\" names the stability limit";
+  if (is_beyond(unstable_loop(run), 0.5)) return against_unstable_loop(run);
   return "a hand whose path ends on the surface";
 }
 
 std::string against_standstill(const DiagnosedRun& run) {
+  // A tool that ends without a rendered force is held by the device or led by the hand; the law has no effect.
+  const bool is_rendered = !run.observations.last_force.isZero(0.0);
   std::vector<std::string> remedies = {"a stiffer hand"};
-  if (run.scenario().rendering.has_friction()) remedies.emplace_back("a smaller rendering.friction");
+  if (is_rendered && run.scenario().rendering.has_friction()) remedies.emplace_back("a smaller rendering.friction");
   if (const auto* device = run.impedance(); device != nullptr && device->coulomb > 0.0)
     remedies.emplace_back("a device with a smaller device.coulomb_N");
+  if (!is_rendered) return either(remedies);
   return either(remedies) +
          "; \"hapbench compare SCENARIO --algorithms all\" shows with which algorithms the tool moves on";
 }
@@ -171,9 +218,12 @@ std::string against_unstable_servo(const DiagnosedRun&) {
 }
 
 std::string against_unstable_loop(const DiagnosedRun& run) {
-  std::vector<std::string> remedies = {"a shorter time.step_s", "a smaller " + damping_field(run.scenario().rendering)};
-  if (std::holds_alternative<AdmittanceDeviceConfig>(run.scenario().device))
-    remedies.emplace_back("smaller gains or a shorter delay of device.servo");
+  std::vector<std::string> remedies;
+  for (const auto& [remedy, change] : loop_changes(run.scenario()))
+    if (is_stable_at_some_stiffness(run, change)) remedies.push_back(remedy);
+  if (remedies.empty())
+    return "another device or hand: no stiffness is stable with a tenth of the time step, or with a tenth or ten times "
+           "the damping";
   return either(remedies);
 }
 

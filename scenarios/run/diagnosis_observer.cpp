@@ -45,7 +45,8 @@ void DiagnosisObserver::on_step(const StepRecord& record) noexcept {
 void DiagnosisObserver::add_contact(const StepRecord& record) noexcept {
   const Vec3& f = record.force.rendered;
   ++observations_.in_contact;
-  observations_.last_contact = contact_state(record);
+  // Behind the surface, a tool that was thrown through it can touch where no equilibrium is near.
+  if (outcome_ == nullptr || !outcome_->has_passed()) observations_.last_contact = contact_state(record);
   if (force_limit_ && f.norm() >= kAtLimit * *force_limit_) ++observations_.at_force_limit;
   if (input_limit_ && record.hand.input.norm() >= kAtLimit * *input_limit_) ++observations_.at_input_limit;
   if (was_in_contact_) observations_.path_in_contact += (record.tool.pose.position - observations_.tip).norm();

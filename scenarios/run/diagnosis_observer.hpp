@@ -26,8 +26,10 @@ struct RunObservations {
   double path_in_contact = 0.0;  ///< path length of the tip in contact [m]
   /// Largest OutcomeObserver::longest_step() of all trials [m].
   double longest_step = 0.0;
-  Vec3 last_force = Vec3::Zero();            ///< rendered force in the last step [N]
-  std::optional<ContactState> last_contact;  ///< state at the last step in contact, over all trials
+  Vec3 last_force = Vec3::Zero();  ///< rendered force in the last step [N]
+  /// State at the last step in contact before the tool passed through the surface (OutcomeObserver::has_passed()),
+  /// over all trials.
+  std::optional<ContactState> last_contact;
   struct Quarter {
     std::uint64_t rows = 0;
     bool always_in_contact = true;  ///< true if every step of the quarter is in contact
@@ -45,6 +47,10 @@ class DiagnosisObserver final : public Observer {
  public:
   /// The scenario must outlive the observer.
   explicit DiagnosisObserver(const Scenario& scenario);
+
+  /// Must be called before each trial. `outcome`: observer of the trial, which is notified of each step before this
+  /// observer and outlives the trial.
+  void begin(const OutcomeObserver& outcome) noexcept { outcome_ = &outcome; }
 
   void on_step(const StepRecord& record) noexcept override;
 
@@ -66,6 +72,7 @@ class DiagnosisObserver final : public Observer {
   void add_to_quarter(const StepRecord& record) noexcept;
 
   const Scenario& scenario_;
+  const OutcomeObserver* outcome_ = nullptr;  ///< observer of the current trial; null before the first trial
   /// Limits of the rendered force and of the hand's input force [N]; empty without a limit.
   std::optional<double> force_limit_, input_limit_;
   std::optional<HighPass> high_pass_;

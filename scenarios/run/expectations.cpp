@@ -23,6 +23,17 @@ std::string divergence_text(const Result& run) {
   return fmt::format("{} reached {:.4g} at step {}, beyond {:.4g}", d.quantity, d.magnitude, d.step, d.bound);
 }
 
+std::vector<std::string> violated_bounds(const std::map<std::string, MetricBound>& bounds, const Result& run) {
+  std::vector<std::string> violated;
+  for (const auto& [name, bound] : bounds) {
+    const auto number = number_of(run.metrics, name);
+    if (!number) violated.push_back(name + " none");
+    if (number && bound.min && *number < *bound.min) violated.push_back(name + " min");
+    if (number && bound.max && *number > *bound.max) violated.push_back(name + " max");
+  }
+  return violated;
+}
+
 std::vector<std::string> unmet_expectations(const ExpectFields& expect, const Result& run) {
   std::vector<std::string> unmet;
   // Check the outcome.

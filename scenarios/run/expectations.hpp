@@ -18,6 +18,10 @@ std::string divergence_text(const Result& run);
 /// Returns one sentence for each expectation of the scenario that the run does not meet.
 std::vector<std::string> unmet_expectations(const ExpectFields& expect, const Result& run);
 
+/// Returns the bounds that the run's metrics do not keep, such as "inside_max_m max"; "NAME none" for a metric without
+/// a value.
+std::vector<std::string> violated_bounds(const std::map<std::string, MetricBound>& bounds, const Result& run);
+
 /// Returns true if the scenario expects `outcome`.
 inline bool outcome_is_expected(const ExpectFields& expect, Outcome outcome) {
   return std::ranges::find(expect.outcomes, outcome) != expect.outcomes.end();

@@ -36,7 +36,8 @@ struct ContactAtRest {
 /// Returns derivatives of the rendered force and of the hand's force at the equilibrium of the tool near `near`. Dry
 /// friction, encoder, sensor noise, force stages and passivity controller are left out. The derivatives of the rendered
 /// force with respect to position and velocity of the tool are central differences with relative errors of 1e-7. The
-/// set of contacts is held constant: where a point begins to touch, the difference is one-sided.
+/// set of contacts is held constant: where a point begins to touch, the difference is one-sided. The force at each
+/// position is the force on a tool that rests there: the proxy of a constraint-based law has come to rest.
 ///
 /// The equilibrium is found by Newton's method, with the targets of the hand as at the time of `near`. Without an
 /// equilibrium, the derivatives belong to the pose of `near`; a law whose force jumps when a point begins to touch need

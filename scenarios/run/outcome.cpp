@@ -64,7 +64,7 @@ class OutcomeObserverImpl final : public OutcomeObserver {
     force_ = record.force.rendered;
     hand_force_ = record.hand_force;
     handle_velocity_ = record.handle.velocity;
-    if (record.colliding > 0) last_contact_ = record.time;
+    if (record.bears_contact()) last_contact_ = record.time;
     if (inside_) inside_->on_step(record);
     if (approach_) approach_->add(record, !last_contact_);
     if (progress_) progress_->add(record.time, record.tool.pose.position);
@@ -76,6 +76,9 @@ class OutcomeObserverImpl final : public OutcomeObserver {
     }
   }
   const std::optional<FinalFailure>& final_failure() const noexcept override { return failure_; }
+  bool has_passed() const noexcept override {
+    return inside_ && (inside_->passage().deep || inside_->passage().left || inside_->core_passage().event());
+  }
 
   Outcome outcome(Ending ending) override {
     if (!approach_ || ending != Ending::completed) return outcome_of(ending);
@@ -149,9 +152,23 @@ class OutcomeObserverImpl final : public OutcomeObserver {
     return is_held && handle_velocity_.norm() < kAtRest ? std::optional(device->coulomb) : std::nullopt;
   }
 
+  /// Returns true if, at the end, the hand's force points back towards the environment.
+  bool hand_pushes_back() const {
+    const Box& box = approach_->environment();
+    const Vec3 outward = position_ - position_.cwiseMax(box.min).cwiseMin(box.max);
+    return hand_force_.dot(outward) < 0.0;
+  }
+  /// Returns false if the spring of the hand ends before the surface: the target is nearer to the tool than the
+  /// surface, at `distance` [m].
+  bool can_arrive(double distance) const {
+    const ImpedanceHandFields* spring = spring_of(scenario_.hand);
+    return spring == nullptr || (vector_at(spring->target, time_) - position_).norm() >= distance;
+  }
+
   /// Returns the most likely reason why the tool lost contact or never had contact. An uncertain reason is phrased as a
-  /// question. `time_to_contact`: time in which the tool would reach the surface [s] (Approach::Closest).
-  std::string likely_cause(const std::optional<double>& time_to_contact = {}) const {
+  /// question. `time_to_contact`: time in which the tool would reach the surface [s] (Approach::Closest). `distance`:
+  /// smallest distance to the surface in the run [m].
+  std::string likely_cause(const std::optional<double>& time_to_contact = {}, double distance = 0.0) const {
     constexpr double kMaxTimeToContact = 100.0;  // longest plausible time to contact, in durations of the run
     const double longest = approach_->longest_step();
     if (std::string question = scale_question(scenario_, *tool_, approach_->environment()); !question.empty())
@@ -165,10 +182,14 @@ class OutcomeObserverImpl final : public OutcomeObserver {
     if (last_contact_) {
       const bool is_constant = std::holds_alternative<ForceHandFields>(scenario_.hand) ||
                                std::holds_alternative<PushHandFields>(scenario_.hand);
-      if (is_constant) return "the hand keeps pushing with a constant force where there is no surface";
+      if (is_constant && !hand_pushes_back())
+        return "the hand keeps pushing with a constant force where there is no surface";
+      if (is_constant)
+        return fmt::format("the force threw the tool against the hand's push: the largest force was {:.3g} N",
+                           std::sqrt(metrics_->trial().force_max_squared));
       return fmt::format("the largest force was {:.3g} N", std::sqrt(metrics_->trial().force_max_squared));
     }
-    if (time_to_contact &&
+    if (time_to_contact && can_arrive(distance) &&
         *time_to_contact < kMaxTimeToContact * scenario_.time.step * static_cast<double>(scenario_.time.steps))
       return fmt::format("it was approaching at the end and would touch {:.2g} s later: is time.steps too small?",
                          *time_to_contact);
@@ -204,10 +225,6 @@ class OutcomeObserverImpl final : public OutcomeObserver {
     return std::holds_alternative<NoHandFields>(scenario.hand);
   }
 
-  /// Returns true if the tool has gone through the surface and no later step can change this (FinalFailure).
-  bool has_passed() const noexcept {
-    return inside_ && (inside_->passage().deep || inside_->passage().left || inside_->core_passage().event());
-  }
   /// Returns true if the tool has left the environment for good. Precondition: never_returns(). A plane separates the
   /// tool from the environment's bounding box, and neither the velocity of the tool nor the force on the tool points
   /// towards this plane. Position and speed must stay far from the bounds at which the run would diverge.
@@ -277,7 +294,8 @@ class OutcomeObserverImpl final : public OutcomeObserver {
     return fmt::format(
         "the tool never touched the environment: its smallest distance to the surface was {} (at {:.4g} s); "
         "environment {}; {}",
-        length_text(closest.distance), closest.time, environment_text(), likely_cause(closest.time_to_contact));
+        length_text(closest.distance), closest.time, environment_text(),
+        likely_cause(closest.time_to_contact, closest.distance));
   }
 
   /// Returns true if a tool that moves freely ended far from the environment (is_far()), or if a dragged tool left the
@@ -311,7 +329,7 @@ class OutcomeObserverImpl final : public OutcomeObserver {
     const auto s = stuck();
     if (!s) return "";
     return fmt::format(
-        "the tool stood still from {:.4g} s on: it moved by {} while its target moved by {}; at the end it was at {} "
+        "the tool hardly moved from {:.4g} s on: it moved by {} while its target moved by {}; at the end it was at {} "
         "with a force of {:.3g} N",
         s->since, length_text(s->tool_distance), length_text(s->target_distance), position_text(position_),
         force_.norm());

@@ -56,6 +56,9 @@ class OutcomeObserver : public Observer {
   /// Returns the final failure of the trial; empty if there is none so far, and always empty with RunLength::full.
   /// After a final failure, the observer ignores all further steps.
   virtual const std::optional<FinalFailure>& final_failure() const noexcept = 0;
+  /// Returns true if the tool has passed through the surface: the condition of FinalFailure for went_through, with
+  /// either RunLength.
+  virtual bool has_passed() const noexcept = 0;
   /// Returns the outcome of a run whose simulation ended with `ending`. For a completed run with a point shell,
   /// this is the first outcome whose condition holds (kConditions in outcome.cpp; outcome_infos() describes the
   /// conditions).

@@ -121,7 +121,10 @@ class Run {
     for (MetricsObserver& observer : sampling_->observers()) observers.push_back(&observer);
     for (const auto& observer : sections_.all()) observers.push_back(observer.get());
     observers.push_back(outcome.get());
-    if (diagnosis_) observers.push_back(&*diagnosis_);
+    if (diagnosis_) {
+      diagnosis_->begin(*outcome);
+      observers.push_back(&*diagnosis_);
+    }
     if (target) {
       for (auto& recorder :
            make_recorders({scenario_.record, parts.source->capacity(), sections_, outcome->inside()}, *target)) {

@@ -107,6 +107,9 @@ struct StepRecord {
   SpringState springs;                 ///< computed only if an observer reads springs or energy
   std::optional<DeviceEnergy> device;  ///< computed only if an observer reads the energy
 
+  /// Returns true if the surface acts on the tool: a point collides, or springs exert a force although none does. The
+  /// proxy holds the tool on patches between the points of the surface.
+  bool bears_contact() const noexcept { return colliding > 0 || !force.spring.isZero(0.0); }
   /// Returns the velocity of the moving body [m/s]: of the handle if the tool follows the handle, and of the tool
   /// otherwise. The effects of encoder and filter are not included.
   const Vec3& body_velocity() const noexcept { return handle_moves_tool ? handle.velocity : tool.velocity; }

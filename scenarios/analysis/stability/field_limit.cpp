@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
+#include <limits>
 #include <map>
 #include <set>
 #include <span>
@@ -68,6 +68,11 @@ class RunCache {
     return {value, of(value).verdict};
   }
   const RunStability& of(double value) const { return runs_.at(value); }
+  /// Returns the reason why the run at a parameter is not stable: its class, and the bounds that it violates.
+  std::pair<RunVerdict, std::vector<std::string>> failure_at(double t) const {
+    const RunStability& run = of(question_.search.value_at(t));
+    return {run.verdict, run.violated};
+  }
 
   const std::map<double, RunStability>& by_value() const { return runs_; }
 
@@ -84,6 +89,31 @@ EvaluatedParameters evaluate_first(RunCache& runs, std::vector<double> parameter
   EvaluatedParameters evaluated;
   for (const double t : parameters) evaluated[t] = runs.is_stable_at(t);
   return evaluated;
+}
+
+/// If no evaluated parameter is stable, searches between neighbours whose runs fail in different ways, such as passing
+/// through a surface that is too soft and vibrating on one that is too stiff: a stable interval between them may be
+/// narrower than a scan interval. Bisects each such pair, and every half whose ends still differ, down to the
+/// resolution or up to kMaxRuns runs. Stops at the first stable parameter.
+void search_between_failures(const LimitQuestion& question, RunCache& runs, EvaluatedParameters& evaluated) {
+  constexpr int kMaxRuns = 60;
+  const auto is_stable = [](const auto& entry) { return entry.second; };
+  if (std::ranges::any_of(evaluated, is_stable)) return;
+  std::vector<std::pair<double, double>> pairs;
+  for (auto low = evaluated.begin(), high = std::next(low); high != evaluated.end(); ++low, ++high)
+    pairs.emplace_back(low->first, high->first);
+  std::ranges::reverse(pairs);  // the pair at the low end is the last, and is taken first
+  for (int made = 0; !pairs.empty() && made < kMaxRuns;) {
+    const auto [low, high] = pairs.back();
+    pairs.pop_back();
+    if (runs.failure_at(low) == runs.failure_at(high) || !question.search.needs_bisection(low, high)) continue;
+    const double middle = 0.5 * (low + high);
+    evaluated[middle] = runs.is_stable_at(middle);
+    ++made;
+    if (evaluated[middle]) return;
+    pairs.emplace_back(middle, high);
+    pairs.emplace_back(low, middle);
+  }
 }
 
 StableInterval find_interval(const LimitQuestion& question, RunCache& runs, EvaluatedParameters evaluated, bool near) {
@@ -114,7 +144,10 @@ void add_interval(const LimitQuestion& question, const StableInterval& interval,
     limit.end.value = search.value_at(*interval.stable);
     limit.settled = runs.of(*limit.end.value).settled;
   }
-  if (interval.beyond) limit.end.beyond = runs.at(*interval.beyond);
+  if (interval.beyond) {
+    limit.end.beyond = runs.at(*interval.beyond);
+    limit.beyond_fades = runs.of(limit.end.beyond->value).fades;
+  }
   if (interval.first) limit.other.value = search.value_at(*interval.first);
   if (interval.before) limit.other.beyond = runs.at(*interval.before);
   if (search.current_parameter()) limit.own = runs.at(*search.current_parameter());
@@ -149,7 +182,11 @@ void add_cause(const LimitQuestion& question, FieldLimit& limit) {
 
 /// Stores FieldLimit::linear, or the reason why it has no value (FieldLimit::no_linear).
 void add_linear_limit(const LimitQuestion& question, const std::map<double, RunStability>& runs, FieldLimit& limit) {
-  if (limit.theory || limit.theory_has_none || question.search.smallest || !limit.end.value) return;
+  if (limit.theory || limit.theory_has_none) return;
+  if (!limit.end.value) {
+    limit.no_linear = "no run is stable, so that no tool rests in contact";
+    return;
+  }
   const Scenario scenario = question.at(*limit.end.value).scenario;
   if (has_multi_rate_contacts(scenario)) {
     limit.no_linear = "the contacts are not found in every step";
@@ -163,18 +200,25 @@ void add_linear_limit(const LimitQuestion& question, const std::map<double, RunS
   // is skipped, because it would count springs at zero deflection as not in contact.
   if (has_permanent_springs(scenario)) {
     const TheoreticalLimit loop = frictionless_limit(question);
-    limit.linear = loop.has_none ? 0.0 : loop.value;
+    if (loop.has_none) limit.linear = question.search.smallest ? std::numeric_limits<double>::infinity() : 0.0;
+    if (!loop.has_none) limit.linear = loop.value;
     if (limit.linear) return;
   }
-  // Among the stable values up to the limit, find the largest value whose run has a lasting contact (contact_lasts()).
-  for (auto run = std::make_reverse_iterator(runs.upper_bound(*limit.end.value)); run != runs.rend(); ++run) {
-    const auto& [value, judged] = *run;
-    if (!question.rule.holds(judged.verdict) || !contact_lasts(judged.settled, question.at(value).scenario)) continue;
-    limit.linear = contact_limit(question, value, *judged.settled.last_contact);
-    if (!limit.linear) limit.no_linear = "the tool has no equilibrium in contact";
+  // Among the stable values, find the value nearest to the limit whose run has a lasting contact (contact_lasts()).
+  std::optional<double> nearest;
+  const auto distance = [&](double value) { return std::abs(value - *limit.end.value); };
+  for (const auto& [value, judged] : runs) {
+    const bool is_on_stable_side = question.search.smallest ? value >= *limit.end.value : value <= *limit.end.value;
+    if (!is_on_stable_side || (nearest && distance(value) >= distance(*nearest))) continue;
+    if (question.rule.holds(judged.verdict) && contact_lasts(judged.settled, question.at(value).scenario))
+      nearest = value;
+  }
+  if (!nearest) {
+    limit.no_linear = "contacts come and go in every stable run";
     return;
   }
-  limit.no_linear = "contacts come and go in every stable run";
+  limit.linear = contact_limit(question, *nearest, *runs.at(*nearest).settled.last_contact);
+  if (!limit.linear) limit.no_linear = "the tool has no equilibrium in contact";
 }
 
 /// Stores in `limit` the further theoretical limits: the limits by closed formulas, the linear limit with the worst of
@@ -195,6 +239,10 @@ std::optional<double> IntervalEnd::tolerance() const {
   return std::abs(beyond->value - *value);
 }
 
+bool FieldLimit::has_no_linear_value(bool smallest) const {
+  return linear && (smallest ? std::isinf(*linear) : *linear == 0.0);
+}
+
 /// Finds the limit with the bounds of the question's rule. Ignores the errors of the bounded metrics.
 static FieldLimit limit_with_bounds(const LimitQuestion& question) {
   FieldLimit limit;
@@ -205,6 +253,7 @@ static FieldLimit limit_with_bounds(const LimitQuestion& question) {
   // Search the interval by runs. Samples near the limit are needed only if no theory confirms the limit.
   RunCache runs(question);
   EvaluatedParameters evaluated = evaluate_first(runs, std::move(theory.islands));
+  search_between_failures(question, runs, evaluated);
   const bool near = !limit.theory;
   const StableInterval interval = find_interval(question, runs, std::move(evaluated), near);
   add_interval(question, interval, runs, limit);

@@ -41,10 +41,11 @@ struct FieldLimit {
   QuotedLimit quoted = {};
   /// The limit: the high end of the stable interval, or the low end in a search for the smallest stable value.
   IntervalEnd end;
-  IntervalEnd other;  ///< the other end of the interval
+  IntervalEnd other;          ///< the other end of the interval
+  bool beyond_fades = false;  ///< RunStability::fades of the run at `end.beyond`
   /// Linear limit for springs that stay in contact, by the eigenvalues of the linear map of one time step
-  /// (eigenvalue_limit()). If the whole range is stable, it is infinite, or 0 in a search for the smallest stable
-  /// value. Empty if the theory does not apply or no value is stable.
+  /// (eigenvalue_limit()). If the loop is stable to the end of the range, it is infinite, or 0 in a search for the
+  /// smallest stable value. Empty if the theory does not apply or no value is stable.
   std::optional<double> theory;
   bool theory_has_none = false;  ///< true if the theory applies and no value of the range is stable
   /// Limit by the integrator's stability inequality (inequality_limit()), which applies to a tool on springs without
@@ -53,10 +54,10 @@ struct FieldLimit {
   /// Linear limit if `theory` is empty. For springs in permanent contact, it is frictionless_limit(). For a surface
   /// that the tool can leave, it is contact_limit(), searched from the run with the largest stable value in which
   /// contact lasts. Dry friction and the encoder are ignored. Dry friction, the encoder and loss of contact can raise
-  /// the simulated limit above the linear limit. Infinite if the whole range is stable; 0 if no value is stable.
+  /// the simulated limit above the linear limit. Infinite if the loop is stable to the end of the range, 0 if no value
+  /// is stable; in a search for the smallest stable value, 0 and infinite.
   std::optional<double> linear;
-  /// Why no linear limit was found; empty if `theory` or `linear` has a value, if no value is stable, and in any search
-  /// for the smallest stable value.
+  /// Why no linear limit was found; empty if `theory` or `linear` has a value, or if the theory finds no stable value.
   std::string no_linear = {};
   /// Error estimates of the bounded metrics (metric_errors()): the largest error at any end of a stable interval that
   /// the repeated searches found.
@@ -87,18 +88,21 @@ struct FieldLimit {
 
   /// Returns the linear limit: `theory` if it has a value, otherwise `linear`.
   const std::optional<double>& known_linear_limit() const { return theory ? theory : linear; }
+  /// Returns true if the linear loop is stable at no value of the range. `smallest`: IntervalSearchOptions::smallest.
+  bool has_no_linear_value(bool smallest) const;
   /// If the simulated limit is quoted, returns the width of the interval that encloses it. If the linear limit is
   /// quoted, returns nothing, because the linear limit is known to many digits.
   std::optional<double> quoted_tolerance() const { return quoted.value == end.value ? end.tolerance() : std::nullopt; }
 };
 
 /// Finds a stability limit. First runs 17 values of the field, the scenario's value, and the middle of each interval
-/// that is stable in theory. The 17 values divide the range, or the range of their logarithms, into equal parts. Then
-/// searches the ends of the interval of stable values: with find_verified_interval() if LimitQuestion::between is set,
-/// otherwise with find_stable_interval(), with its argument `beside` true. Makes 35 to 120 runs; each failed
-/// verification costs up to 56 more. The metrics keep their bounds even with their errors at the limit added, as in
-/// `tune`: if a metric plus its error violates a bound, searches again with bounds that are tightened by these errors.
-/// Throws InputError, with the file, if the rule limits vibration and the sampling rate is 60 Hz or less.
+/// that is stable in theory. The 17 values divide the range, or the range of their logarithms, into equal parts. If
+/// none is stable, makes up to 60 runs between neighbours that fail in different ways. Then searches the ends of the
+/// interval of stable values: with find_verified_interval() if LimitQuestion::between is set, otherwise with
+/// find_stable_interval(), with its argument `beside` true. Makes 35 to 120 runs; each failed verification costs up to
+/// 56 more. The metrics keep their bounds even with their errors at the limit added, as in `tune`: if a metric plus its
+/// error violates a bound, searches again with bounds that are tightened by these errors. Throws InputError, with the
+/// file, if the rule limits vibration and the sampling rate is 60 Hz or less.
 FieldLimit field_limit(const LimitQuestion& question);
 
 }  // namespace hapbench

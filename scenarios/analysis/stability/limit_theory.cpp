@@ -134,8 +134,9 @@ std::optional<double> contact_limit(const LimitQuestion& question, double stable
     return loops.is_stable(scenario.scenario(), scenario.files(), make_shell(scenario.scenario(), scenario.files()));
   });
   if (!limit) return std::nullopt;
-  if (std::isinf(*limit)) return std::max(*limit, 0.0);
-  return options.value_at(*limit);
+  if (!std::isinf(*limit)) return options.value_at(*limit);
+  const bool all_stable = *limit > 0.0;
+  return all_stable != options.smallest ? std::numeric_limits<double>::infinity() : 0.0;
 }
 
 WallLimits wall_limits(const LimitQuestion& question) {

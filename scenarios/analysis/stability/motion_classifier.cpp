@@ -73,6 +73,12 @@ MotionClass MotionClassifier::Interval::motion_class(double felt) const noexcept
   return decays ? MotionClass::dying_out : MotionClass::vibrating;
 }
 
+bool MotionClassifier::Interval::fades() const noexcept {
+  for (std::size_t i = 1; i < quarters.size(); ++i)
+    if (!(kGrowth * quarters[i].amplitude < quarters[i - 1].amplitude)) return false;
+  return true;
+}
+
 bool MotionClassifier::Interval::grows() const noexcept {
   for (std::size_t i = 1; i < quarters.size(); ++i)
     if (!(quarters[i].amplitude > kGrowth * quarters[i - 1].amplitude)) return false;

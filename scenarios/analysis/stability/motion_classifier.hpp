@@ -43,6 +43,9 @@ class MotionClassifier final : public Observer {
   /// at least 1 % of the amplitude of the first quarter, but the last quarter does not oscillate. Always false for a
   /// tool that a script moves.
   bool is_undecided() const noexcept;
+  /// Called after a complete run. Returns true if the amplitude of each quarter is at least 1 % smaller than the
+  /// amplitude of the quarter before. Always false for a tool that a script moves.
+  bool fades() const noexcept { return !is_moved_ && all_.fades(); }
   /// Called after the run. Returns the class of the motion. Precondition: the run is complete, diverged, or at_rest().
   MotionClass motion_class(Ending ending) const noexcept;
 
@@ -65,6 +68,8 @@ class MotionClassifier final : public Observer {
     MotionClass motion_class(double felt) const noexcept;
     /// Returns true if the amplitude grows by more than 1 % from each quarter to the next.
     bool grows() const noexcept;
+    /// Returns true if the amplitude falls by at least 1 % from each quarter to the next.
+    bool fades() const noexcept;
   };
 
   std::uint64_t steps_;

@@ -17,10 +17,10 @@ std::string number(double value) {
 std::string measured_cause(const LimitQuestion& question, const FieldLimit& limit) {
   const SettledState& settled = limit.settled;
   const std::string run = fmt::format("the run at {}", number(*limit.end.value));
+  if (settled.is_held && settled.touches) return run + " rests in contact, where dry friction acts on it";
+  if (settled.rests && settled.touches) return run + " comes to rest in contact";
   if (settled.share_away > 0.0)
     return fmt::format("{} is out of contact in {:.2g} % of its last quarter", run, 100.0 * settled.share_away);
-  if (settled.is_held) return run + " rests in contact, where dry friction acts on it";
-  if (settled.rests) return run + " comes to rest in contact";
   if (question.rule.max_vibration && settled.vibration.value_or(0.0) > 0.0)
     return fmt::format("{} vibrates by {:.2g} m/s rms, below the allowed {:.2g}", run, *settled.vibration,
                        *question.rule.max_vibration);
@@ -46,7 +46,10 @@ std::string stable_beyond(const LimitQuestion& question, const FieldLimit& limit
 /// Returns a clause about the unstable run next to the simulated limit.
 std::string next_run(const LimitQuestion& question, const FieldLimit& limit) {
   const auto& [value, verdict] = *limit.end.beyond;
-  return fmt::format("the run at {} is {}{}", number(value), run_verdict_name(verdict), stable_beyond(question, limit));
+  const char* const fades =
+      limit.beyond_fades ? " (its amplitude falls, but slowly: with a longer time.duration_s it may be stable)" : "";
+  return fmt::format("the run at {} is {}{}{}", number(value), run_verdict_name(verdict), fades,
+                     stable_beyond(question, limit));
 }
 
 /// Returns the reason why there is no linear limit within the range.
@@ -73,7 +76,8 @@ QuotedLimit quoted_limit(const LimitQuestion& question, const FieldLimit& limit)
   // Returns true if the field reaches the value a before the value b on its way from stable to unstable values.
   const auto is_first = [smallest](double a, double b) { return smallest ? a > b : a < b; };
   const auto& linear = limit.known_linear_limit();
-  if (limit.linear == 0.0) return {{}, "by the eigenvalues of the loop in contact, no value of the range is stable"};
+  if (limit.has_no_linear_value(smallest))
+    return {{}, "by the eigenvalues of the loop in contact, no value of the range is stable"};
   const bool has_linear = linear && std::isfinite(*linear) && *linear > 0.0;
   const std::string name = limit.theory ? "theoretical limit (eigenvalues, contact cannot be lost)"
                                         : "linear limit (eigenvalues of the loop in contact)";

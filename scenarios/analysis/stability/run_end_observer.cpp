@@ -10,6 +10,8 @@
 namespace hapbench {
 
 bool contact_lasts(const SettledState& settled, const Scenario& scenario) {
+  // A tool at rest keeps its contacts. The quarter in which it came to rest may include its landing.
+  if (settled.rests) return settled.last_contact && settled.touches;
   const double duration = scenario.time.step * static_cast<double>(scenario.time.steps);
   const bool is_moved = script_moves_until(scenario) > 0.75 * duration;
   return settled.last_contact && settled.share_away == 0.0 && !settled.directions_change &&
@@ -26,7 +28,7 @@ RunEndObserver::RunEndObserver(const Scenario& scenario, bool alone)
 }
 
 void RunEndObserver::on_step(const StepRecord& record) noexcept {
-  touches_ = record.colliding > 0;
+  touches_ = record.bears_contact();
   if (touches_) judged_.touch(record.step);
   if (touches_ && !touch_speed_) touch_speed_ = record.handle.velocity.norm();
   hand_force_max_ = std::max(hand_force_max_, record.hand_force.norm());
@@ -38,7 +40,7 @@ void RunEndObserver::on_step(const StepRecord& record) noexcept {
     quarter_ = quarter;
     steps_in_quarter_ = steps_in_contact_ = contacts_ = 0;
     S_sum_.setZero();
-    contact_set_.reset();
+    last_set_.reset();
     contacts_change_ = directions_change_ = false;
   }
   ++steps_in_quarter_;
@@ -52,8 +54,10 @@ void RunEndObserver::on_step(const StepRecord& record) noexcept {
 
 void RunEndObserver::add_contact(const StepRecord& record) noexcept {
   constexpr double kTurned = 0.01;  // allowed change of S relative to its norm
-  if (!contact_set_) S_first_ = record.force.S;
-  directions_change_ |= (record.force.S - S_first_).norm() > kTurned * S_first_.norm();
+  constexpr double kEqual = 1e-9;   // larger than the relative rounding error of S
+  const Mat3& S = record.force.S;
+  if (!last_set_) S_first_ = S;
+  directions_change_ |= (S - S_first_).norm() > kTurned * S_first_.norm();
   // Hash the set of contacts. A sum does not depend on their order.
   std::uint64_t set = 0;
   for (std::size_t i = 0; i < record.rendered->size(); ++i) {
@@ -61,8 +65,14 @@ void RunEndObserver::add_contact(const StepRecord& record) noexcept {
     hash.word(record.rendered->index[i]);
     set += hash.value();
   }
-  contacts_change_ |= contact_set_ && *contact_set_ != set;
-  contact_set_ = set;
+  // A law may render one of several points that act alike, such as the points below a flat tip. Rounding then decides
+  // which point the law renders. Another such point is no change of the contacts.
+  const auto acts_alike = [&](const ContactSet& last) {
+    return last.rendered == record.rendered->size() && last.colliding == record.colliding &&
+           (S - last.S).norm() <= kEqual * last.S.norm();
+  };
+  contacts_change_ |= last_set_ && last_set_->hash != set && !acts_alike(*last_set_);
+  last_set_ = {set, record.rendered->size(), record.colliding, S};
   last_contact_ = contact_state(record);
 }
 
@@ -80,6 +90,7 @@ SettledState RunEndObserver::state(bool rests) const {
   state.hand_force_max = hand_force_max_;
   state.last_contact = last_contact_;
   state.rests = rests;
+  state.touches = touches_;
   state.is_held = rests && (coulomb_ > 0.0 || sticks_);
   if (steps_in_contact_ == 0) return state;
   state.share_away = 1.0 - static_cast<double>(steps_in_contact_) / static_cast<double>(steps_in_quarter_);

@@ -28,17 +28,20 @@ struct SettledState {
   double lambda_max = 0.0;            ///< largest eigenvalue of the mean stiffness tensor S in contact, in units of K
   std::optional<ContactState> last_contact;  ///< state at the last step in contact; empty without contact
   double share_away = 1.0;                   ///< share of the steps in which the tool is not in contact
-  bool contacts_change = false;  ///< true if the set of touching points differs between two consecutive steps
+  /// True if the set of rendered points differs between two consecutive steps. Exception: as many points as before
+  /// touch and are rendered, and their stiffness tensor S is the same.
+  bool contacts_change = false;
   /// True if the stiffness tensor S of a step in contact differs by more than 1 % from S in the quarter's first step in
   /// contact: the stiff directions turn.
   bool directions_change = false;
   bool rests = false;    ///< true if the run was stopped because the tool came to rest
+  bool touches = false;  ///< true if the tool was in contact in the last step
   bool is_held = false;  ///< true if dry friction of device or surface acts on the tool that rests
 };
 
-/// Returns true if, in the last quarter of the run, the contact persists and the same points touch, so that the contact
-/// has a single linear loop. If a script moves the tool in the last quarter, the touching points may change as long as
-/// the stiff directions do not.
+/// Returns true if the tool rests in contact, or if in the last quarter of the run the contact persists and the same
+/// points touch, so that the contact has a single linear loop. If a script moves the tool in the last quarter, the
+/// touching points may change as long as the stiff directions do not.
 bool contact_lasts(const SettledState& settled, const Scenario& scenario);
 
 /// Records the end position of the tool, whether the tool was in contact, and the vibration and bounces over the
@@ -79,8 +82,14 @@ class RunEndObserver final : public Observer {
   // Counts and sums over the current quarter, up to directions_change_.
   std::uint64_t steps_in_quarter_ = 0, steps_in_contact_ = 0, contacts_ = 0;
   Mat3 S_sum_ = Mat3::Zero();
-  Mat3 S_first_ = Mat3::Zero();               ///< S of the first step in contact
-  std::optional<std::uint64_t> contact_set_;  ///< hash of the rendered contacts of the last step in contact
+  Mat3 S_first_ = Mat3::Zero();  ///< S of the first step in contact
+  /// Contacts of a step in contact.
+  struct ContactSet {
+    std::uint64_t hash;               ///< hash of the numbers of the rendered points
+    std::size_t rendered, colliding;  ///< number of rendered and of colliding points
+    Mat3 S;
+  };
+  std::optional<ContactSet> last_set_;  ///< contacts of the last step in contact
   bool contacts_change_ = false, directions_change_ = false;
   std::optional<ContactState> last_contact_;
   bool sticks_ = false;   ///< true if dry friction of the surface holds the tool in the last step

@@ -85,6 +85,7 @@ RunStability judged_once(const Scenario& scenario, const NamedFiles& files,
   };
   RunStability run{verdict(), settled, run_end.motion_hash()};
   run.undecided = is_stable(run.verdict) && classifier.is_undecided();
+  run.fades = run.verdict == RunVerdict::vibrating && !rule.max_vibration && classifier.fades();
   return run;
 }
 
@@ -107,8 +108,8 @@ RunStability stability_of(const CheckedScenario& checked, std::shared_ptr<const 
   }
   // Check the bounds on metrics in a complete run.
   if (!is_stable(run.verdict) || rule.bounds.empty()) return run;
-  const Result whole = run_with_shell(checked, shell);
-  if (!unmet_expectations({{whole.end.outcome}, rule.bounds}, whole).empty()) run.verdict = RunVerdict::beyond_bound;
+  run.violated = violated_bounds(rule.bounds, run_with_shell(checked, shell));
+  if (!run.violated.empty()) run.verdict = RunVerdict::beyond_bound;
   return run;
 }
 

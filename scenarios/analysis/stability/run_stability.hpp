@@ -3,6 +3,8 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "scenarios/analysis/stability/run_end_observer.hpp"
 #include "scenarios/analysis/stability/run_verdict.hpp"
@@ -20,6 +22,11 @@ struct RunStability {
   std::uint64_t motion_hash = 0;  ///< hash of all positions of the handle; equal for bitwise equal motions
   /// True if even the longest run was too short to judge: the tool still moves but does not oscillate.
   bool undecided = false;
+  /// True if the run vibrates, but its amplitude falls from each quarter of the run to the next
+  /// (MotionClassifier::fades).
+  bool fades = false;
+  /// If the verdict is `beyond_bound`, the bounds that the run does not keep, such as "inside_max_m max"; else empty.
+  std::vector<std::string> violated = {};
 };
 
 /// Runs the scenario's first trial without records and returns the verdict on this run. If the run is too short to

@@ -21,9 +21,9 @@ std::span<const RunVerdictText> run_verdict_texts() noexcept {
       {"decaying", "still oscillates at the end, but comes to rest if the run goes on",
        "oscillates like \"vibrating\", but the amplitude falls by more than a tenth from the second quarter to the "
        "third, and again from the third to the last"},
-      {"vibrating", "oscillates without decay",
-       "oscillates without decay: the amplitude in the last quarter is at least 1 % of the amplitude in the first "
-       "quarter"},
+      {"vibrating", "oscillates without decay, or with a slow decay",
+       "oscillates, and the amplitude does not fall as in \"dying_out\": the oscillation lasts, or decays by less than "
+       "a tenth in a quarter of the run; a longer run may then be stable"},
       {"diverged", "left its bounds, or oscillates with growing amplitude",
        "left its bounds, or oscillates with an amplitude that grows by more than 1 % from each quarter to the next"},
       {"thrown_out",

@@ -62,7 +62,7 @@ std::string linear_limit_text(const LimitRow& row) {
   const auto& linear = row.limit.known_linear_limit();
   if (!linear) return row.limit.theory_has_none ? "none stable" : "-";
   if (!std::isinf(*linear) && *linear != 0.0) return rounded_text(*linear, 6);
-  return std::isinf(*linear) == row.question.search.smallest ? "none stable" : "all stable";
+  return std::isinf(*linear) == row.question.search.smallest ? "none stable" : "no end";
 }
 
 /// Returns a function that computes the cell of a row: it applies `part` to the row, and `get` to the result.
@@ -94,8 +94,8 @@ Columns<LimitRow> limit_value_columns(const LimitTable* table) {
       {"quoted_reason", "", "reason why quoted_limit has this value or none",
        [](const Row& r) { return r.limit.quoted.reason; }},
       {"linear\nlimit", unit,
-       "of limit: theoretical limit; if there is no theoretical limit, the linear limit. \"all stable\", \"none "
-       "stable\": all values of the range or none; \"-\": neither limit applies",
+       "of limit: theoretical limit; if there is no theoretical limit, the linear limit. \"no end\": stable to the "
+       "end of the range; \"none stable\": no value of the range; \"-\": neither limit applies",
        linear_limit_text, only_printed()},
       {"limit", unit,
        "simulated limit: last stable value before the first unstable one, by bisection on simulated runs; empty if no "

@@ -159,7 +159,8 @@ std::string notes_text(const LimitTable& table, const Layout& layout) {
                                      table.first().question.search.smallest ? "to" : "from")},
       {table.is_grid(),
        "linear limit: limit by the eigenvalues of the loop of device, hand and contact, without dry friction and "
-       "encoder; all stable, none stable: all values of the range or none; -: the eigenvalues give no limit (column "
+       "encoder; no end: the loop is stable to the end of the range; none stable: it is stable at no value; -: the "
+       "eigenvalues give no limit (column "
        "no_linear_reason of limit.csv)"},
       {true,
        "first unstable: class of motion (\"hapbench describe stability\") of the first unstable run beyond the "
@@ -214,8 +215,10 @@ std::string rule_text(const StabilityRule& rule, const Scenario& scenario) {
                 "criterion: a run is stable if the handle vibrates by at most {} m/s rms above {:.0f} Hz after the "
                 "first quarter of the contact time, and bounces with a period above 1/{:.0f} s stop or become lower",
                 *rule.max_vibration, kVibrationCutoff, kVibrationCutoff)
-          : fmt::format("criterion: a run is stable if it comes to rest or its oscillation decays{}",
-                        rule.bounded ? ", or if it vibrates without growing" : "");
+          : fmt::format(
+                "criterion: a run is stable if it comes to rest or its oscillation decays by a tenth in each "
+                "quarter of the run{}",
+                rule.bounded ? ", or if it vibrates without growing" : "");
   for (const auto& [metric, bound] : rule.bounds) {
     if (bound.min) text += fmt::format(", and {} >= {}", metric, *bound.min);
     if (bound.max) text += fmt::format(", and {} <= {}", metric, *bound.max);

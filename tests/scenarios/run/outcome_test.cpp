@@ -64,6 +64,29 @@ TEST(Outcome, LostContactWhenTheToolEndedFarAway) {
       << run.warnings[0].text;
 }
 
+/// Checks a loop without damping, which throws the tool up against the push of the hand.
+TEST(Outcome, LostContactNamesAForceThatThrewTheTool) {
+  const Result run = run_of(R"({"time": {"step_s": 0.001, "steps": 2000}, "initial": {"position_m": [0, 0, 0.0001]},
+      "environment": {"size_m": 0.02}, "tool": {"diameter_m": 0.004, "length_m": 0.03, "tip": "flat"},
+      "hand": {"z_N": -0.05}, "device": {"type": "impedance", "handle_mass_kg": 0.1, "viscous_N_s_per_m": 0},
+      "rendering": {"stiffness_N_per_m": 100000, "damping_ratio": 0, "mass_kg": null,
+                    "friction": {"mu_s_N_s_per_m": 0, "mu_f_s_per_m": 0}}})");
+  EXPECT_EQ(run.end.outcome, Outcome::lost_contact);
+  ASSERT_FALSE(run.warnings.empty());
+  EXPECT_NE(run.warnings[0].text.find("the force threw the tool against the hand's push"), std::string::npos)
+      << run.warnings[0].text;
+}
+
+/// Checks the law `proxy` with a round tip between the points of the surface: no point collides, but the patches around
+/// the points hold the tool.
+TEST(Outcome, APatchBetweenThePointsIsAContact) {
+  const Result run = run_of(R"({"time": {"step_s": 0.001, "steps": 2000}, "initial": {"position_m": [0, 0, 0.0031]},
+      "environment": {"size_m": 0.02, "spacing_m": 0.0003}, "tool": {"diameter_m": 0.006, "length_m": 0.03,
+      "tip": "round"}, "hand": {"z_N": -0.3}, "rendering": {"algorithm": "proxy", "stiffness_N_per_m": 126000,
+      "damping_ratio": 0.3, "mass_kg": 0.08, "friction": {"mu_s_N_s_per_m": 0, "mu_f_s_per_m": 0}}})");
+  EXPECT_EQ(run.end.outcome, Outcome::completes);
+}
+
 TEST(Outcome, AScriptMayLeadTheToolAway) {
   const char* const led = R"({"initial": null, "hand": null, "motion": {"position": {"type": "prescribed",
       "x_m": 0, "y_m": 0, "z_m": {"type": "waypoints", "points": [[0, 0], [0.04, 1]]}}}})";
@@ -91,6 +114,10 @@ TEST(Outcome, NoContactNamesTheLikelyCause) {
            std::pair{R"({"hand": {"z_N": 1}})", "; are initial.position_m and the hand's direction right?"},
            {R"({"hand": {"type": "impedance", "z_N": null, "stiffness_N_per_m": 300, "damping_N_s_per_m": 6,
                         "target": {"x_m": 0, "y_m": 0, "z_m": 0.003}}})",
+            "; does hand.target lead to the surface?"},
+           // The tool is on its way to a target above the surface.
+           {R"({"hand": {"type": "impedance", "z_N": null, "stiffness_N_per_m": 300, "damping_N_s_per_m": 6,
+                        "target": {"x_m": 0, "y_m": 0, "z_m": 0.0012}}})",
             "; does hand.target lead to the surface?"},
            {R"({"hand": {"z_N": 1}, "environment": {"type": "mesh", "file": "cube.obj", "scale": 1e-6, "size_m": null,
                                                     "spacing_m": null}})",
@@ -434,6 +461,12 @@ RunObservations held() {
   return rows;
 }
 
+RunObservations pressed() {
+  RunObservations rows;
+  rows.last_force = {0.0, 0.0, 1.0};
+  return rows;
+}
+
 RunObservations long_step() {
   RunObservations rows;
   rows.longest_step = 1.0;
@@ -465,7 +498,9 @@ std::vector<Trap> traps() {
       {"lost", kOmegaMolar, {}, "device.coulomb_N", "initial.position_m", Outcome::no_contact, "", held()},
       {"lost", kLed, {}, "motion.position", "hand's direction", Outcome::no_contact},
       {"stuck", {"impedance_at_wall"}, {}, "device.coulomb_N", "rendering.friction", Outcome::stuck},
-      {"stuck", {"drag_molar_dry"}, {}, "rendering.friction", "device.coulomb_N", Outcome::stuck},
+      {"stuck", {"drag_molar_dry"}, {}, "rendering.friction", "device.coulomb_N", Outcome::stuck, "", pressed()},
+      // Without a rendered force, neither the friction of the surface nor the law holds the tool.
+      {"stuck", {"drag_molar_dry"}, {}, "a stiffer hand", "rendering.friction", Outcome::stuck},
       // If the tool diverges, its long steps are a consequence, so the rule `step` finds nothing. A slower hand does
       // not help a tool that a script moves.
       {"step", kMolar, {}, "", "", Outcome::diverges, "", long_step()},
@@ -550,6 +585,55 @@ TEST(Diagnosis, AdvisesNothingThatIsWrongInTheScene) {
     EXPECT_NE(found->attempt.find(trap.right), std::string::npos) << what << ": " << found->attempt;
     EXPECT_EQ(found->attempt.find(trap.wrong), std::string::npos) << what << ": " << found->attempt;
   }
+}
+
+/// Checks that the advice against an unstable loop is a change after which the loop is stable.
+TEST(Diagnosis, AdvisesTheChangeThatMakesALoopStable) {
+  // Without any damping, the delay of the hold makes each spring unstable at every time step.
+  const Result undamped = run({"wall_on_handle", {"device.viscous_N_s_per_m=0", "rendering.damping_N_s_per_m=0"}});
+  const Diagnosed* found = finding(undamped, "loop");
+  ASSERT_NE(found, nullptr);
+  EXPECT_EQ(found->attempt, "a larger rendering.damping_N_s_per_m");
+  EXPECT_EQ(finding(undamped, "edge"), nullptr);
+  // With B dt / m = 10 for a handle of 0.1 kg, the damper alone is unstable; a tenth of the step or of B is not enough
+  // to reach 2, but a step of a tenth is.
+  const Result overdamped = run({"wall_on_handle",
+                                 {"device.handle_mass_kg=0.1", "rendering.damping_N_s_per_m=1000",
+                                  "rendering.stiffness_N_per_m=1000", "time.step_s=0.001"}});
+  found = finding(overdamped, "loop");
+  ASSERT_NE(found, nullptr);
+  EXPECT_NE(found->attempt.find("a smaller rendering.damping_N_s_per_m"), std::string::npos) << found->attempt;
+  EXPECT_EQ(found->attempt.find("a larger"), std::string::npos) << found->attempt;
+}
+
+/// Checks that the mass of a passive hand counts for the largest stable damping: 0.03 kg and 0.5 kg bear a damping of
+/// 2 m / dt = 1060 N s/m, the handle alone one of 60 N s/m.
+TEST(Diagnosis, CountsTheMassOfTheHandForDamping) {
+  const Words scene = {R"(device={"type":"impedance","handle_mass_kg":0.03,"viscous_N_s_per_m":0.2})",
+                       R"(hand={"type":"mass_spring_damper","mass_kg":0.5,"stiffness_N_per_m":200,
+                                "damping_N_s_per_m":3,"target":{"x_m":0,"y_m":0,"z_m":-0.005}})",
+                       "time={\"step_s\":0.001,\"duration_s\":1}", "rendering.damping_N_s_per_m=80",
+                       "rendering.stiffness_N_per_m=1500"};
+  EXPECT_EQ(finding(run({"poke_plane", scene}), "damping"), nullptr);
+}
+
+/// Checks a hand whose target jumps sideways 5 ms before the end: a single jump of the force has no frequency.
+TEST(Diagnosis, ReportsNoFrequencyOfASingleJump) {
+  const test::TemporaryDirectory folder;
+  test::write_plainly(folder / "jump.json", R"({
+    "time": {"step_s": 0.001, "duration_s": 2},
+    "environment": {"type": "plane", "size_m": 0.04, "spacing_m": 0.0003}, "initial": {"position_m": [0, 0, 0]},
+    "tool": {"diameter_m": 0.002, "length_m": 0.02, "tip": "flat"},
+    "hand": {"type": "impedance", "stiffness_N_per_m": 200, "damping_N_s_per_m": 5,
+             "target": {"x_m": {"type": "waypoints", "points": [[0, 0], [1.995, 0], [1.999, 0.02]],
+                                "interpolation": "linear"}, "y_m": 0, "z_m": -0.004}},
+    "rendering": {"algorithm": "shaped_stiffness", "stiffness_N_per_m": 20000, "damping_ratio": 0.7}
+  })");
+  const std::string scene = folder / "jump.json";
+  const Result result = run({scene.c_str()});
+  const Diagnosed* const found = finding(result, "buzz");
+  ASSERT_NE(found, nullptr);
+  EXPECT_EQ(found->says.find("at about"), std::string::npos) << found->says;
 }
 
 /// Checks a handle that friction holds. The target of the hand moves away from the handle by 4.5 mm, so that the hand's

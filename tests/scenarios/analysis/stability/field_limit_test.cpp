@@ -9,6 +9,7 @@
 #include "scenarios/input/bundled_scenarios.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/scene/load_scenario.hpp"
+#include "tests/results/files.hpp"
 
 namespace hapbench::field_limit_test {
 namespace {
@@ -76,6 +77,93 @@ TEST(FieldLimit, HasNoLinearLimitIfContactsComeAndGo) {
   EXPECT_FALSE(limit.linear);
   EXPECT_EQ(limit.no_linear, "contacts come and go in every stable run");
   EXPECT_EQ(limit.quoted.value, limit.end.value);
+}
+
+/// Checks a flat tip with the law `proxy`, which renders one of 49 equal points. Rounding decides which point. The
+/// contact lasts, although the number of the rendered point changes. At K = 1700 N/m, the tool begins at its
+/// equilibrium.
+TEST(FieldLimit, HasALinearLimitIfAnotherEqualPointIsRendered) {
+  const char* const hand =
+      R"(hand={"type":"mass_spring_damper","mass_kg":0.1,"stiffness_N_per_m":200,"damping_N_s_per_m":3,
+               "target":{"x_m":0,"y_m":0,"z_m":-0.005}})";
+  const char* const device =
+      R"(device={"type":"impedance","handle_mass_kg":0.15,"viscous_N_s_per_m":0.2,"delay_samples":1})";
+  const char* const rendering =
+      R"(rendering={"stiffness_N_per_m":1700,"damping_N_s_per_m":2,
+                    "friction":{"mu_s_N_s_per_m":0,"mu_f_s_per_m":0}})";
+  const Words scene = {hand,
+                       device,
+                       rendering,
+                       "time={\"step_s\":0.001,\"duration_s\":3}",
+                       "environment.size_m=0.02",
+                       "environment.spacing_m=0.0005",
+                       "tool.diameter_m=0.004"};
+  const auto linear_from = [&](const char* position) {
+    Words overrides = scene;
+    overrides.emplace_back(std::string("initial.position_m=") + position);
+    const FieldLimit limit = ask({"poke_plane", "rendering.stiffness_N_per_m", overrides}, "proxy");
+    EXPECT_TRUE(limit.linear) << position << ": " << limit.no_linear;
+    return limit.linear.value_or(0.0);
+  };
+  const double above = linear_from("[0,0,0.0001]"), at_rest = linear_from("[0,0,-0.000526316]");
+  EXPECT_NEAR(at_rest, above, 1e-6 * above);  // larger than the error of the derivatives, 1e-7
+}
+
+/// A flat tip that a passive hand holds 5 mm below a surface. At rest, its depth is 1 N / (K + 200 N/m).
+const char* const kHeldBelow = R"({
+  "time": {"step_s": 0.001, "duration_s": 3},
+  "environment": {"type": "plane", "size_m": 0.02, "spacing_m": 0.0005}, "initial": {"position_m": [0, 0, 0.0001]},
+  "tool": {"diameter_m": 0.004, "length_m": 0.03, "tip": "flat"},
+  "hand": {"type": "mass_spring_damper", "mass_kg": 0.1, "stiffness_N_per_m": 200, "damping_N_s_per_m": 3,
+           "target": {"x_m": 0, "y_m": 0, "z_m": -0.005}},
+  "device": {"type": "impedance", "handle_mass_kg": 0.15, "viscous_N_s_per_m": 0.2, "delay_samples": 1},
+  "rendering": {"stiffness_N_per_m": 1500, "damping_N_s_per_m": 2,
+                "friction": {"mu_s_N_s_per_m": 0, "mu_f_s_per_m": 0}}
+})";
+
+class FieldLimitOfHeldTip : public ::testing::Test {
+ protected:
+  FieldLimitOfHeldTip() { test::write_plainly(folder_ / "held.json", kHeldBelow); }
+  test::TemporaryDirectory folder_;
+  const std::string scene_ = folder_ / "held.json";
+};
+
+/// Checks a bound with a minimum and a maximum. A depth of 0.4 to 0.5 mm holds for K from 1800 to 2300 N/m, a factor of
+/// 1.28. The values of the scan are a factor of 1.9 apart, and none of them is in this interval.
+TEST_F(FieldLimitOfHeldTip, FindsANarrowIntervalBetweenDifferentFailures) {
+  const FieldLimit bounded = ask({.scenario = scene_.c_str(),
+                                  .field = "rendering.stiffness_N_per_m",
+                                  .range = Range{1.0, 30000.0, true},
+                                  .rule = {.bounds = {{"inside_settled_m", {.min = 4e-4, .max = 5e-4}}}}},
+                                 "proxy");
+  ASSERT_TRUE(bounded.end.value && bounded.other.value);
+  // The resolution of the search is 0.1 %; the depth has a tolerance of 2 %.
+  EXPECT_NEAR(*bounded.other.value, 1800.0, 0.03 * 1800.0);
+  EXPECT_NEAR(*bounded.end.value, 2300.0, 0.03 * 2300.0);
+}
+
+/// Checks the smallest stable viscous friction of a handle against the eigenvalues of the loop. With dry friction, the
+/// runs also rest where the loop is unstable; the limit to quote is the linear one.
+TEST_F(FieldLimitOfHeldTip, OfTheSmallestValueIsTheLinearLimitIfDryFrictionHoldsTheRuns) {
+  const auto smallest = [&](const char* coulomb) {
+    return ask({.scenario = scene_.c_str(),
+                .field = "device.viscous_N_s_per_m",
+                .overrides = {"rendering.stiffness_N_per_m=6000", std::string("device.coulomb_N=") + coulomb},
+                .range = Range{1.0, 20.0, true},
+                .smallest = true},
+               "proxy");
+  };
+  const FieldLimit smooth = smallest("0"), rough = smallest("0.2");
+  ASSERT_TRUE(smooth.linear && rough.linear) << smooth.no_linear << rough.no_linear;
+  // A run counts as stable if it decays by a tenth in 0.75 s. With a moving mass of 0.25 kg on a continuous spring,
+  // this takes 2 * 0.25 kg * 0.1054 / 0.75 s = 0.0703 N s/m of friction above the linear limit; the sampling of the
+  // spring (a phase of 0.15 rad per step) changes this by a few per cent. The resolution of the search is 0.1 %.
+  EXPECT_GE(*smooth.end.value, *smooth.linear);
+  EXPECT_LE(*smooth.end.value, 1.001 * (*smooth.linear + 1.05 * 0.0703));
+  EXPECT_TRUE(smooth.beyond_fades);
+  EXPECT_NEAR(*rough.linear, *smooth.linear, 1e-6 * *smooth.linear);
+  EXPECT_LT(*rough.end.value, *rough.linear);
+  EXPECT_EQ(rough.quoted.value, rough.linear);
 }
 
 TEST(FieldLimit, OfAFieldOfIntegersIsOne) {
