@@ -288,3 +288,43 @@ def limits_of_both_ends(bench, fine, how, max_vibration, resolution, vibration):
         fine,
         ("of the preset's own numbers", [ends[0]] * 3),
     )
+
+
+@scene
+def touch_at_the_limit(bench):
+    """Checks the speed at the first contact and the force of the hand in the run at a limit. A constant force moves a
+    free handle with viscous friction: v = F / b (1 - exp(-b t / m)), and x is its integral."""
+    m, b, T, F, start = 0.1, 0.5, 0.001, 0.5, -2e-3
+    bench.scenario(
+        "arrives",
+        time={"step_s": T, "steps": 3000},
+        environment={
+            "type": "springs",
+            "bilateral": False,
+            "groups": [{"direction": [1, 0, 0], "count": 1}],
+        },
+        initial={"position_m": [start, 0, 0]},
+        device={"type": "impedance", "handle_mass_kg": m, "viscous_N_s_per_m": b},
+        hand={"type": "force", "x_N": F},
+        rendering={"algorithm": "summation", "stiffness_N_per_m": 500, "damping_N_s_per_m": 2},
+    )
+    bench.json("limit", "arrives.json", "--resolution", 0.01, "--out", "a")
+    t = T * np.arange(3000)
+    v = F / b * (1 - np.exp(-b / m * t))
+    x = start + F / b * (t - m / b * (1 - np.exp(-b / m * t)))
+    touch = int(np.argmax(x > 0))
+    row = Table(bench.folder / "a" / "limit.csv").rows[0]
+    exact = Within("exponentials of one step, raised to the 90th power", relative=1e-12)
+    how = "motion of a free handle under a constant force"
+    number = float(row["touch_speed_m_per_s"])
+    bench.add(
+        "limit.csv:touch_speed_m_per_s",
+        number,
+        v[touch],
+        how,
+        exact,
+        ("a step before", v[touch - 1]),
+    )
+    bench.add(
+        "limit.csv:hand_force_max_N", float(row["hand_force_max_N"]), F, how, EXACT, ("none", 0.0)
+    )
