@@ -161,32 +161,43 @@ const ClockUnit* unit_of_interval(double interval, double query) {
   return interval <= 0.0 || fits(1.0) || unit == std::end(kClockUnits) ? nullptr : unit;
 }
 
+/// Returns a text that describes why steps of the run find no contacts in the trace; empty if the tool may just have
+/// been out of contact. `interval`: between the times of the trace [s]. `query`: between the steps that look for
+/// contacts [s]. Precondition: some of these steps are not covered.
+std::string missing_steps_problem(const ContactTrace& trace, const RunTimes& run, std::int64_t every, double interval,
+                                  const TraceCoverage& coverage) {
+  const double first = trace.times.front().time, last = trace.times.back().time;
+  const double query = run.step * static_cast<double>(every);
+  if (const ClockUnit* unit = unit_of_trace(trace, run, every, coverage)) return unit->advice;
+  if (coverage.covered == 0 && first > run.end) {
+    const ClockUnit* unit = unit_of_interval(interval, query);
+    return fmt::format("let the times of the trace begin at 0: subtract the first time{}{}",
+                       unit != nullptr ? "; " : "", unit != nullptr ? unit->advice : "");
+  }
+  if (coverage.covered == 0)
+    return "the times are not those of the run: is time_s in seconds from the start of the run?";
+  if (interval > 1.5 * query)
+    return fmt::format(
+        "the trace is slower than the run: rendering.contacts.every={:.0f} plays the contacts of a slower loop",
+        std::max(2.0, std::round(interval / run.step)));
+  if (coverage.between > 0)
+    return fmt::format(
+        "{} of them lie between two times of the trace and have no contact although the trace goes on: its clock "
+        "does not have the run's step; time.step_s={:.4g} plays every time, or resample the trace",
+        coverage.between, interval / static_cast<double>(every));
+  if (last + 1.5 * std::max(query, interval) < run.end)
+    return fmt::format("the trace ends before the run: if the tool is still in contact then, set time.steps={:.0f}",
+                       std::floor(last / run.step + 0.5) + 1.0);
+  return "";
+}
+
 /// Returns a text that describes the fault of the trace's clock; empty if the clock fits the run.
 std::string trace_problem(const ContactTrace& trace, const RunTimes& run, std::int64_t every,
                           const TraceCoverage& coverage) {
-  const double first = trace.times.front().time, last = trace.times.back().time;
-  const double interval = median_interval(trace), query = run.step * static_cast<double>(every);
+  const double interval = median_interval(trace);
   if (coverage.covered < coverage.queries) {
-    if (const ClockUnit* unit = unit_of_trace(trace, run, every, coverage)) return unit->advice;
-    if (coverage.covered == 0 && first > run.end) {
-      const ClockUnit* unit = unit_of_interval(interval, query);
-      return fmt::format("let the times of the trace begin at 0: subtract the first time{}{}",
-                         unit != nullptr ? "; " : "", unit != nullptr ? unit->advice : "");
-    }
-    if (coverage.covered == 0)
-      return "the times are not those of the run: is time_s in seconds from the start of the run?";
-    if (interval > 1.5 * query)
-      return fmt::format(
-          "the trace is slower than the run: rendering.contacts.every={:.0f} plays the contacts of a slower loop",
-          std::max(2.0, std::round(interval / run.step)));
-    if (coverage.between > 0)
-      return fmt::format(
-          "{} of them lie between two times of the trace and have no contact although the trace goes on: its clock does "
-          "not have the run's step; time.step_s={:.4g} plays every time, or resample the trace",
-          coverage.between, interval / static_cast<double>(every));
-    if (last + 1.5 * std::max(query, interval) < run.end)
-      return fmt::format("the trace ends before the run: if the tool is still in contact then, set time.steps={:.0f}",
-                         std::floor(last / run.step + 0.5) + 1.0);
+    std::string problem = missing_steps_problem(trace, run, every, interval, coverage);
+    if (!problem.empty()) return problem;
   }
   if (interval > 0.0 && interval < 0.75 * run.step)
     return fmt::format(

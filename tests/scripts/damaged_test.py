@@ -1,5 +1,5 @@
-"""Tests `hapbench plot` and `report` with result folders of which a file was cut or edited: each fault is named with its
-file, and complete results cause no warning."""
+"""Tests `hapbench plot` and `report` with result folders of which a file was cut or edited: each fault is named with
+its file, and complete results cause no warning."""
 import json
 import shutil
 import tempfile

@@ -66,8 +66,8 @@ class Limits(Given):
             0.1,
         )
         self.assert_plot_shows(limit, "simulated limit", "stiffness K [N/m]", "mean")
-        # If the loop has no theoretical limit, the closed formulas for stability are not drawn. The linear limit is that
-        # of the same loop without friction.
+        # If the loop has no theoretical limit, the closed formulas for stability are not drawn. The linear limit is
+        # that of the same loop without friction.
         rubbed = made(
             "rubbed",
             "limit",

@@ -147,8 +147,8 @@ class Row(dict):
 
 
 def number_in(row, name, may_be_empty=True, is_finite=False):
-    """Returns the number in the field `name` of a row. An empty field is NaN. Raises ResultError for any other text, for
-    the text "nan", and with `is_finite` for an infinite number."""
+    """Returns the number in the field `name` of a row. An empty field is NaN. Raises ResultError for any other text,
+    for the text "nan", and with `is_finite` for an infinite number."""
     text = row[name]
     if not text and may_be_empty:
         return math.nan
@@ -214,8 +214,8 @@ def numbers_or_texts(name, texts):
 
 
 def numbers(records, name):
-    """Returns the column `name` of `records` as numbers. An empty field becomes NaN. Raises ResultError for a field that
-    is not a number. An infinite number, such as the limit of a loop that is always stable, becomes NaN.
+    """Returns the column `name` of `records` as numbers. An empty field becomes NaN. Raises ResultError for a field
+    that is not a number. An infinite number, such as the limit of a loop that is always stable, becomes NaN.
     """
     values = np.array([number_in(row, name) for row in records], float)
     return np.where(np.isfinite(values), values, np.nan)

@@ -84,8 +84,8 @@ def given_runs(words, with_contacts=False):
 
 
 def compared(folder):
-    """Returns (runs below a folder of a comparison, texts about runs that are missing). Runs that the comparison's table
-    does not name are skipped."""
+    """Returns (runs below a folder of a comparison, texts about runs that are missing). Runs that the comparison's
+    table does not name are skipped."""
     runs, tables = load_runs(folder), [folder / COMPARISON]
     if not tables[0].is_file():
         tables = sorted(folder.glob(f"*/{COMPARISON}"))
@@ -106,8 +106,8 @@ def compared(folder):
 
 
 def lacking(table, rows, runs):
-    """Returns texts about the laws of which a comparison's table or the folders beside it lack runs. `rows`: rows of the
-    table. `runs`: runs of the folders."""
+    """Returns texts about the laws of which a comparison's table or the folders beside it lack runs. `rows`: rows of
+    the table. `runs`: runs of the folders."""
     beside = Counter(run.algorithm for run in runs if table.parent in run.folder.parents)
     named = Counter(row["algorithm"] for row in rows)
     found = []

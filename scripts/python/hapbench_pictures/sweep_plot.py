@@ -170,7 +170,10 @@ def gap_of(file, rows, plan):
     found = {int(row["index"]) for row in rows}
     first = next((run for run in range(runs) if run not in found), None)
     if first is not None:
-        return f"{file}: {len(rows)} of {runs} rows; the first missing row is of run {first}; the file was cut or edited"
+        return (
+            f"{file}: {len(rows)} of {runs} rows; the first missing row is of run {first}; "
+            "the file was cut or edited"
+        )
     return (
         f"{file}: {len(rows)} rows, but sweep.json states {runs} runs; one of the files was edited"
         if len(rows) != runs

@@ -93,4 +93,7 @@ def gap_text(run, file, rows, expected):
             f"{file}: {rows} rows, but the {run.summary['steps']} steps of {SUMMARY} are {expected} rows; "
             "one of the files was edited"
         )
-    return f"{file}: {rows} of {expected} rows; the first missing row is of step {missing[0]}; the file was cut or edited"
+    return (
+        f"{file}: {rows} of {expected} rows; the first missing row is of step {missing[0]}; "
+        "the file was cut or edited"
+    )
