@@ -442,12 +442,18 @@ def write(file, data):
             with file.open("wb") as stream:
                 stream.write(content)
         else:
-            _replace(file.resolve() if file.is_symlink() else file, content)
+            _replace(_target_of(file) if file.is_symlink() else file, content)
         _written.append(str(file))
     except OSError as error:
         raise OSError(error.errno, error.strerror, str(file)) from error
-    except RuntimeError as error:  # Python 3.12 and older: links that form a cycle
-        raise OSError(errno.ELOOP, os.strerror(errno.ELOOP), str(file)) from error
+
+
+def _target_of(link):
+    """Returns the file to which a link, or a chain of links, leads. Raises OSError for links that form a cycle."""
+    target = Path(os.path.realpath(link))
+    if target.is_symlink():
+        raise OSError(errno.ELOOP, os.strerror(errno.ELOOP), str(link))
+    return target
 
 
 def _replace(file, content):
