@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <limits>
 #include <utility>
 
 #include "scenarios/scene/scenario.hpp"
@@ -48,8 +47,7 @@ constexpr double kFinestDescent = 1.01;  // factor on K, zeta and mass at which 
 double stricter(double value, const LimitEnd& end, double factor) {
   const double scaled = end.is_max == (value > 0.0) ? value / factor : value * factor;
   // A value of 0 has no multiple: return the next number.
-  constexpr double kInfinite = std::numeric_limits<double>::infinity();
-  return value == 0.0 ? std::nextafter(value, end.is_max ? -kInfinite : kInfinite) : scaled;
+  return value == 0.0 ? std::nextafter(value, end.is_max ? -1.0 : 1.0) : scaled;
 }
 
 TuneSearch::TuneSearch(Trials& trials) : trials_(trials) {
