@@ -174,8 +174,7 @@ std::string missing_steps_problem(const ContactTrace& trace, const RunTimes& run
     return fmt::format("let the times of the trace begin at 0: subtract the first time{}{}",
                        unit != nullptr ? "; " : "", unit != nullptr ? unit->advice : "");
   }
-  if (coverage.covered == 0)
-    return "the times are not those of the run: is time_s in seconds from the start of the run?";
+  if (coverage.covered == 0) return "no step has a time of the trace: is time_s in seconds from the start of the run?";
   if (interval > 1.5 * query)
     return fmt::format(
         "the trace is slower than the run: rendering.contacts.every={:.0f} plays the contacts of a slower loop",

@@ -20,7 +20,7 @@ std::optional<Warning> stroke_clock_warning(const Stroke& stroke, const TimeFiel
 /// the trace ends early, has longer intervals between its times than the run, does not count in seconds, or does not
 /// start with the run, or has another rate than the run. Second, the trace has shorter intervals between its times than
 /// the run, so that the run skips some times of the trace. Returns no warning for missing times before the first
-/// contact, because a tool usually starts above the surface. Cost: O(number of times within the run).
+/// contact, because a tool usually starts above the surface. Cost: O(number of steps and of times).
 std::optional<Warning> trace_clock_warning(const ContactTrace& trace, const TimeFields& time, std::int64_t every);
 
 }  // namespace hapbench

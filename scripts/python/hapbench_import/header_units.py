@@ -52,7 +52,7 @@ def names_and_units(headers, notes):
 
 def with_commented_units(names, headers, notes):
     """Returns (names with units, line numbers of the units). `headers`: comments that can be a line of a header. The
-    units are those of the last comment that has only units. If a name has a unit, the comment is ignored.
+    units come from the last comment with nothing but units, unless one of the names already has a unit.
     """
     number, units = next(
         ((number, units) for number, words in headers if (units := units_of(words))), (None, [])

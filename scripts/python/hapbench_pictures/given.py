@@ -106,8 +106,8 @@ def compared(folder):
 
 
 def lacking(table, rows, runs):
-    """Returns texts about the laws of which a comparison's table or the folders beside it lack runs. `rows`: rows of
-    the table. `runs`: runs of the folders."""
+    """Returns a text for each law that has more runs in a comparison's table than in the folders beside it, or runs
+    only in the folders. `rows`: rows of the table. `runs`: runs of the folders."""
     beside = Counter(run.algorithm for run in runs if table.parent in run.folder.parents)
     named = Counter(row["algorithm"] for row in rows)
     found = []
