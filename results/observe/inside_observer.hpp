@@ -210,6 +210,8 @@ class InsideObserver final : public Observer {
   }
   const Passage& passage() const noexcept { return passage_; }
   const CorePassage& core_passage() const noexcept { return core_passage_; }
+  /// Returns true if the tool has gone through the surface and no later step can change this.
+  bool has_passed() const noexcept { return passage_.deep || passage_.left || core_passage_.event(); }
   /// Searches the deepest points of the tool in the kept poses and returns the depths. Call after the run.
   InsideDepths depths();
 

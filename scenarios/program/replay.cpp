@@ -96,8 +96,8 @@ Replayed rendered(const CheckedScenario& scenario, const LoopLog& log) {
 /// Warns if the tool passed through the surface. `what`: the log, or the log and the algorithm.
 void warn_of_passage(const ProgramContext& context, const std::string& what, const ReplayedPassage& passage) {
   if (const std::string text = passage.text(); !text.empty())
-    print_warnings(context, {fmt::format("{}: the tool passed through the surface: {}; the forces after this time are "
-                                         "not those of the surface that it touched first",
+    print_warnings(context, {fmt::format("{}: the tool passed through the surface: {}; the forces after this time may "
+                                         "push it to the other side",
                                          what, text)});
 }
 
@@ -180,12 +180,11 @@ int compare_replays(const std::string& given, const std::string& log_file, const
   for (const CheckedScenario& scenario : scenarios) {
     const std::string& algorithm = scenario.scenario().rendering.algorithm;
     const Replayed replayed = rendered(scenario, log);
-    // In impedance mode, the tool moves identically with all laws.
-    if (log.setup.mode == HAPBENCH_ADMITTANCE) {
-      warn_of_passage(context, fmt::format("{}, {}", log_file, algorithm), replayed.passage);
-    } else if (rows.empty()) {
-      warn_of_passage(context, log_file, replayed.passage);
-    }
+    // In impedance mode, the tool moves identically with all laws, so that one warning suffices.
+    const bool depends_on_law = log.setup.mode == HAPBENCH_ADMITTANCE;
+    if (depends_on_law || rows.empty())
+      warn_of_passage(context, depends_on_law ? fmt::format("{}, {}", log_file, algorithm) : log_file,
+                      replayed.passage);
     rows.push_back(replay_row(algorithm, replayed.outputs, log));
   }
   report.write("replay_comparison.csv", replay_columns(), rows);

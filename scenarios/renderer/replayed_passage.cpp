@@ -25,7 +25,7 @@ void ReplayedPassage::add(const LiveRenderer& renderer, const HapbenchOutput& ou
 
 std::optional<bool> ReplayedPassage::went_through() const {
   if (!inside_) return {};
-  return inside_->passage().went_through() || inside_->core_passage().event().has_value();
+  return inside_->has_passed() || inside_->passage().ends_inside;
 }
 
 std::string ReplayedPassage::text() const {

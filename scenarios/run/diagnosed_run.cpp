@@ -209,10 +209,9 @@ Number damping_share(const DiagnosedRun& run) {
   if (!lambda || !run.is_free() || s.rendering.hunt_crossley) return std::nullopt;
   double B = *lambda * normal_damping(s.rendering);
   if (const auto& most = s.rendering.max_damping) B = std::min(B, *most);
-  // The mass of a passive hand is fixed to the handle.
-  const auto* hand = std::get_if<MassSpringDamperHandFields>(&s.hand);
-  const double handle_mass = device != nullptr ? device->handle_mass + (hand != nullptr ? hand->mass : 0.0) : 0.0;
-  const double mass = device != nullptr ? handle_mass : s.rendering.mass;
+  double mass = device != nullptr ? device->handle_mass : s.rendering.mass;
+  // A passive hand is fixed to the handle.
+  if (const auto* hand = std::get_if<MassSpringDamperHandFields>(&s.hand)) mass += hand->mass;
   return B * s.time.step / mass / (device != nullptr ? 2.0 : s.integrator.type->damper_limit);
 }
 

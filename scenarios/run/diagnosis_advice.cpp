@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -53,12 +54,16 @@ struct LoopChange {
   std::function<void(Scenario&)> change;
 };
 
+bool has_damping(const RenderingConfig& rendering) {
+  return normal_damping(rendering) > 0.0 || rendering.hunt_crossley;
+}
+
 /// Multiplies the damping of the contacts. `if_zero`: damping ratio that replaces a damping of zero.
 void scale_damping(RenderingConfig& rendering, double factor, double if_zero) {
   if (rendering.hunt_crossley) *rendering.hunt_crossley *= factor;
   if (rendering.damping) *rendering.damping *= factor;
   rendering.damping_ratio *= factor;
-  if (normal_damping(rendering) > 0.0 || rendering.hunt_crossley) return;
+  if (has_damping(rendering)) return;
   rendering.damping.reset();
   rendering.damping_ratio = if_zero;
 }
@@ -67,8 +72,7 @@ void scale_damping(RenderingConfig& rendering, double factor, double if_zero) {
 std::vector<LoopChange> loop_changes(const Scenario& scenario) {
   const std::string damping = damping_field(scenario.rendering);
   std::vector<LoopChange> changes = {{"a shorter time.step_s", [](Scenario& s) { s.time.step *= 0.1; }}};
-  const bool has_damping = normal_damping(scenario.rendering) > 0.0 || scenario.rendering.hunt_crossley;
-  if (has_damping)
+  if (has_damping(scenario.rendering))
     changes.push_back({"a smaller " + damping, [](Scenario& s) { scale_damping(s.rendering, 0.1, 0.0); }});
   changes.push_back({"a larger " + damping, [](Scenario& s) { scale_damping(s.rendering, 10.0, 0.7); }});
   if (const auto* device = std::get_if<ImpedanceDeviceConfig>(&scenario.device)) {
@@ -91,6 +95,13 @@ bool is_beyond(const Number& number, double threshold) {
 /// Returns true if K is near or beyond the stability limit of the linear loop.
 bool is_too_stiff(const DiagnosedRun& run) {
   return is_beyond(stability_limit_ratio(run), kMaxLimitRatio);
+}
+
+/// Returns the advice if the linear loop is unstable: because of K, or at any K. Empty if it is stable.
+std::optional<std::string> against_instability(const DiagnosedRun& run) {
+  if (is_too_stiff(run)) return "a smaller K: the rule \"edge\" names the stability limit";
+  if (is_beyond(unstable_loop(run), 0.5)) return against_unstable_loop(run);
+  return std::nullopt;
 }
 
 /// Returns the remedies for measured causes of a rough force.
@@ -162,8 +173,7 @@ std::string against_sinking(const DiagnosedRun& run) {
                          : "another motion.position: the script starts inside the environment";
   if (step_exceeds_half_width(run)) return kShorterStep;
   if (!run.is_free()) return "another motion.position, because the script moves the tool there";
-  if (is_too_stiff(run)) return "a smaller K: the rule \"edge\" names the stability limit";
-  if (is_beyond(unstable_loop(run), 0.5)) return against_unstable_loop(run);
+  if (const auto advice = against_instability(run)) return *advice;
   return "a larger K or a smaller hand force; if the rule \"soft\" is listed, another algorithm";
 }
 
@@ -181,8 +191,7 @@ std::string against_loss(const DiagnosedRun& run) {
     return "check environment.scale, initial.position_m and the hand's direction (\"hapbench validate\" prints sizes "
            "and distances); if the tool came nearer until the end of the run, more time.steps";
   }
-  if (is_too_stiff(run)) return "a smaller K: the rule \"edge\" names the stability limit";
-  if (is_beyond(unstable_loop(run), 0.5)) return against_unstable_loop(run);
+  if (const auto advice = against_instability(run)) return *advice;
   return "a hand whose path ends on the surface";
 }
 

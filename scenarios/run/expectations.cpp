@@ -23,13 +23,14 @@ std::string divergence_text(const Result& run) {
   return fmt::format("{} reached {:.4g} at step {}, beyond {:.4g}", d.quantity, d.magnitude, d.step, d.bound);
 }
 
-std::vector<std::string> violated_bounds(const std::map<std::string, MetricBound>& bounds, const Result& run) {
-  std::vector<std::string> violated;
+std::vector<ViolatedBound> violated_bounds(const std::map<std::string, MetricBound>& bounds, const Result& run) {
+  using enum ViolatedBound::End;
+  std::vector<ViolatedBound> violated;
   for (const auto& [name, bound] : bounds) {
     const auto number = number_of(run.metrics, name);
-    if (!number) violated.push_back(name + " none");
-    if (number && bound.min && *number < *bound.min) violated.push_back(name + " min");
-    if (number && bound.max && *number > *bound.max) violated.push_back(name + " max");
+    if (!number) violated.push_back({name, no_value});
+    if (number && bound.min && *number < *bound.min) violated.push_back({name, minimum});
+    if (number && bound.max && *number > *bound.max) violated.push_back({name, maximum});
   }
   return violated;
 }
@@ -44,16 +45,15 @@ std::vector<std::string> unmet_expectations(const ExpectFields& expect, const Re
                                 quoted_list(names_of(expect.outcomes, outcome_name))));
   }
   // Check the bounds of each metric.
-  for (const auto& [name, bound] : expect.metrics) {
-    const auto number = number_of(run.metrics, name);
-    if (!number) {
+  for (const auto& [name, end] : violated_bounds(expect.metrics, run)) {
+    if (end == ViolatedBound::End::no_value) {
       unmet.push_back(fmt::format("{} has no value; the scenario expects one", name));
       continue;
     }
-    if (bound.min && *number < *bound.min)
-      unmet.push_back(fmt::format("{} is {}; expected at least {}", name, *number, *bound.min));
-    if (bound.max && *number > *bound.max)
-      unmet.push_back(fmt::format("{} is {}; expected at most {}", name, *number, *bound.max));
+    const MetricBound& bound = expect.metrics.at(name);
+    const bool is_min = end == ViolatedBound::End::minimum;
+    unmet.push_back(fmt::format("{} is {}; expected at {} {}", name, *number_of(run.metrics, name),
+                                is_min ? "least" : "most", is_min ? *bound.min : *bound.max));
   }
   return unmet;
 }

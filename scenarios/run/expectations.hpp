@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -18,9 +19,17 @@ std::string divergence_text(const Result& run);
 /// Returns one sentence for each expectation of the scenario that the run does not meet.
 std::vector<std::string> unmet_expectations(const ExpectFields& expect, const Result& run);
 
-/// Returns the bounds that the run's metrics do not keep, such as "inside_max_m max"; "NAME none" for a metric without
-/// a value.
-std::vector<std::string> violated_bounds(const std::map<std::string, MetricBound>& bounds, const Result& run);
+/// A bound that a metric of a run does not keep.
+struct ViolatedBound {
+  enum class End { no_value, minimum, maximum };
+  std::string metric;
+  End end;  ///< which end of the bound; `no_value` if the metric has no value
+
+  bool operator==(const ViolatedBound&) const = default;
+};
+
+/// Returns the bounds that the run's metrics do not keep.
+std::vector<ViolatedBound> violated_bounds(const std::map<std::string, MetricBound>& bounds, const Result& run);
 
 /// Returns true if the scenario expects `outcome`.
 inline bool outcome_is_expected(const ExpectFields& expect, Outcome outcome) {

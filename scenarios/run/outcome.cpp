@@ -76,9 +76,7 @@ class OutcomeObserverImpl final : public OutcomeObserver {
     }
   }
   const std::optional<FinalFailure>& final_failure() const noexcept override { return failure_; }
-  bool has_passed() const noexcept override {
-    return inside_ && (inside_->passage().deep || inside_->passage().left || inside_->core_passage().event());
-  }
+  bool has_passed() const noexcept override { return inside_ && inside_->has_passed(); }
 
   Outcome outcome(Ending ending) override {
     if (!approach_ || ending != Ending::completed) return outcome_of(ending);

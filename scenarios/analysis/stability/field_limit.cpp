@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <set>
 #include <span>
@@ -69,7 +68,7 @@ class RunCache {
   }
   const RunStability& of(double value) const { return runs_.at(value); }
   /// Returns the reason why the run at a parameter is not stable: its class, and the bounds that it violates.
-  std::pair<RunVerdict, std::vector<std::string>> failure_at(double t) const {
+  std::pair<RunVerdict, std::vector<ViolatedBound>> failure_at(double t) const {
     const RunStability& run = of(question_.search.value_at(t));
     return {run.verdict, run.violated};
   }
@@ -200,8 +199,7 @@ void add_linear_limit(const LimitQuestion& question, const std::map<double, RunS
   // is skipped, because it would count springs at zero deflection as not in contact.
   if (has_permanent_springs(scenario)) {
     const TheoreticalLimit loop = frictionless_limit(question);
-    if (loop.has_none) limit.linear = question.search.smallest ? std::numeric_limits<double>::infinity() : 0.0;
-    if (!loop.has_none) limit.linear = loop.value;
+    limit.linear = loop.has_none ? limit_without_transition(false, question.search.smallest) : loop.value;
     if (limit.linear) return;
   }
   // Among the stable values, find the value nearest to the limit whose run has a lasting contact (contact_lasts()).
@@ -237,10 +235,6 @@ void add_formulas(const LimitQuestion& question, const std::map<double, RunStabi
 std::optional<double> IntervalEnd::tolerance() const {
   if (!value || !beyond) return std::nullopt;
   return std::abs(beyond->value - *value);
-}
-
-bool FieldLimit::has_no_linear_value(bool smallest) const {
-  return linear && (smallest ? std::isinf(*linear) : *linear == 0.0);
 }
 
 /// Finds the limit with the bounds of the question's rule. Ignores the errors of the bounded metrics.

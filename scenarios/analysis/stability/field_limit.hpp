@@ -54,8 +54,7 @@ struct FieldLimit {
   /// Linear limit if `theory` is empty. For springs in permanent contact, it is frictionless_limit(). For a surface
   /// that the tool can leave, it is contact_limit(), searched from the run with the largest stable value in which
   /// contact lasts. Dry friction and the encoder are ignored. Dry friction, the encoder and loss of contact can raise
-  /// the simulated limit above the linear limit. Infinite if the loop is stable to the end of the range, 0 if no value
-  /// is stable; in a search for the smallest stable value, 0 and infinite.
+  /// the simulated limit above the linear limit. Without a transition in the range: limit_without_transition().
   std::optional<double> linear;
   /// Why no linear limit was found; empty if `theory` or `linear` has a value, or if the theory finds no stable value.
   std::string no_linear = {};
@@ -88,8 +87,6 @@ struct FieldLimit {
 
   /// Returns the linear limit: `theory` if it has a value, otherwise `linear`.
   const std::optional<double>& known_linear_limit() const { return theory ? theory : linear; }
-  /// Returns true if the linear loop is stable at no value of the range. `smallest`: IntervalSearchOptions::smallest.
-  bool has_no_linear_value(bool smallest) const;
   /// If the simulated limit is quoted, returns the width of the interval that encloses it. If the linear limit is
   /// quoted, returns nothing, because the linear limit is known to many digits.
   std::optional<double> quoted_tolerance() const { return quoted.value == end.value ? end.tolerance() : std::nullopt; }

@@ -94,12 +94,16 @@ TheoreticalLimit limit_by(const LimitQuestion& question, const IsTrueOf& applies
   IntervalSearchOptions options = question.search;
   options.resolution = kTheoryResolution;
   const StableInterval interval = find_stable_interval(options, evaluated, holds, false);
-  if (interval.stable) limit.value = options.smallest ? 0.0 : std::numeric_limits<double>::infinity();
+  if (interval.stable) limit.value = limit_without_transition(true, options.smallest);
   if (interval.beyond) limit.value = options.value_at(*interval.stable);
   return limit;
 }
 
 }  // namespace
+
+double limit_without_transition(bool is_stable, bool smallest) {
+  return is_stable != smallest ? std::numeric_limits<double>::infinity() : 0.0;
+}
 
 TheoreticalLimit eigenvalue_limit(const LimitQuestion& question) {
   return limit_by(question, has_eigenvalues, step_is_stable, kTheoryIntervals);
@@ -135,8 +139,7 @@ std::optional<double> contact_limit(const LimitQuestion& question, double stable
   });
   if (!limit) return std::nullopt;
   if (!std::isinf(*limit)) return options.value_at(*limit);
-  const bool all_stable = *limit > 0.0;
-  return all_stable != options.smallest ? std::numeric_limits<double>::infinity() : 0.0;
+  return limit_without_transition(*limit > 0.0, options.smallest);
 }
 
 WallLimits wall_limits(const LimitQuestion& question) {

@@ -10,11 +10,14 @@
 /// Stability limits of a field from linear theory, without runs. One evaluation costs about a thousandth of a run.
 namespace hapbench {
 
+/// Returns the limit that stands for a range without a stable-to-unstable transition. If it is stable to its end:
+/// infinity, or 0 in a search for the smallest stable value. If no value is stable: 0, or infinity.
+double limit_without_transition(bool is_stable, bool smallest);
+
 /// Limit of a stability condition, found in the range of a LimitQuestion.
 struct TheoreticalLimit {
-  /// Last stable value before the first stable-to-unstable transition. If the whole range is stable, it is infinite,
-  /// or 0 in a search for the smallest stable value; empty if the condition does not apply to the scene or no value
-  /// is stable.
+  /// Last stable value before the first stable-to-unstable transition. limit_without_transition() if the condition
+  /// holds to the end of the range; empty if it does not apply to the scene or no value is stable.
   std::optional<double> value = {};
   /// Midpoints of all contiguous intervals of stable parameters. field_limit() also runs these parameters, because
   /// its coarser scan could miss a narrow interval.

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scenarios/analysis/stability/limit_theory.hpp"
+
 namespace hapbench {
 namespace {
 
@@ -76,7 +78,7 @@ QuotedLimit quoted_limit(const LimitQuestion& question, const FieldLimit& limit)
   // Returns true if the field reaches the value a before the value b on its way from stable to unstable values.
   const auto is_first = [smallest](double a, double b) { return smallest ? a > b : a < b; };
   const auto& linear = limit.known_linear_limit();
-  if (limit.has_no_linear_value(smallest))
+  if (limit.linear == limit_without_transition(false, smallest))
     return {{}, "by the eigenvalues of the loop in contact, no value of the range is stable"};
   const bool has_linear = linear && std::isfinite(*linear) && *linear > 0.0;
   const std::string name = limit.theory ? "theoretical limit (eigenvalues, contact cannot be lost)"

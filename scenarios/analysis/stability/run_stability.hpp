@@ -3,13 +3,13 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "scenarios/analysis/stability/run_end_observer.hpp"
 #include "scenarios/analysis/stability/run_verdict.hpp"
 #include "scenarios/analysis/stability/stability_rule.hpp"
 #include "scenarios/run/checked_scenario.hpp"
+#include "scenarios/run/expectations.hpp"
 #include "sim/geometry/point_shell.hpp"
 
 /// Decides whether a run is stable, by its motion (motion_classifier.hpp) and by the outcome of the run.
@@ -25,8 +25,8 @@ struct RunStability {
   /// True if the run vibrates, but its amplitude falls from each quarter of the run to the next
   /// (MotionClassifier::fades).
   bool fades = false;
-  /// If the verdict is `beyond_bound`, the bounds that the run does not keep, such as "inside_max_m max"; else empty.
-  std::vector<std::string> violated = {};
+  /// The bounds that the run does not keep; empty unless the verdict is `beyond_bound`.
+  std::vector<ViolatedBound> violated = {};
 };
 
 /// Runs the scenario's first trial without records and returns the verdict on this run. If the run is too short to

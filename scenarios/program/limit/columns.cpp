@@ -8,6 +8,7 @@
 
 #include "device_model/theory/linear_loops.hpp"
 #include "scenarios/analysis/stability/compared_devices.hpp"
+#include "scenarios/analysis/stability/limit_theory.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/program/describe/fields.hpp"
 #include "scenarios/program/digits.hpp"
@@ -62,7 +63,7 @@ std::string linear_limit_text(const LimitRow& row) {
   const auto& linear = row.limit.known_linear_limit();
   if (!linear) return row.limit.theory_has_none ? "none stable" : "-";
   if (!std::isinf(*linear) && *linear != 0.0) return rounded_text(*linear, 6);
-  return std::isinf(*linear) == row.question.search.smallest ? "none stable" : "no end";
+  return *linear == limit_without_transition(false, row.question.search.smallest) ? "none stable" : "no end";
 }
 
 /// Returns a function that computes the cell of a row: it applies `part` to the row, and `get` to the result.
