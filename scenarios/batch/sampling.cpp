@@ -136,6 +136,13 @@ class PointLines {
   }
 
   void check_paths() const {
+    const auto outcome = std::ranges::find(paths_, "outcome");
+    if (paths_.front() == "index" && outcome != paths_.end())
+      fail_in_line(
+          file_, header_line_,
+          fmt::format("is the result of a sweep; allowed: a table of fields and their values: of this file, the "
+                      "columns 2 to {}, before \"outcome\"",
+                      outcome - paths_.begin()));
     for (std::size_t i = 0; i < paths_.size(); ++i) {
       if (paths_[i].empty())
         fail_in_line(file_, header_line_, fmt::format("column {} has no name; allowed: the path of a field", i + 1));

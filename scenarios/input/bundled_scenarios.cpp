@@ -50,6 +50,7 @@ fs::path find_scenario(const std::string& argument, const fs::path& directory) {
                                    argument, shell_file(argument)));
     return file;
   }
+  if (error) throw InputError(fmt::format("{}: cannot be read: {}", argument, error.message()));
   // Search the bundled scenarios.
   std::vector<std::string> names;
   for (const BundledScenario& bundled : bundled_scenarios()) {

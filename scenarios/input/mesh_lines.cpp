@@ -79,6 +79,22 @@ void MeshLines::fail_at_end(std::size_t done, std::size_t count, const std::stri
       fmt::format("the file is cut short: it ends after {} of its {} {}; allowed: a complete file", done, count, what));
 }
 
+void MeshLines::note_ignored(std::size_t word) {
+  if (last_ignored_line_ == first_line_) return;
+  last_ignored_line_ = first_line_;
+  if (ignored_lines_++ > 0) return;
+  first_ignored_line_ = first_line_;
+  first_ignored_token_ = words_[word];
+}
+
+void MeshLines::warn_of_ignored(std::vector<std::string>& warnings) const {
+  if (ignored_lines_ == 0) return;
+  warnings.push_back(
+      fmt::format("lines with other text after the coordinates of a vertex, which was ignored: {}, the "
+                  "first is line {}: {}",
+                  ignored_lines_, first_ignored_line_, quoted_token(first_ignored_token_)));
+}
+
 void MeshLines::warn_of_rest(std::vector<std::string>& warnings) {
   if (!next()) return;
   const std::size_t first = first_line_;

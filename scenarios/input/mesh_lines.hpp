@@ -45,6 +45,10 @@ class MeshLines {
   [[noreturn]] void fail(const std::string& problem) const;
   /// Throws an InputError: the file ends after `done` of `count` entries. `what` names the entries.
   [[noreturn]] void fail_at_end(std::size_t done, std::size_t count, const std::string& what) const;
+  /// Counts the current line for warn_of_ignored(). `word`: index of a token after the coordinates of a vertex.
+  void note_ignored(std::size_t word);
+  /// Adds a warning about the lines that note_ignored() counted, if there are any.
+  void warn_of_ignored(std::vector<std::string>& warnings) const;
   /// Adds a warning about lines that remain after the last entry, if there are any.
   void warn_of_rest(std::vector<std::string>& warnings);
 
@@ -58,6 +62,8 @@ class MeshLines {
   std::size_t first_line_ = 0;
   std::string_view joined_token_;
   Words words_;  ///< tokens of the current line
+  std::size_t ignored_lines_ = 0, first_ignored_line_ = 0, last_ignored_line_ = 0;
+  std::string_view first_ignored_token_;
 };
 
 }  // namespace hapbench

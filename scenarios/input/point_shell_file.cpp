@@ -3,9 +3,13 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <functional>
 #include <iterator>
+#include <numeric>
+#include <tuple>
 #include <utility>
 
 #include "scenarios/input/input_error.hpp"
@@ -68,6 +72,32 @@ void check_and_normalise(ReadPoints& read, const fs::path& file) {
   faults.throw_if_any(file);
 }
 
+/// Returns a warning about points with the position and the normal of an earlier point; empty if there are none.
+std::string warning_of_copies(const ReadPoints& read) {
+  // Sort the points, so that copies follow each other in the order of the file.
+  const std::vector<SurfacePoint>& points = read.points;
+  std::vector<std::uint32_t> order(points.size());
+  std::iota(order.begin(), order.end(), 0U);
+  const auto key = [&points](std::uint32_t i) {
+    const auto& [p, n] = points[i];
+    return std::tuple(p.x(), p.y(), p.z(), n.x(), n.y(), n.z());
+  };
+  std::ranges::stable_sort(order, {}, key);
+  // Count the copies and find the first in the file.
+  std::size_t copies = 0, first = points.size();
+  for (std::size_t i = 1; i < order.size(); ++i) {
+    if (key(order[i]) != key(order[i - 1])) continue;
+    ++copies;
+    first = std::min<std::size_t>(first, order[i]);
+  }
+  if (copies == 0) return "";
+  const std::string line = read.line_of ? fmt::format(" in line {}", read.line_of(first)) : "";
+  return fmt::format(
+      "points that repeat the position and the normal of an earlier point: {}, the first is point {}{}; each of them "
+      "counts as a point of its own, also in the force",
+      copies, first, line);
+}
+
 std::string csv_text(const std::vector<SurfacePoint>& points) {
   std::string text = fmt::format("{}\n", kCsvHeader);
   for (const SurfacePoint& p : points) {
@@ -103,6 +133,8 @@ std::vector<SurfacePoint> parse_point_shell(std::string_view text, const std::fi
   ReadPoints read = shell_extension(file) == ".csv" ? parse_csv_points(text, file, notes)
                                                     : ReadPoints{parse_ply_points(text, file, notes)};
   check_and_normalise(read, file);
+  if (notes != nullptr)
+    if (std::string copies = warning_of_copies(read); !copies.empty()) notes->push_back(std::move(copies));
   return std::move(read.points);
 }
 

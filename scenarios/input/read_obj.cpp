@@ -91,6 +91,13 @@ void read_face(const MeshLines& lines, MeshFaces& faces) {
   faces.end_face(lines.line());
 }
 
+/// Notes a vertex with other text than numbers, or with more numbers than a position, a weight and a colour have.
+void note_other_text(MeshLines& lines) {
+  constexpr std::size_t kMostWords = 8;  // "v", position, weight, colour
+  for (std::size_t k = 4; k < lines.words().size(); ++k)
+    if (k >= kMostWords || !finite_number(lines.words()[k])) lines.note_ignored(k);
+}
+
 }  // namespace
 
 MeshFaces read_obj(std::string_view text, const fs::path& file) {
@@ -102,6 +109,7 @@ MeshFaces read_obj(std::string_view text, const fs::path& file) {
     const Words& words = lines.words();
     if (words[0] == "v") {
       faces.add_vertex(lines.position(1), lines.line());
+      note_other_text(lines);
       if (words.size() == 5 && weighted == 0 && finite_number(words[4]).value_or(1.0) != 1.0) weighted = lines.line();
     } else if (words[0] == "f" || words[0] == "fo") {
       read_face(lines, faces);
@@ -119,6 +127,7 @@ MeshFaces read_obj(std::string_view text, const fs::path& file) {
   }
   if (faces.ends.empty()) ignored.refuse_first_unknown(file);
   ignored.report(faces.warnings);
+  lines.warn_of_ignored(faces.warnings);
   if (weighted > 0)
     faces.warnings.push_back(fmt::format("weights of vertices, which were ignored: the first in line {}", weighted));
   return faces;

@@ -68,8 +68,8 @@ Counts read_counts(std::size_t length, MeshLines& lines) {
   return {vertices, faces, left > 0};
 }
 
-/// Parses the part of the file after the header. Ignores tokens after the position of a vertex or the corners of a
-/// face, such as normals or colours.
+/// Parses the part of the file after the header. Ignores numbers after the position of a vertex, such as normals or
+/// colours, and tokens after the corners of a face. Warns about other text after a position.
 MeshFaces read_entries(const Counts& counts, MeshLines& lines) {
   MeshFaces faces;
   for (std::size_t i = 0; i < counts.vertices; ++i) {
@@ -78,7 +78,10 @@ MeshFaces read_entries(const Counts& counts, MeshLines& lines) {
                           whole_number(lines.words()[0]).has_value();
     if (!has_line || (is_edges && !lines.next())) lines.fail_at_end(i, counts.vertices, "vertices");
     faces.add_vertex(lines.position(0), lines.line());
+    for (std::size_t k = 3; k < lines.words().size(); ++k)
+      if (!finite_number(lines.words()[k])) lines.note_ignored(k);
   }
+  lines.warn_of_ignored(faces.warnings);
   for (std::size_t i = 0; i < counts.faces; ++i) {
     if (!lines.next()) lines.fail_at_end(i, counts.faces, "faces");
     const std::size_t count = lines.count(0, "corners");

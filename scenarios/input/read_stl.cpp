@@ -31,13 +31,12 @@ class StlKeywords {
  public:
   StlKeywords(std::string_view text, const fs::path& file) : lines_(LineReader(text), file) {}
 
-  /// Advances to the next keyword. Ignores other tokens in its line: normals, colours and names. Returns false at the
-  /// end of the text.
+  /// Advances to the next keyword. Ignores other tokens in its line: normals, colours and names. Notes tokens after the
+  /// coordinates of a vertex. Returns false at the end of the text.
   bool next() {
-    const bool is_name = keyword_ == "solid" || keyword_ == "endsolid";  // a name may hold keywords
-    do {
-      ++word_;
-    } while (word_ < lines_.words().size() && (is_name || !is_keyword(lines_.words()[word_])));
+    const std::size_t last = word_;
+    while (++word_ < lines_.words().size() && !is_next_keyword())
+      if (keyword_ == "vertex" && word_ > last + 3) lines_.note_ignored(word_);
     if (word_ >= lines_.words().size()) {
       word_ = 0;
       if (!lines_.next()) return false;
@@ -56,6 +55,13 @@ class StlKeywords {
   const MeshLines& lines() const { return lines_; }
 
  private:
+  /// Returns true if the current token is a keyword. The name of a solid may contain keywords. It ends at the end of
+  /// the line, or before "facet normal" if the whole file is one line.
+  bool is_next_keyword() const {
+    const Words& words = lines_.words();
+    if (keyword_ != "solid" && keyword_ != "endsolid") return is_keyword(words[word_]);
+    return word_ + 1 < words.size() && lower_case(words[word_]) == "facet" && lower_case(words[word_ + 1]) == "normal";
+  }
   static bool is_keyword(std::string_view word) {
     // First reject tokens that do not begin with a letter, because most tokens are numbers.
     const bool has_letter = ('a' <= word[0] && word[0] <= 'z') || ('A' <= word[0] && word[0] <= 'Z');
@@ -108,6 +114,7 @@ MeshFaces read_stl_text(std::string_view text, const fs::path& file) {
                     "allowed: a complete file (if this file is complete, append \"endsolid\")",
                     faces.ends.size(), last));
   }
+  keywords.lines().warn_of_ignored(faces.warnings);
   return faces;
 }
 

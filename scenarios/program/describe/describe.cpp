@@ -102,8 +102,8 @@ std::vector<Description> other_meanings(const Index& index, const std::string& n
   if (!found.empty()) return found;
   // Find a term of the glossary, then a scenario file.
   if (const std::optional<Description> term = find_term(in_folders, name)) return {*term};
-  std::error_code ignored;
-  if (!std::filesystem::exists(name, ignored)) refuse(name, index, in_folders);
+  std::error_code error;
+  if (!std::filesystem::exists(name, error) && !error) refuse(name, index, in_folders);
   return {describe_scenario(find_scenario(name), layout)};
 }
 

@@ -42,9 +42,11 @@ void check_options(const NewOptions& options, const StartKind& kind) {
     if (!is_right) fail_in_option(option, fmt::format("allowed: {}", allowed));
   };
   const auto require_file = [](const char* option, const std::string& file) {
-    std::error_code ignored;
-    if (!file.empty() && !std::filesystem::exists(file, ignored))
-      fail_in({.about_options = {option}}, fmt::format("{} {}: cannot be read: no such file", option, file));
+    std::error_code error;
+    if (!file.empty() && !std::filesystem::exists(file, error)) {
+      const std::string problem = error ? error.message() : "no such file";
+      fail_in({.about_options = {option}}, fmt::format("{} {}: cannot be read: {}", option, file, problem));
+    }
   };
   if (!kind.source.empty() && !kind.is_source_optional && from.empty())
     fail_in_option("--from", fmt::format("missing; \"{}\" starts from a file", name));

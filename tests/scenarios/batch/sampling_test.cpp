@@ -68,6 +68,9 @@ TEST(PointsOfAFile, AreRefusedOnceWithTheCause) {
   EXPECT_EQ(points_of("a.b,c,a.b\n1,2,3\n"),
             "p.csv, line 1: columns 1 and 3 are both named \"a.b\"; allowed: each field once");
   EXPECT_EQ(points_of(",a.b\n0,1\n"), "p.csv, line 1: column 1 has no name; allowed: the path of a field");
+  EXPECT_EQ(points_of("index,a.b,c,outcome,force_max_N\n0,1,2,completes,\n"),
+            "p.csv, line 1: is the result of a sweep; allowed: a table of fields and their values: of this file, the "
+            "columns 2 to 3, before \"outcome\"");
   EXPECT_NE(points_of("a.b,c\n0,5,1,5\n").find("a decimal comma splits a number"), std::string::npos);
 }
 

@@ -373,6 +373,33 @@ TEST_F(MeshFile, WarnsAboutWhatItsReaderIgnores) {
             "triangles; is the header wrong?");
 }
 
+TEST_F(MeshFile, WarnsAboutTextAfterCoordinates) {
+  const TriangleSoup cube = test::cube();
+  /// Returns a text with `rest` appended to the line with this number.
+  const auto with = [](std::string text, int line, const std::string& rest) {
+    std::size_t end = text.find('\n');
+    while (--line > 0) end = text.find('\n', end + 1);
+    return text.insert(end, rest);
+  };
+  const std::string warned = ": lines with other text after the coordinates of a vertex, which was ignored: 1, the ";
+  EXPECT_EQ(warning_of("mm.obj", with(test::obj_text(cube), 1, " mm")), warned + "first is line 1: \"mm\"");
+  EXPECT_EQ(warning_of("eight.obj", with(test::obj_text(cube), 1, " 1 0 0 1 9")), warned + "first is line 1: \"9\"");
+  EXPECT_EQ(warning_of("mm.off", with(test::off_text(cube), 3, " mm")), warned + "first is line 3: \"mm\"");
+  EXPECT_EQ(warning_of("mm.stl", with(test::stl_text(cube), 4, " mm")), warned + "first is line 4: \"mm\"");
+  // A weight, a colour and a normal are numbers.
+  EXPECT_TRUE(read("colour.obj", with(test::obj_text(cube), 1, " 1 0 0")).warnings.empty());
+  EXPECT_TRUE(read("weight.obj", with(test::obj_text(cube), 1, " 1 1 0 0")).warnings.empty());
+  EXPECT_TRUE(read("normal.off", with(test::off_text(cube), 3, " 0 0 1")).warnings.empty());
+}
+
+TEST_F(MeshFile, IsReadFromAnStlOfOneLine) {
+  std::string text = test::stl_text(test::cube());
+  std::ranges::replace(text, '\n', ' ');
+  const MeshPoints mesh = read("one_line.stl", text);
+  EXPECT_EQ(sorted_positions(mesh.points), sorted_positions(read("cube.stl", test::stl_text(test::cube())).points));
+  EXPECT_TRUE(mesh.warnings.empty());
+}
+
 TEST_F(MeshFile, KeepsOneOfSeveralEqualFaces) {
   const TriangleSoup cube = test::cube();
   TriangleSoup twice = cube, sheet = cube;

@@ -90,6 +90,19 @@ std::vector<SurfacePoint> read(const std::string& contents) {
   return parse_ply_points(contents, "points.ply");
 }
 
+TEST(ShellFile, IsReportedIfItRepeatsPoints) {
+  std::vector<std::string> notes;
+  // Another normal at the same position is no copy.
+  const std::string csv = "x_m,y_m,z_m,nx,ny,nz\n1,0,0,0,0,1\n0,0,0,0,0,1\n0,0,0,0,1,0\n0,0,0,0,0,1\n-0,0,0,0,1,0\n";
+  EXPECT_EQ(parse_point_shell(csv, "s.csv", &notes).size(), 5u);
+  EXPECT_EQ(notes, std::vector<std::string>{
+                       "points that repeat the position and the normal of an earlier point: 2, the first is point 3 in "
+                       "line 5; each of them counts as a point of its own, also in the force"});
+  notes.clear();
+  parse_point_shell(header("ascii", "2") + "0 0 0 0 0 1\n0 0 0 0 0 1\n", "s.ply", &notes);
+  EXPECT_EQ(notes.size(), 1u);
+}
+
 TEST(PlyPoints, MayHaveEveryScalarType) {
   const std::string properties =
       "property char x\nproperty uint8 y\nproperty int16 z\nproperty ushort nx\nproperty int ny\nproperty uint32 nz\n"

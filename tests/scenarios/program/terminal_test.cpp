@@ -369,6 +369,22 @@ TEST_F(OutputDirectory, WithoutPermissionIsRefused) {
   EXPECT_TRUE(fs::is_empty(directory_ / "locked"));
 }
 
+TEST(InputDirectory, WithoutPermissionIsNamed) {
+  const test::TemporaryDirectory directory;
+  fs::create_directory(directory / "locked");
+  ::chmod((directory / "locked").c_str(), 0000);
+  test::ProgramOptions options;
+  options.as_root_may = false;
+  if (hapbench({"describe"}, options).status == 126) GTEST_SKIP() << "root's privileges cannot be dropped here";
+  const std::string file = directory / "locked/a.json";
+  for (const std::vector<std::string>& arguments :
+       {std::vector<std::string>{"run", file}, {"describe", file}, {"new", "mesh", "--from", file}}) {
+    const ProgramRun run = hapbench(arguments, options);
+    EXPECT_EQ(run.status, 2) << arguments[0];
+    EXPECT_NE(run.err.find("cannot be read: Permission denied"), std::string::npos) << arguments[0] << run.err;
+  }
+}
+
 TEST_F(OutputDirectory, MayHaveSpacesQuotesAndLetters) {
   const fs::path out = directory_ / "a b/c'd\"e/\xc3\xa4$HOME;x";
   for (const auto& arguments : commands_writing_to(out)) {
