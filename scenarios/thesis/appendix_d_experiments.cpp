@@ -134,9 +134,9 @@ Finding judge_experiment(const Measured& measured, const PublishedNumbers& publi
   }
   return {in_simulation(consistent),
           (deviating.empty() ? std::string("every measure agrees with the thesis in direction and significance")
-                             : "different from the published result: " + deviating) +
-              fmt::format("; the {} differs most, by {:.2g} standard errors of the difference; subjects regulate the "
-                          "force that the gauge shows, so the mean force is nearly an input",
+                             : "measures that differ from the published result: " + deviating) +
+              fmt::format("; farthest from its published value is the {}, by {:.2g} standard errors of the difference; "
+                          "the mean force is nearly an input, because subjects regulate the force that the gauge shows",
                           farthest, largest),
           text, number};
 }

@@ -153,8 +153,8 @@ std::string other_values(const Json& claims) {
     }
     if (claim.contains("sampled_verdict"))
       notes += fmt::format(
-          "\nFor {}, the record of sensitivity uses fewer targets than the ledger. With these targets and the recorded "
-          "assumptions, the verdict is *{}*. The table has the values that change this verdict.\n",
+          "\n*(fewer targets)*: the cases of {} were run with fewer targets than the ledger. With these targets and the "
+          "recorded assumptions, the verdict is *{}*. The entries are the values that change this verdict.\n",
           link_to(claim), text_at(claim, "sampled_verdict"));
   }
   if (cells.empty()) return "";
@@ -162,10 +162,10 @@ std::string other_values(const Json& claims) {
       "\n### What other assumptions would change\n\nEach row has an assumption. Each entry of a row has another "
       "value of the assumption, a claim whose verdict changes with this value, the changed verdict, and the number "
       "measured with this value. [Sensitivity](../../scenarios/thesis/README.md#sensitivity) states the meaning of "
-      "each assumption. For example, `local.average` false means that the local average is off.\n\n"
-      "| assumption | other value: claim with its verdict |\n|---|---|\n";
+      "each assumption. For example, `local.average` false means that the local average is off.\n" +
+      notes + "\n| assumption | other value: claim with its verdict |\n|---|---|\n";
   for (const auto& [assumption, cell] : cells) text += fmt::format("| `{}` | {} |\n", assumption, cell);
-  return text + notes;
+  return text;
 }
 
 /// Returns a note with the verdict that a claim has in the record of sensitivity under the recorded assumptions. Empty
@@ -332,8 +332,9 @@ std::string ledger_markdown(const Json& ledger) {
       "the claim in [claim_pages.md](claim_pages.md), which has the rule of the verdict. *Original* is the "
       "original algorithm, *shaping* is stiffness shaping, the algorithm that the thesis proposes. A *stiffness ratio* "
       "is the combined stiffness of all contacts in the direction of one contact, divided by the stiffness K of one "
-      "contact. *Raw points* are the colliding points before the reduction. In tasks 1 to 3, the drill moves over a "
-      "flat, rotates to and fro in a hole, and spins in a hole. The [glossary](../../scenarios/GLOSSARY.md) has the "
+      "contact. *Raw points* are the colliding points before the reduction. In task 1, the drill is pressed "
+      "on a flat surface and dragged. In task 2, it rotates to and fro in a hole. In task 3, it moves along the wall of "
+      "a hole, around the axis. The [glossary](../../scenarios/GLOSSARY.md) has the "
       "other terms.\n\n"
       "## 1. What the abstract claims\n\n" +
       abstract_table(ledger) + "\nVerdicts:\n\n";

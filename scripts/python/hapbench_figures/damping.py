@@ -10,7 +10,7 @@ from .tasks import thin
 DP, HS = "tilt_sweep_original_averaging", "tilt_sweep_shaped_stiffness"
 VELOCITY = np.array([0.006, -0.012])  # velocity of the drawn motion, chosen by this project [m/s]
 # Viscous friction mu_s [N s/m], and mu_f [s/m], by which the friction increases per newton of spring force (thesis
-# Table A.1).
+# Table B.1).
 FRICTION = (5.0, 10.0)
 TILT = 0.2
 MM_PER_N = 0.9
