@@ -32,7 +32,8 @@ constexpr AlgorithmParameter kOwnParameters[] = {
     {"damping_time_s",
      {0.0, 10.0, "s"},
      0.0,
-     "time constant with which the directions used by damping and friction follow the contacts"},
+     "time constant of the low-pass filter for the directions of damping and friction, which change suddenly when a "
+     "contact begins or ends; 0: no filter"},
     {kRotationalStiffness,
      {0.0, 1e12, "N m/rad", true},
      std::numeric_limits<double>::infinity(),

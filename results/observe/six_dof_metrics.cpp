@@ -61,8 +61,8 @@ void SixDofMetrics::report(Section& s) const {
            displacement_.rms());
   s.metric(
       "unresisted_turn_max_rad", "rad",
-      "largest angle between the handles of the 3-DOF and of the 6-DOF device: the turn that the lost torque would "
-      "have resisted. With the grip at the force point it is the norm of handle_turn_x_rad, handle_turn_y_rad and "
+      "largest angle between the handles of the 3-DOF and of the 6-DOF device: only the 6-DOF device "
+      "renders a torque against the turn. With the grip at the force point it is the norm of handle_turn_x_rad, handle_turn_y_rad and "
       "handle_turn_z_rad of six_dof.csv",
       turn_.max());
   s.metric("work_J", "J",

@@ -98,7 +98,9 @@ std::string front_text(const Layout& layout) {
 std::string program_help(const Layout& layout) {
   std::string text = front_text(layout) + "\n" + bold(stdout, "Options without a command:") + "\n";
   text += layout.entry("--help", "print this text", 2, 14);
-  text += layout.entry("--version", "print the version; with --json also commit, compiler and guarantees", 2, 14);
+  text += layout.entry(
+      "--version", "print the version; with --json also commit, compiler, instruction set and what later versions keep",
+      2, 14);
   // Indent these options by four spaces: scripts/completion offers only options that are indented by two spaces.
   text += "\n" + bold(stdout, "Options that commands share, written after the command's name:") + "\n";
   for (const auto& [name, placeholder, help] : shared_options())

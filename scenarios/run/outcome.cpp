@@ -349,7 +349,7 @@ class OutcomeObserverImpl final : public OutcomeObserver {
           "; it still moved, at {:.2g} mm/s: {}", 1e3 * speed,
           hand.path
               ? "with more time after the end of the path (time.steps) it may arrive"
-              : "with hand.path in place of hand.direction, and more time after the end of the path (time.steps), "
+              : "with hand.path_m in place of hand.direction, and more time after the end of the path (time.steps), "
                 "it may arrive");
     return text;
   }

@@ -95,8 +95,8 @@ static void describe(Fields& f, SpringsEnvironment& springs) {
             "true: springs push and pull; false: a spring acts only while its depth is positive");
   f.boolean(
       "signed", springs.signed_depths,
-      "depth of a bilateral spring for the displacement p: true: <p, u>, which may be negative; false: |<p, u>|, with "
-      "the gradient along the displacement");
+      "depth of a bilateral spring for the displacement p. true: <p, u>, which may be negative; false: |<p, u>|, and "
+      "the gradient changes its sign if <p, u> is negative");
   f.objects("groups", springs.groups, {0, 10'000}, "groups of springs with one direction each, in this order");
   f.object("random", springs.random, "springs with random directions, in the list after the groups");
   if (f.reads()) check_springs(springs, f.at());

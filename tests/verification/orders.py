@@ -198,7 +198,7 @@ def cases(laws):
             4,
             scene("rk4", 20.0, law),
             driven(share * K, share * 20.0),
-            f"renders {share:.4g} times the stiffness of one spring"
+            f"renders {share:.6g} times the stiffness of one spring"
             if abs(share - 1) > 1e-12
             else "",
         )
