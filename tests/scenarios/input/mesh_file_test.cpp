@@ -382,13 +382,13 @@ TEST_F(MeshFile, WarnsAboutTextAfterCoordinates) {
     return text.insert(end, rest);
   };
   const std::string warned = ": lines with other text after the coordinates of a vertex, which was ignored: 1, the ";
-  EXPECT_EQ(warning_of("mm.obj", with(test::obj_text(cube), 1, " mm")), warned + "first is line 1: \"mm\"");
-  EXPECT_EQ(warning_of("eight.obj", with(test::obj_text(cube), 1, " 1 0 0 1 9")), warned + "first is line 1: \"9\"");
+  EXPECT_EQ(warning_of("mm.obj", with(test::obj_text(cube), 3, " mm")), warned + "first is line 3: \"mm\"");
+  EXPECT_EQ(warning_of("eight.obj", with(test::obj_text(cube), 3, " 1 0 0 1 9")), warned + "first is line 3: \"9\"");
   EXPECT_EQ(warning_of("mm.off", with(test::off_text(cube), 3, " mm")), warned + "first is line 3: \"mm\"");
   EXPECT_EQ(warning_of("mm.stl", with(test::stl_text(cube), 4, " mm")), warned + "first is line 4: \"mm\"");
   // A weight, a colour and a normal are numbers.
-  EXPECT_TRUE(read("colour.obj", with(test::obj_text(cube), 1, " 1 0 0")).warnings.empty());
-  EXPECT_TRUE(read("weight.obj", with(test::obj_text(cube), 1, " 1 1 0 0")).warnings.empty());
+  EXPECT_TRUE(read("colour.obj", with(test::obj_text(cube), 3, " 1 0 0")).warnings.empty());
+  EXPECT_TRUE(read("weight.obj", with(test::obj_text(cube), 3, " 1 1 0 0")).warnings.empty());
   EXPECT_TRUE(read("normal.off", with(test::off_text(cube), 3, " 0 0 1")).warnings.empty());
 }
 
