@@ -144,6 +144,11 @@ class PointLines {
                       "columns 2 to {}, before \"outcome\"",
                       outcome - paths_.begin()));
     for (std::size_t i = 0; i < paths_.size(); ++i) {
+      if (paths_[i].find_first_of("[(") != std::string::npos)
+        fail_in_line(file_, header_line_,
+                     fmt::format("got {}; allowed: paths without units; the values have the unit of the field, which "
+                                 "\"hapbench describe FIELD\" states",
+                                 quoted_token(paths_[i])));
       if (paths_[i].empty())
         fail_in_line(file_, header_line_, fmt::format("column {} has no name; allowed: the path of a field", i + 1));
       const auto first = std::ranges::find(paths_, paths_[i]) - paths_.begin();
@@ -182,7 +187,10 @@ std::string point_value(const std::string& cell, const std::string& path) {
 Sampling read_points(const std::filesystem::path& file, std::vector<Axis>& axes) {
   const std::string text = read_named_file(file);
   PointLines lines(text, file);
-  for (const std::string& path : lines.paths()) axes.push_back({path});
+  for (const std::string& path : lines.paths()) {
+    axes.push_back({path});
+    axes.back().option = "--points";
+  }
   Sampling sampling{kPointsOfFile, 0, 0, std::vector<std::vector<double>>(axes.size()), file};
   std::vector<std::map<std::string, std::size_t>> value_indices(axes.size());
   RowFaults faults;
@@ -210,6 +218,8 @@ Sampling read_points(const std::filesystem::path& file, std::vector<Axis>& axes)
     }
   }
   faults.throw_if_any(file);
+  if (const std::string cut = warning_of_cut_line(text); !cut.empty())
+    sampling.warning = fmt::format("{}: {}", file.string(), cut);
   if (sampling.count == 0) fail_in_file(file, "has no rows; allowed: a header of fields, and rows of their values");
   // Replace each index by a coordinate: the middle of the part of [0, 1) that belongs to the value (Axis::index_at).
   for (std::size_t a = 0; a < axes.size(); ++a)

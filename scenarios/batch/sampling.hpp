@@ -28,6 +28,7 @@ struct Sampling {
   std::vector<std::vector<double>> of_file = {};  ///< coordinates of points from a file, by axis, then by point
   std::filesystem::path file = {};                ///< the file of --points
   std::vector<std::size_t> lines = {};            ///< line of each point in this file, from 1
+  std::string warning = {};                       ///< what is odd about this file; empty if nothing is
 };
 
 /// Parses "lhs:N" or "random:N" with 1 <= N <= kMaxRuns. Throws InputError.

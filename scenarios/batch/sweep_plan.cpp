@@ -167,6 +167,8 @@ std::vector<std::size_t> runs_to_check(const Cases& cases) {
 
 SweepPlan plan_sweep(Cases cases, const JobOptions& jobs, RunLength length) {
   SweepPlan plan{std::move(cases), length};
+  if (const auto& sampling = plan.cases.sampling(); sampling && !sampling->warning.empty())
+    plan.warnings.push_back(sampling->warning);
   // Load the scenarios of the runs to check.
   const std::vector<std::size_t> runs = runs_to_check(plan.cases);
   std::vector<CheckedRun> checked_runs(runs.size());

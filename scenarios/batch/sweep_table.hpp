@@ -45,8 +45,9 @@ struct SweepTable {
   std::vector<std::string> columns;
   /// Rows that satisfy the conditions of read_sweep(); empty if more than kMaxRows rows satisfy the conditions.
   std::vector<SweepRow> rows;
-  SweepCounts counts;  ///< counts of all rows
-  SweepCounts kept;    ///< counts of the rows that satisfy the conditions
+  SweepCounts counts;   ///< counts of all rows
+  SweepCounts kept;     ///< counts of the rows that satisfy the conditions
+  std::string warning;  ///< what is missing in the table; empty if all rows are there
 
   /// Returns the index of a column; the number of columns if it does not exist.
   std::size_t column_index(std::string_view column) const {
@@ -66,8 +67,13 @@ struct SweepTable {
 };
 
 /// Reads the table of a sweep or of one of its shards, and the JSON file next to it. Keeps the rows that satisfy all
-/// `conditions`, which are the texts of --where (row_condition.hpp). Throws InputError.
+/// `conditions`, which are the texts of --where (row_condition.hpp). Throws InputError, also for a cell or a line that
+/// a sweep does not write.
 SweepTable read_sweep(const std::filesystem::path& file, const std::vector<std::string>& conditions = {});
+
+/// Returns the names of the varied fields without effect: rows that have the same values of all other fields, and at
+/// least two such rows exist, are equal to the last bit. Considers the rows of `table.rows` without exceptions.
+std::vector<std::string> fields_without_effect(const SweepTable& table);
 
 /// Returns the numbers of the runs whose rows in the table meet all `conditions`, in the table's order, also if there
 /// are more than SweepTable::kMaxRows. Does not read the JSON file. Throws InputError.

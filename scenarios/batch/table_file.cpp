@@ -73,6 +73,10 @@ void TableFile::resume(const Keep& keep) {
   std::error_code error;
   const bool is_part = fs::exists(part_, error);
   if (!is_part && !fs::exists(title_.file, error)) return;
+  if (is_part && !fs::exists(about_part_, error))
+    fail_in_file(part_, fmt::format("its description {} is missing; allowed: another --out, or to start again after "
+                                    "removing this file",
+                                    about_part_.string()));
   if (!has_same_definition()) {
     fail_in_file(
         is_part ? part_ : title_.file,
@@ -90,6 +94,7 @@ void TableFile::resume(const Keep& keep) {
   if (lines.next() && lines.line() != title_.header) lines.refuse();
   while (lines.next()) {
     const std::size_t i = lines.row();
+    if (has_[i]) lines.refuse(fmt::format("a second row of run {}; allowed: each run once", i));
     try {
       has_[i] = keep(i, lines.line());
     } catch (const InputError& refusal) {

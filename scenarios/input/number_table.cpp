@@ -462,6 +462,7 @@ NumberTable parse_number_table(std::string_view text, const std::filesystem::pat
     table.notes.push_back(fmt::format("line {}: numbers are read with a decimal comma", *line));
     RowParser(csv, taken, true).read(table, file, max_rows);
   }
+  if (std::string cut = warning_of_cut_line(text); !cut.empty()) table.notes.push_back(std::move(cut));
   return table;
 }
 

@@ -1,5 +1,7 @@
 #include "scenarios/input/text_lines.hpp"
 
+#include <fmt/format.h>
+
 #include <cctype>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -52,6 +54,15 @@ std::string lower_case(std::string_view text) {
   std::string lower(text);
   for (char& c : lower) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   return lower;
+}
+
+std::string warning_of_cut_line(std::string_view text) {
+  if (text.empty() || text.back() == '\n' || text.back() == '\r') return "";
+  LineReader lines(text);
+  while (lines.next()) {
+  }
+  if (lines.line() < 2) return "";
+  return fmt::format("line {}, the last line, has no line end: is the file cut short?", lines.line());
 }
 
 LineReader::LineReader(std::string_view text) : rest_(text) {

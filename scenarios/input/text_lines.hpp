@@ -67,6 +67,10 @@ inline std::size_t count_characters(std::string_view text) {
   return static_cast<std::size_t>(std::ranges::count_if(text, starts_character));
 }
 
+/// Returns a warning if the last line of a text has no line end although an earlier line has one, as if the file was
+/// cut within its last line. Returns an empty text otherwise.
+std::string warning_of_cut_line(std::string_view text);
+
 /// Returns the name of each entry of a table. `name` is a pointer to a member of the entry or a function of the
 /// entry. Entries may be pointers.
 template <class Table, class Name>

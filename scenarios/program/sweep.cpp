@@ -264,6 +264,8 @@ void print_sweep(const SweepCommand& command, const SweepTable& table, ProgramCo
                  const std::vector<RunCost>& costs = {}) {
   const Layout layout = context.layout();
   const std::string metric = chosen_metric(table.metrics(), command.metric);
+  for (const std::string& field : fields_without_effect(table))
+    print_warnings(context, {field + " has no effect here: runs that differ only in it are equal to the last bit"});
   if (command.output.json) return print(context, command.output, "", summary_json(table));
   std::string text = summary_text(table, metric, costs, layout);
   if (resumed > 0) text += fmt::format("\n{} of the runs were taken from the interrupted sweep\n", resumed);
@@ -344,7 +346,9 @@ int reprint(const SweepCommand& command, ProgramContext& context) {
         "--row and --print need the scenario and the options of the sweep instead",
         command.scenario));
   }
-  print_sweep(command, read_sweep(fs::path(command.scenario) / "sweep.csv", command.where), context);
+  const SweepTable table = read_sweep(fs::path(command.scenario) / "sweep.csv", command.where);
+  if (!table.warning.empty()) print_warnings(context, {table.warning});
+  print_sweep(command, table, context);
   return kSuccess;
 }
 

@@ -11,12 +11,15 @@
 #include "scenarios/batch/sweep_columns.hpp"
 #include "scenarios/batch/sweep_plan.hpp"
 #include "scenarios/batch/sweep_table.hpp"
+#include "scenarios/input/bundled_scenarios.hpp"
+#include "scenarios/input/input_error.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/checked_scenario.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/run/stop_signal.hpp"
 #include "scenarios/scene/environments.hpp"
 #include "scenarios/scene/field_files.hpp"
+#include "scenarios/scene/load_scenario.hpp"
 #include "scenarios/scene/metric_sections.hpp"
 #include "sim/core/random.hpp"
 #include "tests/results/files.hpp"
@@ -164,7 +167,7 @@ TEST(SweepPlan, NamesTheLineOfAPointThatAFieldRefuses) {
   EXPECT_NE(negative.find("points.csv, line 4: "), std::string::npos) << negative;
   EXPECT_NE(negative.find("scene.json: /rendering/stiffness_N_per_m: got -1"), std::string::npos) << negative;
   const std::string unit = refusal_of("rendering.stiffness_N_per_m [N/m]\n1000\n", scene);
-  EXPECT_NE(unit.find("points.csv, line 2: "), std::string::npos) << unit;
+  EXPECT_NE(unit.find("points.csv, line 1: got \"[N/m]\"; allowed: paths without units"), std::string::npos) << unit;
   scene["time"]["step_s"] = -1;
   const std::string other = refusal_of("rendering.stiffness_N_per_m\n1000\n", scene);
   EXPECT_NE(other.find("scene.json: /time/step_s"), std::string::npos) << other;
@@ -190,6 +193,62 @@ TEST(RunSweep, HasErrorRowsForRunsThatNobodyChecked) {
   row.resize(sweep_columns(plan).size());
   EXPECT_EQ(table.rows[4567], row);
   EXPECT_EQ(table.outcome(table.rows[4568]), "completes");
+}
+
+TEST(ReadSweep, RefusesATableThatWasCutOrEdited) {
+  const test::TemporaryDirectory directory;
+  const SweepOptions options{.directory = directory.path()};
+  run_sweep(plan_of(minimal_scenario("springs"), {"rendering.stiffness_N_per_m=1000,1500,2000"}), options);
+  const std::vector<std::string> lines = test::lines_of(read_file(options.table()));
+  ASSERT_EQ(lines.size(), 4u);
+  /// Writes a table of these lines. Returns the error of read_sweep() after the name of the file, or its warning.
+  const auto problem_of = [&](const std::vector<std::string>& table, const std::string& end = "\n") {
+    std::string text;
+    for (const std::string& line : table) text += (text.empty() ? "" : "\n") + line;
+    test::write_plainly(options.table(), text + end);
+    std::string problem;
+    try {
+      problem = read_sweep(options.table()).warning;
+    } catch (const InputError& error) {
+      problem = error.what();
+    }
+    return problem.empty() ? "" : problem.substr(options.table().string().size());
+  };
+  const auto with = [&lines](std::string from, const std::string& to) {
+    std::vector<std::string> table = lines;
+    table[2].replace(table[2].find(from), from.size(), to);
+    return table;
+  };
+  const std::string edited = " (the file was edited)";
+  EXPECT_EQ(problem_of(lines), "");
+  EXPECT_EQ(problem_of({lines[0], lines[1], lines[3]}),
+            ": 2 of 3 rows; the first missing row is of run 1; the file was cut or edited");
+  EXPECT_EQ(problem_of({lines[0], lines[1], lines[1], lines[2], lines[3]}),
+            ", line 3: got run 0 after run 0; allowed: each run once, sorted");
+  EXPECT_EQ(problem_of(lines, ""),
+            ", line 4: the line has no line end, so that its last cell may be cut off; allowed: complete lines");
+  EXPECT_EQ(problem_of(with(",1500,", ",9999,")),
+            ", line 3: rendering.stiffness_N_per_m: got \"9999\"; allowed: a value of the sweep" + edited);
+  EXPECT_EQ(problem_of(with(",completes,", ",exploded,")),
+            ", line 3: outcome: got \"exploded\"; allowed: an outcome" + edited);
+  EXPECT_EQ(problem_of(with(",true,", ",yes,")), ", line 3: expected: got \"yes\"; allowed: true or false" + edited);
+  EXPECT_EQ(problem_of(with(",true,", ",true,hello")).find(", line 3: steps: got \"hello"), 0u);
+}
+
+TEST(ReadSweep, FindsFieldsWithoutEffect) {
+  const test::TemporaryDirectory directory;
+  const SweepOptions options{.directory = directory.path()};
+  Json scene = read_scenario_text(find_scenario("springs_oscillation")).json;
+  scene["rendering"]["damping_N_s_per_m"] = 5;
+  const std::vector<std::string> varied = {"rendering.stiffness_N_per_m=1000,2000", "rendering.damping_ratio=0,1"};
+  run_sweep(plan_of(scene, varied), options);
+  EXPECT_EQ(fields_without_effect(read_sweep(options.table())), std::vector<std::string>{"rendering.damping_ratio"});
+  scene["rendering"].erase("damping_N_s_per_m");
+  run_sweep(plan_of(scene, varied), options);
+  EXPECT_TRUE(fields_without_effect(read_sweep(options.table())).empty());
+  // Without a second run with the same values of the other fields, nothing is compared.
+  run_sweep(plan_of(scene, {"rendering.stiffness_N_per_m=1000"}), options);
+  EXPECT_TRUE(fields_without_effect(read_sweep(options.table())).empty());
 }
 
 // Tests the guarantees of a sweep: the bytes of its table, its memory, and its cost, also after interruptions.

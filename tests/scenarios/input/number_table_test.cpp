@@ -127,6 +127,13 @@ TEST(NumberTable, KnowsTheLinesOfRows) {
   EXPECT_EQ(lines, (std::vector<std::size_t>{4, 5, 8, 10, 11}));
 }
 
+TEST(NumberTable, ReportsALastLineThatMayBeCut) {
+  const std::vector<std::string> cut = {"line 3, the last line, has no line end: is the file cut short?"};
+  EXPECT_EQ(table_of("t,x,y\n0,0,0\n1,0,-0.0").notes, cut);
+  EXPECT_EQ(table_of("t,x,y\r0,0,0\r1,0,0").notes, cut);
+  EXPECT_TRUE(table_of("t,x,y\n0,0,0\n1,0,0\n").notes.empty());
+}
+
 TEST(NumberTable, MayHaveBlanksBlankLinesCarriageReturnsAndAsManyRowsAsAllowed) {
   const std::string text = "t,x,y\r\n\r\n 1 ,\t2,3\r\n  \n3,4,5";
   EXPECT_EQ(table_of(text, 2).values, (std::vector<double>{1, 2, 3, 3, 4, 5}));

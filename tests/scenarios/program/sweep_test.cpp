@@ -156,7 +156,7 @@ TEST_F(SweepCommand, IsPrintedAgainFromItsFolder) {
     const ProgramRun first = hapbench(words), again = hapbench({"sweep", out});
     ASSERT_EQ(first.status, 0) << first.err;
     EXPECT_EQ(again.out, first.out);
-    EXPECT_EQ(again.err, "");
+    EXPECT_EQ(again.err, first.err);
     words.emplace_back("--json");
     EXPECT_EQ(hapbench({"sweep", out, "--json"}).out, hapbench(words).out);
   }
