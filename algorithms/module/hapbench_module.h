@@ -106,7 +106,7 @@ typedef struct HapbenchModule {
 
   /* Evaluates one pose of the tool. Integrators may call this function several times in a step. For a law, `pose` is
    * NULL, and the function should not allocate. For a contact source, `force` is NULL, and its contacts must depend on
-   * the pose only. Returns 0; any other value is a fault. */
+   * the pose only. Returns 0; any other value and a text in `fault` are faults. */
   int (*step)(void* state, const HapbenchPose* pose, HapbenchContacts* contacts, HapbenchForce* force, char* fault);
 
   void (*reset)(void* state);   /* restores the state after `create`, bitwise; NULL if the state never changes */

@@ -86,7 +86,7 @@ bool ModuleState::call_guarded(const char* function, const Call& call) noexcept 
   std::array<char, HAPBENCH_FAULT_SIZE + 64> problem;
   text.front() = text.back() = '\0';
   try {
-    if (call(text.data())) return true;
+    if (call(text.data()) && text[0] == '\0') return true;
     text.back() = '\0';
     std::snprintf(problem.data(), problem.size(), "fails in %s: %s", function,
                   text[0] == '\0' ? "no reason given" : text.data());

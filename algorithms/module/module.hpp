@@ -50,9 +50,9 @@ class ModuleState {
 
  private:
   void destroy() noexcept;
-  /// Returns true if `call(text)` returns true. `call` calls a function of the module, which may write the reason of a
-  /// failure into the buffer `text`. If `call` returns false or throws, records a fault that names `function`, and
-  /// returns false.
+  /// Returns true if `call(text)` returns true and writes no text. `call` calls a function of the module, which may
+  /// write the reason of a failure into the buffer `text`. If `call` returns false, writes a text or throws, records a
+  /// fault that names `function`, and returns false.
   template <class Call>
   bool call_guarded(const char* function, const Call& call) noexcept;
 

@@ -1,11 +1,14 @@
 #include "scenarios/run/load_module.hpp"
 
 #include <dlfcn.h>
+#include <elf.h>
 #include <fmt/format.h>
+#include <link.h>
 
 #include <algorithm>
 #include <atomic>
 #include <cfenv>
+#include <cstring>
 #include <fstream>
 #include <map>
 #include <mutex>
@@ -46,10 +49,32 @@ std::atomic<int> allowing = 0;      ///< number of existing ModulePermission obj
 std::mutex contact_modules_mutex;
 std::map<fs::path, const HapbenchModule*> contact_modules;
 
-/// Returns the hash of a file. Called before dlopen(), so that a directory, a pipe or an unreadable file causes an
-/// InputError.
+/// Returns the size that a library in the format ELF declares [bytes]: the end of its section table and of its
+/// segments. Returns 0 for other formats. dlopen() maps the segments without a check of the size, so that a library
+/// that is cut short would end the program with a bus error.
+std::size_t declared_size(std::string_view bytes) {
+  ElfW(Ehdr) header{};
+  if (bytes.size() < sizeof header || !bytes.starts_with(ELFMAG)) return 0;
+  std::memcpy(&header, bytes.data(), sizeof header);
+  std::size_t size = header.e_shoff + std::size_t{header.e_shnum} * header.e_shentsize;
+  for (std::size_t i = 0; i < header.e_phnum; ++i) {
+    ElfW(Phdr) segment{};
+    const std::size_t at = header.e_phoff + i * header.e_phentsize;
+    if (at > bytes.size() || bytes.size() - at < sizeof segment) return std::max(size, at + sizeof segment);
+    std::memcpy(&segment, bytes.data() + at, sizeof segment);
+    size = std::max<std::size_t>(size, segment.p_offset + segment.p_filesz);
+  }
+  return size;
+}
+
+/// Returns the hash of a file. Called before dlopen(), so that a directory, a pipe, an unreadable file or a library
+/// that is cut short causes an InputError.
 std::string hash_of_file(const fs::path& file) {
-  return with_file(file, [&] { return hash_text(hash_of(read_text_file(file, kMaxModuleBytes))); });
+  const std::string bytes = with_file(file, [&] { return read_text_file(file, kMaxModuleBytes); });
+  if (const std::size_t size = declared_size(bytes); size > bytes.size())
+    fail_in_file(file,
+                 fmt::format("is cut short: it has {} of {} bytes; compile or copy it again", bytes.size(), size));
+  return hash_text(hash_of(bytes));
 }
 
 /// Returns the library's function hapbench_module(), which returns the module's table. Throws InputError if the library

@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -365,6 +366,18 @@ TEST(LoadModule, LoadsAFileOnceAndALawOnce) {
   fs::copy_file(module("hostile"), copy);
   EXPECT_EQ(problem_of_file(copy), "is not a law that can be used: \"hostile\" is the name of the law in " +
                                        fs::canonical(module("hostile")).string());
+}
+
+TEST(LoadModule, RefusesALibraryThatIsCutShort) {
+  const test::TemporaryDirectory directory;
+  std::ifstream in(module("hostile"), std::ios::binary);
+  const std::string whole{std::istreambuf_iterator<char>(in), {}};
+  for (const std::size_t size : {std::size_t{100}, whole.size() / 3, whole.size() - 1}) {
+    const fs::path file = directory / fmt::format("cut{}.so", size);
+    std::ofstream(file, std::ios::binary) << whole.substr(0, size);
+    EXPECT_EQ(problem_of_file(fs::canonical(file)),
+              fmt::format("is cut short: it has {} of {} bytes; compile or copy it again", size, whole.size()));
+  }
 }
 
 TEST(LoadModule, LeavesTheArithmeticAlone) {

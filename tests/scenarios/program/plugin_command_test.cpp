@@ -86,6 +86,14 @@ TEST_F(PluginCommand, EndsARunAndNoMoreWhenALawFails) {
       << both.err;
 }
 
+TEST_F(PluginCommand, EndsARunWhenALawWritesAFaultAndReturnsZero) {
+  const EnvironmentVariable how("HOSTILE", "error without status");
+  const ProgramRun run = hapbench({"run", "peg_in_hole_2d_shaped_stiffness", "--module", plugin("hostile"), "--set",
+                                   "rendering.algorithm=hostile", "--out", out("run")});
+  EXPECT_EQ(run.status, 3);
+  EXPECT_EQ(summary("run")["divergence"]["fault"], "hostile (hostile.so) fails in step: the oven? is ? cold");
+}
+
 /// Checks that the command fails even if the scenario expects a run that diverges.
 TEST_F(PluginCommand, FailsWhenASourceOfContactsFails) {
   const EnvironmentVariable how("HOSTILE", "contacts");
