@@ -104,11 +104,12 @@ void warn_of_passage(const ProgramContext& context, const std::string& what, con
 /// Returns a sentence on the difference between the scenario and the recorded scenario; empty if they are the same.
 std::string other_scenario_note(const CheckedScenario& scenario, const LoopLog& log) {
   const std::string hash = scenario_hash(effective_scenario(scenario.scenario(), fs::current_path()), scenario.files());
-  if (hash == log.scenario.hash) return "";
+  const bool has_other_period = scenario.scenario().time.step != log.scenario.period;
+  if (hash == log.scenario.hash && !has_other_period) return "";
   std::string text =
       fmt::format("the log was recorded with another scenario ({}, hash {}; here {}, hash {}): forces may differ",
                   log.scenario.name, log.scenario.hash, scenario.scenario().name, hash);
-  if (scenario.scenario().time.step != log.scenario.period)
+  if (has_other_period)
     text += fmt::format(". The recorded time step is {0} s, here it is {1} s: --set time.step_s={0}",
                         log.scenario.period, scenario.scenario().time.step);
   return text;

@@ -1,11 +1,13 @@
 #include "scenarios/renderer/loop_log.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <bit>
 #include <charconv>
 #include <cmath>
+#include <initializer_list>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <span>
@@ -90,11 +92,36 @@ double limit_of(const Json& json) {
   return json.is_null() ? std::numeric_limits<double>::infinity() : json.get<double>();
 }
 
-HapbenchPose3 pose_of(const Json& json) {
+/// Throws InputError if the object lacks one of the fields or has another field. `what`: name of the object.
+void require_fields(const Json& json, std::initializer_list<std::string_view> fields, const char* what) {
+  for (const std::string_view field : fields)
+    if (!json.contains(field)) throw InputError(fmt::format("{} of the log: missing field \"{}\"", what, field));
+  for (const auto& entry : json.items())
+    if (std::ranges::find(fields, entry.key()) == fields.end())
+      throw InputError(fmt::format("{} of the log: unknown field {}; allowed: {}", what, quoted_token(entry.key()),
+                                   fmt::join(fields, ", ")));
+}
+
+template <std::size_t n>
+void read_list(const Json& json, const char* field, double (&numbers)[n]) {
+  const Json& list = json.at(field);
+  if (list.size() != n) throw InputError(fmt::format("{}: got {} values; allowed: {}", field, list.size(), n));
+  std::ranges::copy(list.get<std::vector<double>>(), numbers);
+}
+
+HapbenchPose3 pose_of(const Json& json, const char* what) {
+  require_fields(json, {"position_m", "orientation_wxyz"}, what);
   HapbenchPose3 pose = {};
-  for (std::size_t i = 0; i < 3; ++i) pose.position[i] = json.at("position_m").at(i).get<double>();
-  for (std::size_t i = 0; i < 4; ++i) pose.orientation[i] = json.at("orientation_wxyz").at(i).get<double>();
+  read_list(json, "position_m", pose.position);
+  read_list(json, "orientation_wxyz", pose.orientation);
   return pose;
+}
+
+std::uint32_t mode_of(const std::string& name) {
+  for (const std::uint32_t mode : {HAPBENCH_IMPEDANCE, HAPBENCH_ADMITTANCE})
+    if (name == mode_name(mode)) return mode;
+  throw InputError(fmt::format("mode: got {}; allowed: {} or {}", quoted_token(name), mode_name(HAPBENCH_IMPEDANCE),
+                               mode_name(HAPBENCH_ADMITTANCE)));
 }
 
 /// Reads the setup and the scenario of a log into `log`. `text`: JSON from the comment in the first line of the log.
@@ -102,22 +129,27 @@ HapbenchPose3 pose_of(const Json& json) {
 void read_setup(std::string_view text, LoopLog& log) {
   const Json json = parse_json(std::string(text));
   try {
+    require_fields(json, {"version", "scenario", "scenario_hash", "period_s", "mode", "torque", "mount"}, "setup");
     if (json.at("version").get<int>() != kLogVersion)
       throw InputError(fmt::format("got a log of version {}; allowed: {}", json.at("version").dump(), kLogVersion));
     log.scenario = {json.at("scenario").get<std::string>(), json.at("scenario_hash").get<std::string>(),
                     json.at("period_s").get<double>()};
-    log.setup.mode =
-        json.at("mode").get<std::string>() == mode_name(HAPBENCH_ADMITTANCE) ? HAPBENCH_ADMITTANCE : HAPBENCH_IMPEDANCE;
+    log.setup.mode = mode_of(json.at("mode").get<std::string>());
     log.setup.flags = json.at("torque").get<bool>() ? std::uint32_t{HAPBENCH_TORQUE} : 0;
     const Json& mount = json.at("mount");
-    log.setup.mount = {pose_of(mount.at("world_from_device")),
+    require_fields(mount,
+                   {"world_from_device", "scale", "handle_from_tip", "max_force_N", "max_force_rate_N_per_s", "ramp_s",
+                    "stale_s", "engage_force_N"},
+                   "mount");
+    log.setup.mount = {pose_of(mount.at("world_from_device"), "world_from_device"),
                        mount.at("scale").get<double>(),
-                       pose_of(mount.at("handle_from_tip")),
+                       pose_of(mount.at("handle_from_tip"), "handle_from_tip"),
                        limit_of(mount.at("max_force_N")),
                        limit_of(mount.at("max_force_rate_N_per_s")),
                        mount.at("ramp_s").get<double>(),
                        limit_of(mount.at("stale_s")),
                        limit_of(mount.at("engage_force_N"))};
+    check_mount(log.setup);
   } catch (const Json::exception& problem) {
     throw InputError(fmt::format("the setup of the log cannot be read: {}", problem.what()));
   }
@@ -131,9 +163,11 @@ void read_row(std::string_view line, const Words& names, HapbenchInput& in, Hapb
   std::size_t next = 0;
   visit_row(in, out, [&](const char*, auto& values) {
     for (auto& value : numbers_of(values)) {
-      const auto number = parse_number<std::remove_reference_t<decltype(value)>>(cells[next]);
+      using Value = std::remove_reference_t<decltype(value)>;
+      const auto number = parse_number<Value>(cells[next]);
       if (!number)
-        throw InputError(fmt::format("{}: got {}; allowed: a number", names[next], quoted_token(cells[next])));
+        throw InputError(fmt::format("{}: got {}; allowed: {}", names[next], quoted_token(cells[next]),
+                                     std::is_integral_v<Value> ? "an integer from 0" : "a number"));
       value = *number;
       ++next;
     }

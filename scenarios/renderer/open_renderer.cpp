@@ -43,11 +43,14 @@ void check_pose(const HapbenchPose3& pose, const char* field) {
                                  std::sqrt(squares)));
 }
 
-void check_mount(const HapbenchMount& mount, bool is_impedance) {
+}  // namespace
+
+void check_mount(const RendererSetup& setup) {
+  const HapbenchMount& mount = setup.mount;
   check_pose(mount.world_from_device, "world_from_device");
   check_pose(mount.handle_from_tip, "handle_from_tip");
   require(mount.scale > 0.0 && std::isfinite(mount.scale), "scale", mount.scale, "a number > 0");
-  if (is_impedance) {
+  if (setup.mode == HAPBENCH_IMPEDANCE) {
     require(mount.max_force > 0.0, "max_force", mount.max_force,
             "the largest force that device and hand bear, > 0 [N]; INFINITY: no limit");
     require(mount.max_force_rate > 0.0, "max_force_rate", mount.max_force_rate, "> 0 [N/s]; INFINITY: no limit");
@@ -56,6 +59,8 @@ void check_mount(const HapbenchMount& mount, bool is_impedance) {
   require(mount.stale_s > 0.0, "stale_s", mount.stale_s, "> 0 [s]; INFINITY: no limit");
   require(mount.engage_force > 0.0, "engage_force", mount.engage_force, "> 0 [N]");
 }
+
+namespace {
 
 /// Throws InputError if the scenario cannot be rendered.
 void check_scenario(const Scenario& scenario, const RendererSetup& setup) {
@@ -140,7 +145,6 @@ const char* mode_name(std::uint32_t mode) {
 
 HapbenchRenderer* new_renderer(const CheckedScenario& checked, const RendererSetup& setup) {
   const Scenario& scenario = checked.scenario();
-  check_mount(setup.mount, setup.mode == HAPBENCH_IMPEDANCE);
   check_scenario(scenario, setup);
   const Json effective = effective_scenario(scenario, std::filesystem::current_path());
   SimulationParts parts = assemble_rendering(scenario, checked.files(), make_shell(scenario, checked.files()));

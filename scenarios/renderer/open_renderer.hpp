@@ -24,8 +24,12 @@ struct RendererSetup {
   HapbenchMount mount = HAPBENCH_MOUNT_INIT;
 };
 
-/// Opens a renderer. Throws InputError if the mount in `setup` (the pose and scale of the device in the scene) has a
-/// value that is not allowed, or if the scenario cannot be rendered in the mode that `setup` selects.
+/// Throws InputError if the mount in `setup` (the pose and scale of the device in the scene) has a value that is not
+/// allowed.
+void check_mount(const RendererSetup& setup);
+
+/// Opens a renderer. Throws InputError if the scenario cannot be rendered in the mode that `setup` selects.
+/// Precondition: check_mount().
 HapbenchRenderer* new_renderer(const CheckedScenario& checked, const RendererSetup& setup);
 
 /// Returns the name of a mode as in logs: "impedance" or "admittance".

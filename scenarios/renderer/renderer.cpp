@@ -69,7 +69,9 @@ HapbenchRenderer* opened_renderer(const HapbenchSetup& setup) {
   for (const std::string& module : list_of(setup.modules)) load_module(module);
   const std::vector<std::string> overrides = list_of(setup.overrides);
   const CheckedScenario scenario = checked(load_scenario(scenario_text(setup), overrides));
-  return new_renderer(scenario, {setup.mode, setup.flags, setup.mount});
+  const RendererSetup mounted = {setup.mode, setup.flags, setup.mount};
+  check_mount(mounted);
+  return new_renderer(scenario, mounted);
 }
 
 std::size_t copied(std::string_view from, char* text, std::size_t size) {

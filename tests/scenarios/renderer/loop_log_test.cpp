@@ -192,7 +192,21 @@ TEST(LoopLog, RefusesWhatIsNotAWholeLog) {
   EXPECT_NE(error_with(short_row).find("line 12"), std::string::npos) << error_with(short_row);
   auto text_cell = lines;
   text_cell[5].replace(0, 1, "x");
-  EXPECT_NE(error_with(text_cell).find("allowed: a number"), std::string::npos) << error_with(text_cell);
+  EXPECT_NE(error_with(text_cell).find("call: got \"x"), std::string::npos) << error_with(text_cell);
+  EXPECT_NE(error_with(text_cell).find("allowed: an integer from 0"), std::string::npos) << error_with(text_cell);
+  // Faults of the setup have the line of the setup.
+  const auto error_with_setup = [&](const std::string& from, const std::string& to) {
+    auto edited = lines;
+    edited[0].replace(edited[0].find(from), from.size(), to);
+    return error_with(edited);
+  };
+  for (const auto& [from, to, problem] :
+       {std::array<std::string, 3>{R"("mode":"impedance")", R"("mode":"impedanse")",
+                                   "line 1: mode: got \"impedanse\"; allowed: impedance or admittance"},
+        {R"("ramp_s")", R"("ramp")", "line 1: mount of the log: missing field \"ramp_s\""},
+        {R"("torque")", R"("more":1,"torque")", "line 1: setup of the log: unknown field \"more\"; allowed: version"},
+        {R"("scale":1.0)", R"("scale":0.0)", "line 1: mount.scale: got 0; allowed: a number > 0"}})
+    EXPECT_NE(error_with_setup(from, to).find(problem), std::string::npos) << error_with_setup(from, to);
   EXPECT_NE(error_with({"a,b", "1,2"}).find("is not a log"), std::string::npos);
   EXPECT_NE(error_with({lines[0], lines[1]}).find("no calls"), std::string::npos);
 }
