@@ -5,8 +5,10 @@
 
 #include <algorithm>
 #include <cctype>
+#include <charconv>
 #include <set>
 #include <string_view>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -67,6 +69,29 @@ std::string position_of(std::string_view text, std::size_t byte) {
   const bool is_at_start = lines.line() == 0 || lines.has_line_end();
   return fmt::format("line {}, column {}", lines.line() + (is_at_start ? 1 : 0),
                      is_at_start ? 1 : count_characters(last) + 1);
+}
+
+/// Throws InputError for a number that is too small for double precision, such as 1e-400, which the parser would read
+/// as 0. Precondition: the text is valid JSON.
+void refuse_underflow(std::string_view text) {
+  bool is_text = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (text[i] == '"') is_text = !is_text;
+    if (is_text) {
+      i += text[i] == '\\';  // skips the character after a backslash
+      continue;
+    }
+    if (text[i] != '-' && (text[i] < '0' || text[i] > '9')) continue;
+    const std::size_t end = std::min(text.find_first_not_of("+-.0123456789eE", i), text.size());
+    const std::string_view number = text.substr(i, end - i);
+    double value = 0.0;
+    if (std::from_chars(number.data(), number.data() + number.size(), value).ec == std::errc::result_out_of_range) {
+      throw InputError(InputError::Kind::shape, "",
+                       fmt::format("{}: got {}; allowed: 0, or a number that double precision can represent",
+                                   position_of(text, i + 1), quoted_token(number)));
+    }
+    i = end - 1;
+  }
 }
 
 /// Callback for the parser's events. Rejects input that the parser accepts, such as duplicate keys, and tracks
@@ -139,8 +164,10 @@ Json parse_json(const std::string& text) {
   if (text.find('\0') != std::string::npos) refuse_syntax("has a zero byte; allowed: UTF-8");
   Guard guard;
   try {
-    return Json::parse(
+    Json json = Json::parse(
         text, [&guard](int depth, Json::parse_event_t event, Json& parsed) { return guard(depth, event, parsed); });
+    refuse_underflow(text);
+    return json;
   } catch (const Json::parse_error& error) {
     // Take the description out of a message such as
     // "[json.exception.parse_error.101] parse error at line 2, column 5: syntax error while ...; last read: '...'"

@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <type_traits>
 
@@ -25,6 +27,7 @@ struct PlyType {
   std::string_view name, alias;
   std::size_t size;  ///< size of a number in a binary file [bytes]
   bool is_real;      ///< true for a floating-point type
+  double min, max;   ///< smallest and largest number of an integer type
   /// Reads the next number of a binary file. A double represents every PLY number exactly. Precondition: at least
   /// `size` bytes are left.
   double (*take)(ByteReader& reader);
@@ -33,7 +36,12 @@ struct PlyType {
 /// Returns the PLY type of C++ type T, with its two names.
 template <class T>
 constexpr PlyType type_named(std::string_view name, std::string_view alias) {
-  return {name, alias, sizeof(T), std::is_floating_point_v<T>,
+  return {name,
+          alias,
+          sizeof(T),
+          std::is_floating_point_v<T>,
+          std::numeric_limits<T>::lowest(),
+          std::numeric_limits<T>::max(),
           [](ByteReader& reader) -> double { return reader.take<T>(); }};
 }
 constexpr PlyType kPlyTypes[] = {
@@ -242,7 +250,11 @@ class PlyValues {
   double number(const PlyType& type) {
     if (!is_text_) return take(type);
     skip(1, type);
-    return text_.number(word_ - 1);
+    const double value = text_.number(word_ - 1);
+    if (!type.is_real && (value != std::round(value) || value < type.min || value > type.max))
+      text_.fail(fmt::format("got {}, but the header declares this property as {}; allowed: an integer from {} to {}",
+                             quoted_token(text_.words()[word_ - 1]), type.name, type.min, type.max));
+    return value;
   }
   /// Reads a count or an index. `what` says in an error message what the number counts or means, such as "entries".
   std::int64_t whole(const PlyType& type, const char* what) {

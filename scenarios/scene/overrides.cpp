@@ -28,7 +28,7 @@ Json& element_at(Json& list, std::string_view key, const std::string& path) {
 }  // namespace
 
 Json override_value(const std::string& text) {
-  if (Json::accept(text)) return parse_json(text);
+  if (Json::accept(text) || text.starts_with('{') || text.starts_with('[')) return parse_json(text);
   std::string_view number_text = text;
   if (text.starts_with('+') && !text.starts_with("+-")) number_text.remove_prefix(1);
   if (const auto number = finite_number(number_text)) return *number;

@@ -28,6 +28,12 @@ DeviceFields read_device(const Json& file) {
   DeviceFields device;
   read_value(is_scenario ? file["device"] : file, is_scenario ? "/device" : "",
              [&device](Fields& f) { describe(f, device); });
+  // In a scenario, the time step decides whether both delays are consistent (resolve_delay).
+  if (!is_scenario && file.contains("delay_s") && file.contains("delay_samples"))
+    fail_at(
+        "/delay_s",
+        "got it together with delay_samples; allowed in the file of a device: one of the two, because the number of "
+        "samples depends on the time step");
   return device;
 }
 

@@ -68,7 +68,11 @@ TEST(ParseJson, RefusesNumbersBeyondDouble) {
   EXPECT_EQ(refusal_of("{\"time\": {\"step_s\": 1e999}}"), "/time/step_s: got 1e999; allowed: finite numbers");
   EXPECT_EQ(refusal_of("[1, -1e400]"), "/1: got -1e400; allowed: finite numbers");
   EXPECT_LT(refusal_of("[1" + std::string(100'000, '0') + "]").size(), 200u);
-  EXPECT_EQ(parse_json("[1e308, 1e-999]"), Json::parse("[1e308, 0.0]"));
+  EXPECT_EQ(parse_json("[1e308, 5e-324, 0e-999]"), Json::parse("[1e308, 5e-324, 0.0]"));
+  // The parser would read a number that is too small as 0. A text may contain such a number.
+  const std::string allowed = "; allowed: 0, or a number that double precision can represent";
+  EXPECT_EQ(refusal_of("{\"a\": \"\\\" 1e-400\",\n \"b\": [2, -1e-400]}"),
+            "line 2, column 11: got \"-1e-400\"" + allowed);
 }
 
 TEST(ParseJson, RefusesDuplicateKeysButNotEqualKeysOfDifferentObjects) {

@@ -120,6 +120,19 @@ TEST(PlyPoints, MayHaveEveryScalarType) {
   }
 }
 
+TEST(PlyPoints, AreRefusedIfANumberDoesNotFitItsType) {
+  const std::string integers =
+      "property uchar x\nproperty int y\nproperty float z\nproperty float nx\nproperty float ny\nproperty float nz\n";
+  for (const auto& [row, problem] :
+       {std::pair("300 0 0 0 0 1\n",
+                  "\"300\", but the header declares this property as uchar; allowed: an integer from 0 to 255"),
+        {"0 0.01 0 0 0 1\n", "\"0.01\", but the header declares this property as int"}}) {
+    const auto error = test::input_error_of([&] { read(header("ascii", "1", integers) + row); });
+    ASSERT_TRUE(error) << row;
+    EXPECT_NE(std::string(error->what()).find(problem), std::string::npos) << error->what();
+  }
+}
+
 TEST(PlyPoints, AreReportedWithWhatTheReaderIgnores) {
   const auto notes_of = [](const std::string& text) {
     std::vector<std::string> notes;
