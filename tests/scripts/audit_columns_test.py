@@ -1,10 +1,11 @@
 """Tests how `hapbench audit` finds the columns and the axes of a log, and which logs and options it rejects."""
 import json
 import os
+import re
 import unittest
 
 import numpy as np
-from fixture import PROGRAM, hapbench, scratch_folder
+from fixture import PROGRAM, hapbench, ran, scratch_folder
 
 os.environ.setdefault("HAPBENCH_PROGRAM", str(PROGRAM))
 
@@ -135,6 +136,25 @@ class Contact(unittest.TestCase):
         out = file.parent / "out"
         self.assertIn("no row is in contact", hapbench("audit", file, "--out", out, expected=2))
         self.assertFalse(out.exists())
+
+    def test_a_point_is_not_a_decimal_sign_among_decimal_commas(self):
+        file, millinewtons = scratch_folder(self) / "log.csv", (1e3 * NORMAL).round().astype(int)
+        lines = [f"{t:.3f};{x:.6f}".replace(".", ",") for t, x in zip(TIME, DEPTH)]
+
+        def written(number):
+            rows = (f"{line};{number(f)};{number(f)}" for line, f in zip(lines, millinewtons))
+            file.write_text("\n".join(["t;x;f [mN];velocity", *rows, ""]))
+            return ["audit", file, "--out", file.parent / "out"]
+
+        words = written(lambda number: f"{number:,}".replace(",", "."))
+        self.assertIn("the point may separate thousands", hapbench(*words, expected=2))
+        hapbench(*written(str))
+        # A further quantity is left out, and the message names the cell.
+        file.write_text(file.read_text().replace(";velocity", ";load"))
+        file.write_text(re.sub(r"(?m)^0,500;(.*);.*$", r"0,500;\1;1.200", file.read_text()))
+        done = ran(PROGRAM, *words, "--columns", "velocity=load")
+        self.assertIn('line 502: column 4 load: got "1.200"; allowed: a finite number', done.stderr)
+        self.assertIn("the columns of velocity were not read", done.stderr)
 
     def test_a_few_rows_in_contact_are_audited(self):
         for rows in ([300], [300, 301], [300, 700], [0], [len(TIME) - 1]):

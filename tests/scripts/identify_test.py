@@ -347,7 +347,12 @@ class Identify(Logs):
             ),
             (
                 "time_s,force_N,position_m\n" + "0,1,x\n" * 60,
-                "line 2: got no number for time, force or position (60 rows, the last: line 61)",
+                'line 2: column 3 position_m: got "x"; allowed: a finite number (60 rows, the last: line 61)',
+            ),
+            (
+                "time_s;force [mN];position_m\n" + "0,001;1.200;2\n" * 60,
+                'column 2 force [mN]: got "1.200"; allowed: a finite number; the point may separate thousands, because '
+                'line 2 has the decimal comma "0,001": write "1200" or "1,200"',
             ),
         ):
             (self.root / "bad.csv").write_text(text)

@@ -403,6 +403,49 @@ class Layouts(Given):
             ),
         )
 
+    def test_a_file_has_one_decimal_sign(self):
+        """A point may separate thousands in a file whose other columns have decimal commas."""
+        cells = [
+            (f"{t:.3f}".replace(".", ","), *(f"{1e6 * v + 5000:,.0f}".replace(",", ".") for v in p))
+            for t, p in zip(self.TIME, self.POSITIONS)
+        ]
+        data = "".join(
+            ";".join(row) + "\n" for row in [("t", "x [um]", "y [um]", "z [um]"), *cells]
+        )
+        columns = "time=t,position=x"
+        for options, problem in (
+            (
+                {},
+                'line 2: column 2 x [um]: got "5.000"; allowed: a finite number; the point may separate thousands, '
+                'because line 2 has the decimal comma "0,000": write "5000" or "5,000" (--decimal point reads the '
+                "point as decimal, if column 1 t is not needed) (100 rows, the last: line 101)",
+            ),
+            (
+                {"decimal": "comma"},
+                '; with --decimal comma, the point may separate thousands: write "5000" or "5,000", or omit --decimal',
+            ),
+            ({"decimal": "point"}, 'line 2: column 1 t: got "0,000"; allowed: a finite number'),
+        ):
+            self.assertIn(problem, self.refusal(data, columns, **options))
+        # Each remedy of the message works.
+        expected = self.POSITIONS + 5e-3
+        without = data.replace(".", "")
+        for remedy in ({}, {"decimal": "comma"}):
+            stroke = self.stroke(without, columns, **remedy)
+            np.testing.assert_allclose(stroke.position, expected, atol=1e-6)
+        rate = {"set": "sample_rate_Hz=500", "decimal": "point", "scale": "position=0.001"}
+        stroke = self.stroke(data, "position=x", **rate)
+        np.testing.assert_allclose(stroke.position, expected, atol=1e-6)
+        # Decimal commas of a column that is not read count too.
+        noted = "t;x;y;z;note\n" + "".join(
+            f"{t:.3f};{x};{y};{z};1,5\n" for t, (x, y, z) in zip(self.TIME, self.POSITIONS)
+        )
+        self.assertIn('has the decimal comma "1,5"', self.refusal(noted, columns))
+        self.assert_positions(noted, columns, decimal="point")
+        # Numbers with both signs.
+        both = without.replace("5000", "5.000,5")
+        self.assertIn('got "5.000,5"', self.refusal(both, columns))
+
     def test_a_fault_is_reported_once_with_its_repetitions(self):
         lines = self.PLAIN.split("\n")
         lines[10:40] = [line.rpartition(",")[0] + ",nan" for line in lines[10:40]]

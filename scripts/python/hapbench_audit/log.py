@@ -193,8 +193,13 @@ def log_of(recording, options, wanted):
             continue
         scale = 1.0 if quantity != "measured" else read.scales.get("force", 1.0)
         values = np.column_stack([scale * recording.column(column)[kept] for column in found])
-        if not np.isfinite(values).all():
-            read.notes.append(f"{quantity}: not a number in some rows: skipped")
+        bad = np.argwhere(~np.isfinite(values))
+        if len(bad):
+            row, column = kept[bad[0][0]], found[bad[0][1]]
+            read.notes.append(
+                f"{recording.location(row)}: column {names.title(column)}: got {recording.shown(column, row)}; allowed: "
+                f"a finite number{recording.cause_of_point(column, row)}: the columns of {quantity} were not read"
+            )
             continue
         extra[quantity] = values if quantity == "contacts" else on_axes(values, axes)
         used[quantity] = [

@@ -65,7 +65,7 @@ def read_log(options):
     )
     clock = [found["time"], *names.nanoseconds([found["time"]])]
     time = scales["time"] * recording.clock(*clock, scale=scales["time"])[1]
-    bad = _bad_rows(recording, time, force, position)
+    bad = _bad_rows(recording, found, time, force, position)
     faults = recording.faults(bad)
     if faults and not options.skip_bad_rows:
         location, problem = faults[-1]
@@ -96,13 +96,19 @@ def read_log(options):
     return log
 
 
-def _bad_rows(recording, time, force, position):
-    """Returns a dict from the number of each bad row to the reason why the row is not a sample."""
+def _bad_rows(recording, columns, time, force, position):
+    """Returns a dict from the number of each bad row to the reason why the row is not a sample. `columns`: dict from
+    quantity to its column."""
     bad, last = recording.problems(), -math.inf
     usual = not bad and np.isfinite((time, force, position)).all() and (np.diff(time) > 0.0).all()
     for row in () if usual else range(len(time)):
-        if row not in bad and not np.isfinite((time[row], force[row], position[row])).all():
-            bad[row] = "got no number for time, force or position"
+        values = {"time": time[row], "force": force[row], "position": position[row]}
+        unread = [columns[name] for name in values if not np.isfinite(values[name])]
+        if row not in bad and unread:
+            bad[row] = (
+                f"column {recording.title(unread[0])}: got {recording.shown(unread[0], row)}; allowed: a finite number"
+                + recording.cause_of_point(unread[0], row)
+            )
         elif row not in bad and not time[row] > last:
             bad[row] = f"got time {time[row]:.9g} s after {last:.9g} s; allowed: increasing times"
         if row not in bad:

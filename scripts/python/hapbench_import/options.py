@@ -55,7 +55,7 @@ class Options:
     format: str = "csv"
     # True if the numbers of a hapi-binary file have four bytes, false for eight bytes.
     floats: bool = False
-    # Decimal sign: "comma", "point", or "auto", which determines it from the numbers of each column.
+    # Decimal sign: "comma", "point", or "auto", which determines it from the numbers of the file.
     decimal: str = "auto"
     columns: dict = field(
         default_factory=dict

@@ -3,11 +3,12 @@ file."""
 import math
 import re
 from datetime import date
+from functools import cached_property
 
 import numpy as np
 from hapbench_command import fail, finite_number, nearest, plain, quoted
 
-from .text_table import has_decimal_commas, read_table, with_points
+from .text_table import first_decimal_comma, read_table, with_points
 
 LARGEST_FILE = 4 << 30  # largest size of a file [bytes]
 # Number of columns of each field of a HAPI log.
@@ -159,11 +160,9 @@ class Recording:
 
     def _cells(self, column):
         cells = [row[column] if len(row) > column else b"" for row in self.rows]
-        if self._decimal == "point" or not any(b"," in cell for cell in cells):
+        if self._decimal == "point":
             return cells
-        if self._decimal == "auto" and has_decimal_commas(self.rows):
-            self._decimal = "comma"
-        cells, first, unclear = with_points(cells, self._decimal == "comma")
+        cells, first, unclear = with_points(cells, self._is_comma_decimal)
         if unclear is not None:
             fail(
                 f"column {self.title(column)}: got {self.shown(column, unclear)}: is the comma a decimal comma? "
@@ -177,6 +176,38 @@ class Recording:
                 "comma and are read as such (--decimal comma; --decimal point rejects them)"
             )
         return cells
+
+    @cached_property
+    def _first_decimal_comma(self):
+        """(row, column) of the first cell with a decimal comma, or None."""
+        return None if self.is_binary else first_decimal_comma(self.rows)
+
+    @property
+    def _is_comma_decimal(self):
+        """True if the decimal sign of the file is a comma. A file has one decimal sign, and not one for each column."""
+        if self._decimal == "auto":
+            return self._first_decimal_comma is not None
+        return self._decimal == "comma"
+
+    def cause_of_point(self, column, row):
+        """Returns the end of an error message for a cell that is not a number because the decimal sign of the file is a
+        comma and the cell has a point. Returns an empty text for any other cell."""
+        cell = b"" if self.is_binary else self.rows[row][column]
+        number = cell.replace(b".", b"").replace(b",", b".", 1)
+        if b"." not in cell or not self._is_comma_decimal or math.isnan(finite_number(number)):
+            return ""
+        allowed = [quoted(cell.replace(b".", b""))]
+        if cell.count(b".") == 1 and b"," not in cell:
+            allowed.append(quoted(cell.replace(b".", b",")))
+        write = f"write {' or '.join(allowed)}"
+        if self._decimal == "comma":
+            return f"; with --decimal comma, the point may separate thousands: {write}, or omit --decimal comma"
+        first, of = self._first_decimal_comma
+        sign = f"{self.row_word} {self.row_numbers[first]} has the decimal comma {self.shown(of, first)}"
+        text = f"; the point may separate thousands, because {sign}: {write}"
+        if of == column or cell.count(b".") > 1:
+            return text
+        return f"{text} (--decimal point reads the point as decimal, if column {self.title(of)} is not needed)"
 
     def _note_times_of_day(self, column, row):
         note = (

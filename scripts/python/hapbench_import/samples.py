@@ -166,11 +166,9 @@ class Rows:
         cell = b"" if self._recording.is_binary else self._recording.rows[row][column]
         if _EXPONENT_OF_FORTRAN.fullmatch(cell):
             return "; write an exponent as in 1e-3"
-        return (
-            f" or a time of day, such as {TIMES_OF_DAY}"
-            if b":" in cell and [column] == self._time
-            else ""
-        )
+        if b":" in cell and [column] == self._time:
+            return f" or a time of day, such as {TIMES_OF_DAY}"
+        return self._recording.cause_of_point(column, row)
 
     def _refuse(self, wrong, problem):
         for row in np.flatnonzero(wrong).tolist():

@@ -444,14 +444,18 @@ def _refuse_decimal_commas_between_commas(table, file):
         )
 
 
-def has_decimal_commas(rows):
-    """Returns True if at least one cell has a comma that can only be a decimal comma, as in "0,002" but not in
-    "1,234"."""
-    return any(
-        _COMMA_NUMBER.fullmatch(cell) and not _THOUSANDS.fullmatch(cell)
-        for row in rows
-        for cell in row
-        if b"," in cell
+def first_decimal_comma(rows):
+    """Returns (row, column) of the first cell with a comma that can only be a decimal comma, as in "0,002" but not in
+    "1,234". Returns None if there is no such cell."""
+    return next(
+        (
+            (number, column)
+            for number, row in enumerate(rows)
+            if b"," in b" ".join(row)
+            for column, cell in enumerate(row)
+            if _COMMA_NUMBER.fullmatch(cell) and not _THOUSANDS.fullmatch(cell)
+        ),
+        None,
     )
 
 
@@ -459,12 +463,11 @@ def with_points(cells, is_comma_decimal):
     """If `is_comma_decimal` is true, returns (cells of a column with decimal commas replaced by points, index of the
     first cell with a decimal comma or None, None). Otherwise returns (unchanged cells, None, index of the first cell
     with an ambiguous comma, such as "1,234", or None)."""
-    commas = [i for i, cell in enumerate(cells) if b"," in cell and _COMMA_NUMBER.fullmatch(cell)]
     if not is_comma_decimal:
         grouped = (i for i, cell in enumerate(cells) if _THOUSANDS.fullmatch(cell))
         return cells, None, next(grouped, None)
-    if not commas:
-        return cells, None, None
-    # A column has one decimal sign: in a column with decimal commas, a cell with a point is not a number.
-    cells = [cell.replace(b",", b".") if b"." not in cell else b"" for cell in cells]
-    return cells, commas[0], None
+    commas = (i for i, cell in enumerate(cells) if b"," in cell and _COMMA_NUMBER.fullmatch(cell))
+    # A file has one decimal sign. If the sign is a comma, a cell with a point is not a number: in "1.234", the point
+    # may separate thousands.
+    pointed = [b"" if b"." in cell else cell.replace(b",", b".") for cell in cells]
+    return pointed, next(commas, None), None
