@@ -325,6 +325,7 @@ class Layouts(Given):
         for data, words, warning in (
             (table(names, *columns).encode("utf-16-be"), (), "the text is UTF-16"),
             ("Time,Command,Encoder\n" + table(names, *columns), (), "those of line 2"),
+            (table(names, *columns)[:-1], (), "line 101, the last line, has no line end"),
             (
                 table(f"stamp.secs,stamp.nsecs,{names[7:]}", seconds, nanoseconds, *columns[1:]),
                 ("time=stamp.secs",),
@@ -402,6 +403,17 @@ class Layouts(Given):
                 self.PLAIN.replace(",", ";").replace(".", ","), "time=t,position=x", decimal="point"
             ),
         )
+
+    def test_a_last_line_without_a_line_end_is_reported(self):
+        warning = "line {}, the last line, has no line end: is the file cut short?"
+        for end in ("\n", "\r\n", "\r"):
+            whole = self.PLAIN.replace("\n", end)
+            self.assertEqual(self.report(whole)[1]["warnings"], [])
+            self.assertEqual(self.report(whole + "  ")[1]["warnings"], [])
+            cut = whole[: -len(end) - 3]
+            for data in (cut, cut.encode("utf-16"), cut + " ", cut.encode() + b"\0\0"):
+                self.assertIn(warning.format(101), self.report(data)[1]["warnings"])
+        self.assertIn(warning.format(102), self.report(self.PLAIN + "# the e")[1]["warnings"])
 
     def test_a_file_has_one_decimal_sign(self):
         """A point may separate thousands in a file whose other columns have decimal commas."""

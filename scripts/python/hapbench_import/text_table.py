@@ -185,11 +185,13 @@ def _wide_encoding(data):
 
 def _lines(data, notes):
     """Returns two lists of (number, line): the lines of data, and the comments, which begin with # or %. Blank lines
-    are skipped. A line ends with LF, CR LF or CR. A line break in a quoted cell does not end a line.
-    """
+    are skipped. A line ends with LF, CR LF or CR. A line break in a quoted cell does not end a line. Adds a note if the
+    last line has no line end, because a cell that is cut short may still be a number."""
     raw = data.split(b"\n")
     if any(b"\r" in line.rstrip(b"\r") for line in raw):
         raw = data.replace(b"\r\n", b"\n").replace(b"\r", b"\n").split(b"\n")
+    if len(raw) > 1 and raw[-1].strip(_BLANK) and not raw[-1].endswith(b"\r"):
+        notes.append(f"line {len(raw)}, the last line, has no line end: is the file cut short?")
     numbered = enumerate(raw, 1)
     if b'"' in data:
         numbered = _with_whole_cells(list(numbered), notes)
