@@ -111,6 +111,28 @@ class Headers(Given):
             _, found = self.report(f"{header}\n{rows(METRES)}", BY_NAME)
             self.assertEqual(found["warnings"], ["1 comment line skipped, the first: line 1"])
 
+    def test_a_unit_of_one_column_is_applied_to_the_others_with_a_warning(self):
+        warning = (
+            "columns 3 y, 4 z have no unit and are read in mm, the unit of column 2 x [mm] (--scale position=0.001 "
+            "confirms this; --scale position=1 reads the position in m)"
+        )
+        for header in ("t,x [mm],y,z\n", "t,x,y,z\n,mm,,\n", "# ,mm,-,\nt,x,y,z\n"):
+            data = header + rows(MILLIMETRES)
+            found = self.assert_metres(data, warned=warning)
+            self.assertEqual(found["scales"]["position"], 0.001)
+            found = self.assert_metres(data, scale="position=0.001")
+            self.assertNotIn("have no unit", "\n".join(found["warnings"]))
+            found = self.assert_metres(header + rows(METRES), scale="position=1")
+            self.assertIn("column 2 x [mm] says mm", "\n".join(found["warnings"]))
+        _, found = self.report("t,x,y,z [mm]\n" + rows(MILLIMETRES), BY_NAME)
+        self.assertIn("columns 2 x, 3 y have no unit", found["warnings"][0])
+        _, found = self.report("t,x [mm],y [mm],z\n" + rows(MILLIMETRES), BY_NAME)
+        self.assertIn("column 4 z has no unit and is read in mm", found["warnings"][0])
+        # Metres are the default.
+        self.assertEqual(
+            self.report("t [s],x [m],y,z\n" + rows(METRES), BY_NAME)[1]["warnings"], []
+        )
+
     def test_mega_is_not_milli(self):
         for quantity, text, unit in (
             ("force", "MN", None),

@@ -278,7 +278,32 @@ def scale_of(names, quantity, columns, given, notes):
         )
     if unit is None and given is None:
         notes += unclear_units(names, quantity, columns)
+    if factor is not None and given is None:
+        notes += units_of_others(names, quantity, columns, factor)
     return given if given is not None else factor if factor is not None else 1.0
+
+
+def units_of_others(names, quantity, columns, factor):
+    """Returns a list with at most one note about columns of a quantity that have no unit, although another column of
+    the quantity has a unit other than the SI unit. `factor`: factor of this unit to the SI unit."""
+    with_unit = [column for column in columns if names.units[column]]
+    without = [
+        column
+        for column in columns
+        if not names.units[column] and not names.names[column].startswith(ABSENT)
+    ]
+    if factor == 1.0 or not without:
+        return []
+    text, titles = names.units[with_unit[0]].text, ", ".join(map(names.title, without))
+    are = (
+        f"columns {titles} have no unit and are"
+        if len(without) > 1
+        else f"column {titles} has no unit and is"
+    )
+    return [
+        f"{are} read in {text}, the unit of column {names.title(with_unit[0])} (--scale {quantity}={factor:g} confirms "
+        f"this; --scale {quantity}=1 reads the {quantity} in {SI[quantity]})"
+    ]
 
 
 def unclear_units(names, quantity, columns):

@@ -127,7 +127,9 @@ class Columns:
         """Returns the factor from the unit of a quantity to its SI unit. Stores the factor in `scales`."""
         if quantity not in self.scales:
             given = self._options.scale.get(quantity)
-            self.scales[quantity] = scale_of(self.names, quantity, columns, given, self.notes)
+            # A column of fractions of a second has the unit of its fractions.
+            named = columns[:1] if quantity == "time" else columns
+            self.scales[quantity] = scale_of(self.names, quantity, named, given, self.notes)
         return self.scales[quantity]
 
     def _group(self, group, parts):
