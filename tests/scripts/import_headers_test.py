@@ -1,5 +1,7 @@
 """Tests how `import stroke` reads headers: units in names and in comments, orientations that are not named, and lines
 that are neither a header nor a sample."""
+import re
+
 import numpy as np
 from scipy.spatial.transform import Rotation
 
@@ -178,6 +180,59 @@ class Headers(Given):
             stroke, found = self.report(data, BY_NAME)
             self.assertFalse(stroke.has_roll)
             self.assertIn("so the tool does not rotate", "\n".join(found["warnings"]))
+
+    def test_every_usual_name_of_an_orientation_is_reported(self):
+        turns = Rotation.from_rotvec(np.column_stack([0.3 + TIME, 0.5 - TIME, 0.8 + 0 * TIME]))
+        xyzw, vectors = turns.as_quat(), turns.as_rotvec()
+        wxyz, angles = np.roll(xyzw, 1, axis=1), np.linalg.norm(vectors, axis=1, keepdims=True)
+        with_angle = np.column_stack([vectors / angles, angles])
+        matrices = turns.as_matrix().reshape(-1, 9)
+        for names, values in (
+            ("q0,q1,q2,q3", wxyz),
+            ("q1,q2,q3,q4", wxyz),
+            ("tool.q[0],tool.q[1],tool.q[2],tool.q[3]", wxyz),
+            ("qi,qj,qk,qr", xyzw),
+            ("quat_r,quat_x,quat_y,quat_z", wxyz),
+            ("ax,ay,az,angle", with_angle),
+            ("axis_x,axis_y,axis_z,theta", with_angle),
+            ("R11,R12,R13,R21,R22,R23,R31,R32,R33", matrices),
+            ("tip.axis.x,tip.axis.y,tip.axis.z", -turns.as_matrix()[:, :, 2]),
+            ("rx [deg],ry [deg],rz [deg]", None),
+            ("rx_deg,ry_deg,rz_deg", None),
+            ("toolRx,toolRy,toolRz", None),
+            ("euler_x,euler_y,euler_z", None),
+            ("Roll,Pitch,Yaw", None),
+            ("alpha,beta,gamma", None),
+        ):
+            data = table(f"t,x,y,z,{names}", TIME, METRES, vectors if values is None else values)
+            stroke, found = self.report(data, BY_NAME)
+            warning = "\n".join(found["warnings"])
+            first = names.split(",")[0]
+            self.assertIn(f"the file has an orientation, 5 {first}, 6 ", warning)
+            self.assertIn("so the tool does not rotate", warning)
+            self.assertFalse(stroke.has_roll)
+            self.assertEqual(self.report(data, BY_NAME, orientation="none")[1]["warnings"], [])
+            if values is None:
+                self.assertRegex(warning, "convert .* into a quaternion")
+                continue
+            # The remedy works.
+            words = re.search(r"\(--columns (\S+)(?: --orientation (\S+))? reads it", warning)
+            options = {"orientation": words[2]} if words[2] else {}
+            stroke, _ = self.report(data, f"{BY_NAME},{words[1]}", **options)
+            down = [0, 0, -1]
+            np.testing.assert_allclose(stroke.turn.apply(down), turns.apply(down), atol=1e-6)
+        # Joint angles, accelerations, rates and lengths are no orientation.
+        for names in (
+            "q1,q2,q3,q4,q5",
+            "ax,ay,az",
+            "roll_rate,yaw_rate",
+            "rx [mm],ry [mm],rz [mm]",
+        ):
+            values = np.zeros((len(TIME), names.count(",") + 1))
+            _, found = self.report(table(f"t,x,y,z,{names}", TIME, METRES, values), BY_NAME)
+            self.assertEqual(found["warnings"], [])
+        data = table("t,rx,ry,rz", TIME, METRES)
+        self.assertEqual(self.report(data, "time=t,position=rx")[1]["warnings"], [])
 
     def test_a_line_break_in_a_quoted_cell(self):
         notes = ['"touch\n# and\npress"' if i in (7, 20) else '"5"' for i in range(len(TIME))]

@@ -3,6 +3,7 @@ import re
 
 from .columns import NAMED_AS, Names, scale_of
 from .options import ORIENTATIONS
+from .unread_orientation import unread_orientations
 
 # Key: the components of a group, named as in --columns. Value: how the names of columns state these components, such as
 # x in pos_x.
@@ -20,12 +21,6 @@ PARTS = list(dict.fromkeys(sum(ORIENTATIONS.values(), ())))
 
 # Usual names of the w component of the tool's quaternion, in lower case and without other characters than letters.
 USUAL_W = ("qw", "quatw", "quaternionw", "orientationw", "poseorientationw", "posequaternionw")
-# Names that state an orientation in a kind other than a quaternion, by their first column.
-OTHER_ORIENTATIONS = {
-    "axis": ("axis_x", "axis_y", "axis_z"),
-    "matrix": ORIENTATIONS["matrix"],
-    "Euler angles": ("roll", "pitch", "yaw"),
-}
 
 
 def add_usual_orientation(recording, options):
@@ -50,18 +45,15 @@ def add_usual_orientation(recording, options):
             f"{', '.join(map(names.title, quaternion))}, by their names (--orientation none: the tool does not rotate)"
         )
         return
-    unread = [(names.title(column), names.names[column]) for _, column in found] + [
-        (", ".join(of), names.names[names.bare.index(of[0])])
-        for of in OTHER_ORIENTATIONS.values()
-        if names.indices(of)
+    named = {names.find(quantity, words)[0] for quantity, words in options.columns.items()}
+    unread = [
+        (names.title(column), f"--columns orientation={names.names[column]} reads it")
+        for _, column in found
     ]
+    if not unread:
+        unread = unread_orientations(names, named - {None})
     if unread:
-        title, name = unread[0]
-        how = (
-            "convert Euler angles into a quaternion"
-            if name == "roll"
-            else f"--columns orientation={name} reads it"
-        )
+        title, how = unread[0]
         recording.notes.append(
             f"the file has an orientation, {title}, that was not named, so the tool does not rotate ({how}; "
             "--orientation none omits this warning)"
