@@ -415,6 +415,54 @@ class Layouts(Given):
                 self.assertIn(warning.format(101), self.report(data)[1]["warnings"])
         self.assertIn(warning.format(102), self.report(self.PLAIN + "# the e")[1]["warnings"])
 
+    def test_options_without_effect_are_not_ignored_in_silence(self):
+        preset = self.root / "preset.json"
+        by_name = "time=t,position=x"
+        for columns, options, problem in (
+            (by_name + ",time=x", {}, '--columns: got "time" twice; allowed: once'),
+            (by_name, {"scale": "force=1,force=2"}, '--scale: got "force" twice'),
+            (by_name, {"smooth": "window=5,window=7"}, '--smooth: got "window" twice'),
+            (by_name, {"max_gap": 1, "set": "max_gap=2"}, '--set: got "max_gap" twice'),
+            (by_name, {"floats": True}, "floats=true: got format csv; allowed: --format hapi-bin"),
+            (by_name, {"decimal": "comma", "format": "hapi-binary"}, "decimal: got comma; allowed"),
+            (by_name, {"decimal": "comma", "set": "decimal=auto"}, "--decimal and --set decimal"),
+            ("position=x", {"set": 'columns={"position":"y"}'}, "--columns and --set columns: all"),
+            (by_name, {"set": "sample_rate_Hz=5"}, "--columns time and --set sample_rate_Hz"),
+        ):
+            self.assertIn(problem, self.refusal(self.PLAIN, columns, **options))
+        both = '{"columns": {"time": "t", "position": "x"}, "sample_rate_Hz": 500, "max_speed": 9}'
+        preset.write_text(both)
+        self.assertIn(
+            "preset.json: columns: time and sample_rate_Hz: allowed: one of them",
+            self.refusal(self.PLAIN, None, preset=preset),
+        )
+        preset.write_text(both.replace('"sample_rate_Hz": 500, "max_speed": 9', '"floats": true'))
+        self.assertIn("floats=true: got", self.refusal(self.PLAIN, None, preset=preset))
+        scale = "force=2,angle=3,position=1"
+        warned = self.assert_positions(self.PLAIN, scale=scale, force_by_tool=True)[0]
+        for warning in (
+            "the scale force=2 has no effect: no column of force is read",
+            "the scale angle=3 has no effect",
+            "force_by_tool=true has no effect",
+        ):
+            self.assertIn(warning, warned)
+        self.assertNotIn("position=1", warned)
+        rate = {"set": "sample_rate_Hz=500", "scale": "time=1e-3"}
+        warned = self.assert_positions(self.PLAIN, "position=x", **rate)[0]
+        self.assertIn("the scale time=0.001 has no effect", warned)
+        axes = table("t,x,y,z,axis_x,axis_y,axis_z", self.TIME, self.POSITIONS, self.POSITIONS + 1)
+        columns = by_name + ",orientation=axis_x"
+        _, found = self.report(axes, columns, orientation="axis", tip_axis="1,0,0")
+        self.assertIn("tip_axis has no effect", "\n".join(found["warnings"]))
+        # A preset may describe columns that a file omits. The note about these columns suffices.
+        preset.write_text(
+            '{"columns": {"time": "t", "position": "x", "force": "fx"}, "scale": {"force": 2}, '
+            '"force_by_tool": true}'
+        )
+        _, found = self.report(self.PLAIN, None, preset=preset)
+        self.assertEqual(len(found["warnings"]), 1, found["warnings"])
+        self.assertIn("the stroke has no force", found["warnings"][0])
+
     def test_a_file_has_one_decimal_sign(self):
         """A point may separate thousands in a file whose other columns have decimal commas."""
         cells = [

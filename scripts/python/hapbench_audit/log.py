@@ -8,7 +8,7 @@ import numpy as np
 from hapbench_command import fail, finite_number, quoted, require_name
 from hapbench_import.columns import ABSENT, Names
 from hapbench_import.holds import Hold, hold_of
-from hapbench_import.options import QUANTITIES, options_of
+from hapbench_import.options import QUANTITIES, assignments, options_of
 from hapbench_import.recording import EXACT, Recording, open_recording
 from hapbench_import.samples import read_samples
 from hapbench_import.stroke import resolution_of
@@ -117,12 +117,15 @@ def layout_of(options):
     )
     for word in options.columns:
         require_name("columns: got", word.partition("=")[0], ALL)
+    wanted = dict(assignments("columns", extra))
+    if len(touches) > 1:
+        fail('--set: got "touch_N" twice; allowed: once')
     layout = options_of(requested)
     if not any(word.startswith("max_speed") for word in options.set):
         layout.max_speed = float("inf")
     layout.held_rows = "keep"
     touch = touch_of(touches[-1]) if touches else None
-    return layout, dict(word.split("=", 1) for word in extra if "=" in word), touch
+    return layout, wanted, touch
 
 
 def touch_of(word):

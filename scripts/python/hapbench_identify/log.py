@@ -7,6 +7,7 @@ import numpy as np
 from hapbench_command import MAX_FAULTS, Faults, fail, finite_number, quoted, require_name
 from hapbench_import.columns import NAMED_AS, Names, scale_of
 from hapbench_import.holds import hold_of
+from hapbench_import.options import assignments
 from hapbench_import.recording import open_recording
 
 NAMES = {
@@ -39,10 +40,7 @@ def read_log(options):
         ("columns", options.columns, columns),
         ("scale", options.scale, scale),
     ):
-        for word in words:
-            name, equals, value = word.partition("=")
-            if not equals:
-                fail(f"--{option}: got {quoted(word)}; allowed: NAME=VALUE")
+        for name, value in assignments(option, words):
             require_name(f"--{option}: got", name, list(NAMES))
             target[name] = value if option == "columns" else _factor(name, value)
     layout = SimpleNamespace(format="csv", floats=False, decimal=options.decimal or "auto")

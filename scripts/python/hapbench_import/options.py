@@ -108,33 +108,47 @@ def options_of(requested):
     for name in ("format", "decimal", "orientation", "frame"):
         if value := getattr(requested, name):
             options.set(name, value)
-    columns = dict(_assignments("columns", requested.columns))
+    columns = dict(assignments("columns", requested.columns))
     options.set("columns", columns)
-    options.optional -= set(columns)
-    options.named = frozenset(columns)
+    fields = {name: _value(value) for name, value in assignments("set", requested.set)}
+    for name in fields:
+        require_name("--set: got", name, list(_FIELDS))
+        if getattr(requested, name, None):
+            fail(f"--{name} and --set {name}: allowed: one of them")
     options.set(
         "scale",
         {
             quantity: _number("--scale", factor)
-            for quantity, factor in _assignments("scale", requested.scale)
+            for quantity, factor in assignments("scale", requested.scale)
         },
     )
     if requested.smooth:
         options.smooth = _smoothing(requested.smooth)
-    if "time" in columns:
-        options.sample_rate_Hz = None
-    for name, value in _assignments("set", requested.set):
-        if name == "sample_rate_Hz" and "time" in columns:
+    for name, value in fields.items():
+        options.set(name, value)
+    options.named = frozenset(columns) | set(fields.get("columns", ()))
+    options.optional -= options.named
+    if "time" in options.named:
+        if "sample_rate_Hz" in fields:
             fail("--columns time and --set sample_rate_Hz: allowed: one of them")
-        require_name("--set: got", name, list(_FIELDS))
-        options.set(name, _value(value))
+        options.sample_rate_Hz = None
     options.rate = requested.rate
     options.skip_bad_rows = requested.skip_bad_rows
+    _refuse_without_effect(options)
     if not 1e-9 < math.hypot(*options.tip_axis) < 1e9:
         fail("tip_axis: allowed: a direction")
     if options.sample_rate_Hz is not None and not 0.0 < options.sample_rate_Hz <= 1e6:
         fail(f"sample_rate: got {plain(options.sample_rate_Hz)} Hz; allowed: > 0 ... 1e6")
     return options
+
+
+def _refuse_without_effect(options):
+    """Refuses options that the format of the file makes ineffective."""
+    is_binary = options.format == "hapi-binary"
+    if options.floats and not is_binary:
+        fail(f"floats=true: got format {options.format}; allowed: --format hapi-binary")
+    if options.decimal != "auto" and is_binary:
+        fail(f"decimal: got {options.decimal}; allowed for format hapi-binary: auto")
 
 
 def list_of_presets():
@@ -177,16 +191,23 @@ def _apply_preset(options, file):
         for name, value in _read_preset(file).items():
             require_name("got field", name, list(_FIELDS))
             options.set(name, value)
+        if options.sample_rate_Hz is not None and "time" in options.columns:
+            fail("columns: time and sample_rate_Hz: allowed: one of them")
     except Faults as faults:
         fail(faults.list[0][1], file)
     options.optional = {"orientation", "force"} & set(options.columns)
 
 
-def _assignments(option, words):
+def assignments(option, words):
+    """Yields (name, value) for each word NAME=VALUE of an option. Fails if a name is given twice."""
+    names = set()
     for word in words:
         name, equals, value = word.partition("=")
         if not name or not equals:
             fail(f"--{option}: got {quoted(word)}; allowed: NAME=VALUE")
+        if name in names:
+            fail(f"--{option}: got {quoted(name)} twice; allowed: once")
+        names.add(name)
         yield name, value
 
 
@@ -207,7 +228,7 @@ def _number(option, word):
 
 def _smoothing(words):
     smoothing = {"window": 0, "order": 0}
-    for name, value in _assignments("smooth", words):
+    for name, value in assignments("smooth", words):
         if not (value.isascii() and value.isdigit() and int(value) <= 100_000):
             fail(f"--smooth: {name}: got {quoted(value)}; allowed: a whole number")
         require_name("--smooth: got", name, list(smoothing))

@@ -11,6 +11,7 @@ from scipy.spatial.transform import Rotation
 from .clock import require_likely_clock
 from .component_columns import Columns
 from .holds import hold_of
+from .options import Options
 
 MAX_SAMPLES = 10_000_000
 UNIT_TOLERANCE = 1e-3  # largest deviation of a norm from 1 that counts as rounding
@@ -238,6 +239,7 @@ def read_samples(recording, options):
         require_likely_clock(
             rows, recording.file, columns.scale("time", columns.time), options.max_gap
         )
+    _note_without_effect(options, columns, rows)
     held = _held_rows(rows, options, columns.notes)
     kept = _in_sequence(rows, options.max_speed, held)
     problems = _with_hints(rows, len(recording.rows))
@@ -273,6 +275,25 @@ def read_samples(recording, options):
         columns.scales,
         held,
     )
+
+
+def _note_without_effect(options, columns, rows):
+    """Adds a note for each option about a quantity that is not read. A preset may describe optional columns."""
+    absent = options.optional - {quantity for quantity, parts in columns.used().items() if parts}
+    unread = {"force": "force", "angle": "orientation"}
+    for quantity, factor in options.scale.items():
+        if quantity not in columns.scales and unread.get(quantity) not in absent:
+            columns.notes.append(
+                f"the scale {quantity}={factor:g} has no effect: no column of {quantity} is read"
+            )
+    if options.force_by_tool and rows.force is None and "force" not in absent:
+        columns.notes.append(
+            "force_by_tool=true has no effect: no column of force is read (--columns force=...)"
+        )
+    if rows.kind == "axis" and options.tip_axis != Options.tip_axis:
+        columns.notes.append(
+            "tip_axis has no effect: the columns of the axis state the direction out of the tip"
+        )
 
 
 def _held_rows(rows, options, notes):
