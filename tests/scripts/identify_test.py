@@ -339,18 +339,27 @@ class Identify(Logs):
             ),
             (
                 "time_s,force_N,position_m\n" + "".join(f"0,{i},{i}\n" for i in range(60)),
-                "increasing times (59 rows, the last: line 61)",
+                "column 1 time_s: 59 of 60 rows repeat the time of the row before; allowed: increasing times; is the "
+                "column with the fractions of a second missing?",
+            ),
+            (
+                "time_s,force_N,position_m\n" + "".join(f"{i // 30},{i},{i}\n" for i in range(60)),
+                "58 of 60 rows repeat the time",
+            ),
+            (
+                "time_s,force_N,position_m\n" + "".join(f"{i % 40},{i},{i}\n" for i in range(60)),
+                "line 42: got time 0 s after 39 s; allowed: increasing times (20 rows, the last: line 61)",
             ),
             (
                 "time_s,force_N,position_m,force_N\n" + "0,1,2,3\n" * 60,
                 'two columns are named "force_N"',
             ),
             (
-                "time_s,force_N,position_m\n" + "0,1,x\n" * 60,
+                "time_s,force_N,position_m\n" + "".join(f"{i},1,x\n" for i in range(60)),
                 'line 2: column 3 position_m: got "x"; allowed: a finite number (60 rows, the last: line 61)',
             ),
             (
-                "time_s;force [mN];position_m\n" + "0,001;1.200;2\n" * 60,
+                "time_s;force [mN];position_m\n" + "".join(f"{i},001;1.200;2\n" for i in range(60)),
                 'column 2 force [mN]: got "1.200"; allowed: a finite number; the point may separate thousands, because '
                 'line 2 has the decimal comma "0,001": write "1200" or "1,200"',
             ),

@@ -1,4 +1,5 @@
 """Tests `import stroke` with recordings of other programs: columns, texts, units, clocks and held rows."""
+import re
 from datetime import datetime, timedelta
 from types import SimpleNamespace
 
@@ -462,6 +463,47 @@ class Layouts(Given):
         _, found = self.report(self.PLAIN, None, preset=preset)
         self.assertEqual(len(found["warnings"]), 1, found["warnings"])
         self.assertIn("the stroke has no force", found["warnings"][0])
+
+    def test_seconds_and_their_fractions_are_joined(self):
+        time = 17.9 + self.TIME
+        for unit, names in (
+            (1e-6, ("tv_sec", "tv_usec")),
+            (1e-6, ("seconds", "microseconds")),
+            (1e-6, ("t_s [s]", "t_us [us]")),
+            (1e-3, ("Time.Sec", "Time.mSec")),
+            (1e-9, ("tv_sec", "tv_nsec")),
+            (1e-9, ("header.stamp.sec", "header.stamp.nanosec")),
+        ):
+            whole = np.floor(time + 1e-9)
+            fractions = np.rint((time - whole) / unit)
+            header = ",".join([*names, "x,y,z"])
+            data = table(header, whole, fractions, self.POSITIONS, number="%.12g")
+            warned, found = self.assert_positions(data, f"time={names[0]},position=x")
+            self.assertEqual((self.columns(found, "time"), warned), ([1, 2], ""), names)
+            self.assertAlmostEqual(found["duration_s"], self.TIME[-1], delta=1e-9)
+            self.assertAlmostEqual(found["first_time_s"], 17.9, delta=1e-9)
+            # Without names that state the fractions, the remedy of the message works.
+            data = data.replace(",".join(names), "a,b")
+            for options in ({}, {"skip_bad_rows": True}):
+                problem = self.refusal(data, "time=a,position=x", **options)
+                self.assertIn("column 1 a: 98 of 100 rows repeat the time", problem)
+                self.assertNotIn("skip-bad-rows", problem)
+            other = re.search(r"2 b may .* name the columns t_sec and (t_\wsec) in the", problem)[1]
+            data = data.replace("a,b", f"t_sec,{other}")
+            self.assert_positions(data, "time=t_sec,position=x")
+            rate = {"set": "sample_rate_Hz=500"}
+            self.assert_positions(data, "position=x", **rate)
+        # A column that counts all microseconds has no fractions of the seconds.
+        slow = 0.05 * np.arange(100)
+        data = table("t_s,t_us,x,y,z", np.floor(slow), np.rint(1e6 * slow), self.POSITIONS)
+        self.assertIn(
+            "2 t_us does not have their fractions", self.refusal(data, "time=t_s,position=x")
+        )
+        self.assert_positions(data, "time=t_us,position=x")
+        data = table("t_s,t_us,x,y,z", self.TIME, np.rint(1e6 * self.TIME), self.POSITIONS)
+        self.assertEqual(self.assert_positions(data, "time=t_s,position=x")[0], "")
+        data = table("t_s,x,y,z", 0 * self.TIME, self.POSITIONS)
+        self.assertIn("is the column with the", self.refusal(data, "time=t_s,position=x"))
 
     def test_a_file_has_one_decimal_sign(self):
         """A point may separate thousands in a file whose other columns have decimal commas."""

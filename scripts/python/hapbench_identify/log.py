@@ -9,6 +9,7 @@ from hapbench_import.columns import NAMED_AS, Names, scale_of
 from hapbench_import.holds import hold_of
 from hapbench_import.options import assignments
 from hapbench_import.recording import open_recording
+from hapbench_import.split_times import fractions_of, remedy_of_repeated_times, repeats_most
 
 NAMES = {
     "time": "time_s",
@@ -61,8 +62,15 @@ def read_log(options):
     force, position = (
         scales[name] * recording.column(found[name]) for name in ("force", "position")
     )
-    clock = [found["time"], *names.nanoseconds([found["time"]])]
-    time = scales["time"] * recording.clock(*clock, scale=scales["time"])[1]
+    fractions, unit = fractions_of(recording, found["time"]) or (None, 0.0)
+    time = scales["time"] * recording.clock(found["time"], fractions, unit, scales["time"])[1]
+    if repeated := repeats_most(time):
+        fail(
+            f"column {recording.title(found['time'])}: {repeated} of {len(time)} rows repeat the time of the row before; "
+            f"allowed: increasing times; {remedy_of_repeated_times(recording, found['time'], found.values())}",
+            recording.file,
+        )
+    clock = [found["time"]] if fractions is None else [found["time"], fractions]
     bad = _bad_rows(recording, found, time, force, position)
     faults = recording.faults(bad)
     if faults and not options.skip_bad_rows:

@@ -195,16 +195,6 @@ class Names:
         found = [self.bare.index(name) if self.bare.count(name) == 1 else None for name in names]
         return None if None in found or len(set(found)) < len(found) else found
 
-    def nanoseconds(self, time):
-        """If the times are in a column of whole seconds that has a column of nanoseconds, such as secs and nsecs of
-        ROS, returns a list with the column of nanoseconds. Otherwise returns an empty list. `time`: list with the
-        column of times; may be empty."""
-        found = re.fullmatch(r"(|.*[._ /])secs?", self.names[time[0]]) if time else None
-        for ending in ("nsecs", "nsec", "nanosec", "nanosecs") if found else ():
-            if self.names.count(found[1] + ending) == 1:
-                return [self.names.index(found[1] + ending)]
-        return []
-
     def components(self, column, tokens, numbers=True):
         """Returns the columns of all components if `column` is one of these columns and their names state the
         components. Otherwise returns None. `tokens`: names of the components. With `numbers`, names such as q0 are also

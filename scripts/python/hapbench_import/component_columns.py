@@ -3,6 +3,7 @@ import re
 
 from .columns import NAMED_AS, Names, scale_of
 from .options import ORIENTATIONS
+from .split_times import fractions_of, name_of
 from .unread_orientation import unread_orientations
 
 # Key: the components of a group, named as in --columns. Value: how the names of columns state these components, such as
@@ -79,7 +80,11 @@ class Columns:
         self._options, self.notes, self.scales = options, [], {}
         self.names = names = Names(recording)
         self.time = [] if options.sample_rate_Hz else self._group("time", ("time",))
-        self.time += self.names.nanoseconds(self.time)
+        # Unit [s] of the second column of times, which has the fractions of whole seconds.
+        self.unit_of_fractions = 0.0
+        if self.time and (fractions := fractions_of(recording, self.time[0])):
+            self.time.append(fractions[0])
+            self.unit_of_fractions = fractions[1]
         self.position = self._group("position", ("px", "py", "pz"))
         if not self.position:
             names.fail("position", "is missing")
@@ -108,7 +113,11 @@ class Columns:
                 for component, column in zip(components, columns)
             ]
             for quantity, components, columns in (
-                ("time", ("s", "ns") if len(self.time) > 1 else ("time",), self.time),
+                (
+                    "time",
+                    ("s", name_of(self.unit_of_fractions)) if self.time[1:] else ("time",),
+                    self.time,
+                ),
                 ("position", ("x", "y", "z"), self.position),
                 ("orientation", ORIENTATIONS[self.kind], self.orientation),
                 ("force", ("x", "y", "z"), self.force),

@@ -102,17 +102,17 @@ class Recording:
             values = np.array([finite_number(cell) for cell in cells])
         return np.where(np.isfinite(values), values, math.nan)
 
-    def clock(self, column, nanoseconds=None, scale=1.0):
-        """Returns (origin, numbers minus the origin) for a column of times. `nanoseconds`: column of nanoseconds that
-        are added to the times, or None. The origin is the first time if `nanoseconds` is given, or if the times are
-        integers that are too large for a double, such as nanoseconds since 1970. Otherwise the origin is 0. Times of
-        day, with or without a date (ISO 8601), are converted to seconds since the first time of day. `scale`: seconds
-        per unit of the times; must be 1 for times of day."""
+    def clock(self, column, fractions=None, unit=0.0, scale=1.0):
+        """Returns (origin, numbers minus the origin) for a column of times. `fractions`: column of fractions of a second
+        that are added to the times, in `unit` [s], or None. The origin is the first time if `fractions` is given, or if
+        the times are integers that are too large for a double, such as nanoseconds since 1970. Otherwise the origin is
+        0. Times of day, with or without a date (ISO 8601), are converted to seconds since the first time of day.
+        `scale`: seconds per unit of the times; must be 1 for times of day."""
         values = self.column(column)
-        if nanoseconds is not None:
+        if fractions is not None:
             finite = values[np.isfinite(values)]
             first = float(finite[0]) if len(finite) else 0.0
-            return first, (values - first) + 1e-9 / scale * self.column(nanoseconds)
+            return first, (values - first) + unit / scale * self.column(fractions)
         if not self.is_binary and not np.isfinite(values).any():
             nanoseconds = [
                 _nanoseconds(row[column]) if len(row) > column else None for row in self.rows

@@ -12,6 +12,7 @@ from .clock import require_likely_clock
 from .component_columns import Columns
 from .holds import hold_of
 from .options import Options
+from .split_times import remedy_of_repeated_times, repeats_most
 
 MAX_SAMPLES = 10_000_000
 UNIT_TOLERANCE = 1e-3  # largest deviation of a norm from 1 that counts as rounding
@@ -68,7 +69,9 @@ class Rows:
         frame = np.array(options.frame).T
         if columns.time:
             scale = columns.scale("time", columns.time)
-            origin, values = recording.clock(*columns.time, scale=scale)
+            origin, values = recording.clock(
+                *columns.time, unit=columns.unit_of_fractions, scale=scale
+            )
             self._refuse_columns(columns.time[:1], values[:, np.newaxis])
             self.origin, self.time = scale * origin, scale * values
         else:
@@ -244,6 +247,7 @@ def read_samples(recording, options):
     kept = _in_sequence(rows, options.max_speed, held)
     problems = _with_hints(rows, len(recording.rows))
     faults = recording.faults(problems)
+    _refuse_repeated_times(recording, columns, rows)
     if faults and not options.skip_bad_rows:
         location, problem = faults[-1]
         faults[-1] = (location, f"{problem}; --skip-bad-rows skips bad rows")
@@ -275,6 +279,21 @@ def read_samples(recording, options):
         columns.scales,
         held,
     )
+
+
+def _refuse_repeated_times(recording, columns, rows):
+    """Refuses a recording in which most rows repeat the time, also with the option skip_bad_rows, which would omit most
+    rows."""
+    repeated = repeats_most(rows.time) if columns.time else 0
+    if repeated:
+        used = {part["column"] - 1 for parts in columns.used().values() for part in parts}
+        fail(
+            f"column {recording.title(columns.time[0])}: {repeated} of {len(rows.time)} rows repeat the time of the row "
+            f"before; allowed: increasing times; "
+            f"{remedy_of_repeated_times(recording, columns.time[0], used)} (for rows at a known rate: --set "
+            "sample_rate_Hz=... instead of --columns time=...)",
+            recording.file,
+        )
 
 
 def _note_without_effect(options, columns, rows):
