@@ -151,6 +151,7 @@ class Identify(Logs):
         self.assert_holds(result)
         self.assertAlmostEqual(result["position_noise_m"]["value"], 2e-5, delta=1e-6)
         self.assertIn(f"{np.count_nonzero(~kept)} samples are missing", warned)
+        self.assertRegex(warned, r"the first after 0\.00\d+ s: their forces were interpolated")
         self.assertIn("the sampling is not uniform", warned)
 
     def test_a_handful_of_the_study_ends_in_the_global_minimum(self):

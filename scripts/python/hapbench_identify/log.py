@@ -147,9 +147,10 @@ def log_of(time, force, position):
     even = missing == 0
     step = float(intervals[even].mean())
     if missing.any():
+        first = int(np.argmax(missing > 0))
         warnings.append(
-            f"{missing.sum()} samples are missing, at most {missing.max()} in a row: their forces "
-            "were interpolated linearly"
+            f"{missing.sum()} samples are missing, at most {missing.max()} in a row, the first after "
+            f"{time[first]:.9g} s: their forces were interpolated linearly"
         )
     if np.ptp(intervals[even]) > 0.05 * step:
         warnings.append(
