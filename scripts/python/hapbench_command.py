@@ -29,8 +29,8 @@ MAX_FAULTS = 20  # largest number of faults in one error message
 SILENCE = 2.0  # time before the first notice about the elapsed time [s]
 SCHEMA = Path(__file__).resolve().parents[2] / "scenarios" / "library" / "scenario.schema.json"
 
-_unfinished = set()  # temporary files of write(), which Ctrl-C removes
-_written = []  # files that write() has completed
+_unfinished = set()  # temporary files of write_all(), which Ctrl-C removes
+_written = []  # files that write_all() has completed
 
 
 def print_error(text):
@@ -435,15 +435,50 @@ def write(file, data):
     """Creates or replaces a file atomically. `data`: text or bytes. If the file is a link, its target is created or
     replaced. A pipe or a device is not replaced; the data are written into it. If this fails, raises OSError with the
     name of the file."""
-    content = data if isinstance(data, bytes) else data.encode()
+    write_all({file: data})
+
+
+def write_all(contents):
+    """Creates or replaces the files of one result. `contents`: dict from each file to its data, as for write(). The
+    data of all files are first written to temporary files, which are renamed at the end. If one file cannot be written,
+    no file changes, so that no folder holds a mixture of old and new files."""
+    renamed = []  # (file, temporary file, file that the temporary file replaces)
     try:
-        file.parent.mkdir(parents=True, exist_ok=True)
-        if is_stream(file):
-            with file.open("wb") as stream:
-                stream.write(content)
-        else:
-            _replace(_target_of(file) if file.is_symlink() else file, content)
-        _written.append(str(file))
+        for file, data in contents.items():
+            with named_in_errors(file):
+                file.parent.mkdir(parents=True, exist_ok=True)
+                if is_stream(file):
+                    continue
+                target = _target_of(file) if file.is_symlink() else file
+                if target.is_dir():
+                    raise OSError(errno.EISDIR, os.strerror(errno.EISDIR))
+                scratch = target.with_name(f".{target.name}.{os.getpid()}.tmp")
+                _unfinished.add(scratch)
+                renamed.append((file, scratch, target))
+                scratch.write_bytes(_bytes_of(data))
+        for file in filter(is_stream, contents):
+            with named_in_errors(file), file.open("wb") as stream:
+                stream.write(_bytes_of(contents[file]))
+            _written.append(str(file))
+        for file, scratch, target in renamed:
+            with named_in_errors(file):
+                scratch.replace(target)
+            _written.append(str(file))
+    finally:
+        for _, scratch, _ in renamed:
+            scratch.unlink(missing_ok=True)
+            _unfinished.discard(scratch)
+
+
+def _bytes_of(data):
+    return data if isinstance(data, bytes) else data.encode()
+
+
+@contextmanager
+def named_in_errors(file):
+    """Makes an OSError in the `with` statement name `file`, and not a temporary file or a folder."""
+    try:
+        yield
     except OSError as error:
         raise OSError(error.errno, error.strerror, str(file)) from error
 
@@ -452,22 +487,8 @@ def _target_of(link):
     """Returns the file to which a link, or a chain of links, leads. Raises OSError for links that form a cycle."""
     target = Path(os.path.realpath(link))
     if target.is_symlink():
-        raise OSError(errno.ELOOP, os.strerror(errno.ELOOP), str(link))
+        raise OSError(errno.ELOOP, os.strerror(errno.ELOOP))
     return target
-
-
-def _replace(file, content):
-    """Writes a temporary file beside `file`, and renames it to `file`."""
-    scratch = file.with_name(f".{file.name}.{os.getpid()}.tmp")
-    _unfinished.add(scratch)
-    try:
-        with scratch.open("wb") as open_scratch:
-            open_scratch.write(content)
-            open_scratch.flush()
-            scratch.replace(file)
-    finally:
-        scratch.unlink(missing_ok=True)
-        _unfinished.discard(scratch)
 
 
 def unwritable(error):

@@ -406,6 +406,23 @@ class Formats(unittest.TestCase):
                 by_command[section], json.loads(json.dumps(by_function[section])), section
             )
 
+    def test_files_of_a_failed_audit_are_those_of_the_earlier_audit(self):
+        z = pressed(20)
+        scratch = scratch_folder(self)
+        file, out = scratch / "log.csv", scratch / "out"
+        file.write_text(csv_text(table(z, wall(z, 1000.0))))
+        hapbench("audit", file, "--quiet", "--out", out)
+        earlier = [(out / name).read_bytes() for name in ("audit.json", "audit.svg")]
+        (out / "audit.html").unlink()
+        (out / "audit.html").mkdir()
+        file.write_text(csv_text(table(z, wall(z, 2000.0))))
+        error = hapbench("audit", file, "--quiet", "--out", out, expected=2)
+        self.assertIn(str(out / "audit.html"), error)
+        self.assertEqual(
+            [(out / name).read_bytes() for name in ("audit.json", "audit.svg")], earlier
+        )
+        self.assertEqual(sorted(os.listdir(out)), ["audit.html", "audit.json", "audit.svg"])
+
     def test_expectations(self):
         z = pressed(20)
         scratch = scratch_folder(self)

@@ -1,13 +1,15 @@
-"""Tests write() of hapbench_command, with which all Python commands write their files."""
+"""Tests write() and write_all() of hapbench_command, with which all Python commands write their files."""
+import errno
 import os
 import stat
 import threading
 import unittest
 from pathlib import Path
+from unittest import mock
 
 from fixture import scratch_folder
 
-from hapbench_command import write
+from hapbench_command import write, write_all
 
 
 class Write(unittest.TestCase):
@@ -56,6 +58,39 @@ class Write(unittest.TestCase):
                 write(file, "data")
             self.assertEqual(caught.exception.filename, str(file))
         self.assertEqual(sorted(os.listdir(self.root)), ["a", "b"])
+
+    def test_files_of_one_result_change_together(self):
+        names = ("a", "new/b", "c")
+        files = [self.root / name for name in names]
+        write_all(dict.fromkeys(files, "old"))
+        self.assertEqual([file.read_text() for file in files], ["old"] * 3)
+        files[2].unlink()
+        files[2].mkdir()
+        with self.assertRaises(OSError) as caught:
+            write_all(dict.fromkeys(files, "new"))
+        self.assertEqual(caught.exception.filename, str(files[2]))
+        self.assertEqual([file.read_text() for file in files[:2]], ["old"] * 2)
+        self.assertEqual(sorted(os.listdir(self.root)), ["a", "c", "new"])
+        self.assertEqual(os.listdir(files[1].parent), ["b"])
+
+    def test_no_file_changes_if_the_disk_becomes_full(self):
+        files = [self.root / name for name in "abc"]
+        whole = Path.write_bytes
+
+        def full(file, data):
+            if file.name.startswith(".b"):
+                whole(file, data[:1])
+                raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), str(file))
+            return whole(file, data)
+
+        for old in ([], ["a", "b", "c"]):
+            for name in old:
+                (self.root / name).write_text("old")
+            with mock.patch.object(Path, "write_bytes", full), self.assertRaises(OSError) as caught:
+                write_all(dict.fromkeys(files, "new"))
+            self.assertEqual(caught.exception.filename, str(files[1]))
+            self.assertEqual(sorted(os.listdir(self.root)), old)
+            self.assertEqual([(self.root / name).read_text() for name in old], ["old"] * len(old))
 
 
 if __name__ == "__main__":

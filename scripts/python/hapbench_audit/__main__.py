@@ -13,7 +13,7 @@ from hapbench_command import (
     shell_line,
     stop_on_ctrl_c,
     table_text,
-    write,
+    write_all,
 )
 from hapbench_import.options import DECIMALS, ORIENTATIONS
 
@@ -41,7 +41,8 @@ NOTES = [
     "Expectations: bounds on numbers of the audit, such as energy_mJ=1, "
     "force_rms_above_30Hz_N=0.1 or stiffness_N_per_m=900:1100. A number that the log does not "
     "determine does not meet its expectation.",
-    "Files: audit.json, audit.svg and audit.html in results/out/audit_LOG. They replace earlier files.",
+    "Files: audit.json, audit.svg and audit.html in results/out/audit_LOG. They replace earlier files, but only if all "
+    "three can be written.",
     "Exit status: 0 success, also if audit finds problems; 2 bad input; 3 an expectation is not met.",
 ]
 EXAMPLES = [
@@ -128,10 +129,14 @@ def run(options):
     audit["scales"] = log.scales
     out = options.out or Path("results/out") / f"audit_{Path(options.log).stem}"
     drawing = Drawing(log, audit, contacts, spectrum)
-    write(out / "audit.json", json.dumps(audit, indent=2, ensure_ascii=False) + "\n")
-    write(out / "audit.svg", draw(drawing))
     line = shell_line("hapbench", "audit", *sys.argv[1:])
-    write(out / "audit.html", page_of(log, audit, drawing, line).encode(errors="replace"))
+    write_all(
+        {
+            out / "audit.json": json.dumps(audit, indent=2, ensure_ascii=False) + "\n",
+            out / "audit.svg": draw(drawing),
+            out / "audit.html": page_of(log, audit, drawing, line).encode(errors="replace"),
+        }
+    )
     unmet = [unmet_text(one) for one in audit["expectations"] if not one["met"]]
     table = table_text(["audit of", Path(options.log).name, ""], table_rows(audit), options.wide)
     columns = columns_text(log.columns, log.columns_not_read, log.scales)

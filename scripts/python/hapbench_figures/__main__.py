@@ -10,7 +10,15 @@ from pathlib import Path
 import hapbench_style as style
 from hapbench.errors import InputError, ResultError
 from hapbench.results import Files, MissingResult, read_json
-from hapbench_command import BAD_INPUT, SUCCESS, Arguments, exit_status, print_error, write
+from hapbench_command import (
+    BAD_INPUT,
+    SUCCESS,
+    Arguments,
+    exit_status,
+    print_error,
+    write,
+    write_all,
+)
 
 from .scene import LEDGER
 
@@ -131,8 +139,12 @@ def draw(figure, results, directory):
     """Draws one figure and writes its files into `directory`. Returns the figure's entry for figures.json."""
     drawing, values = figure.draw(results)
     files = [f"{figure.stem}.{kind}" for kind in FORMATS]
-    for kind, name in zip(FORMATS, files):
-        write(directory / name, style.picture(drawing, kind, salt=figure.stem))
+    write_all(
+        {
+            directory / name: style.picture(drawing, kind, salt=figure.stem)
+            for kind, name in zip(FORMATS, files)
+        }
+    )
     style.plt.close(drawing)
     return {
         "id": figure.id,
@@ -181,18 +193,19 @@ def record(directory, page, drawn, claims):
     rows.json with the measured numbers of the claims that the copied figures draw. `drawn`: entries of figures.json by
     identifier.
     """
-    text, rows = PAGE, {}
+    text, rows, files = PAGE, {}, {}
     for figure in FIGURES:
         on_record = page / f"{figure.stem}.svg"
         if figure.id not in drawn or not (figure.thesis or on_record.is_file()):
             continue
-        write(on_record, (directory / on_record.name).read_bytes())
+        files[on_record] = (directory / on_record.name).read_bytes()
         rows[figure.id] = measured(figure, claims)
         name = f"Figure {figure.thesis}" if figure.thesis else "Ours"
         text += f"\n## {name}: {figure.title}\n\n![{figure.title}]({on_record.name})\n\n{drawn[figure.id]['caption']}"
         text += f" Differs: {figure.differs}\n" if figure.differs else "\n"
-    write(page / "figures.md", text)
-    write(page / ROWS, json.dumps(rows, indent=1, ensure_ascii=False) + "\n")
+    files[page / "figures.md"] = text
+    files[page / ROWS] = json.dumps(rows, indent=1, ensure_ascii=False) + "\n"
+    write_all(files)
 
 
 def run(chosen):

@@ -7,9 +7,9 @@ import numpy as np
 
 from hapbench.errors import InputError
 from hapbench.results import SCENARIO, SUMMARY
-from hapbench_command import DIFFERENT, SUCCESS, write
+from hapbench_command import DIFFERENT, SUCCESS, write_all
 from hapbench_report.markup import in_colour, text
-from hapbench_report.page import place_live_page, whole_page
+from hapbench_report.page import live_page_in, whole_page
 from hapbench_report.replay import player, replays, surface_of
 from hapbench_report.runs import provenance_of, provenance_section
 
@@ -63,8 +63,8 @@ def report(options):
     file = options.out or common_folder(options.runs) / "report.html"
     if file.suffix not in (".html", ".htm"):
         raise InputError(f'--out {file}: got "{file.suffix}"; allowed: .html')
-    write(file, page.encode(errors="replace"))  # a path may contain bytes that are not UTF-8
-    place_live_page(file.parent)
+    # A path may contain bytes that are not UTF-8.
+    write_all({file: page.encode(errors="replace"), **live_page_in(file.parent)})
     if not options.quiet:
         print(
             f"page of {len(runs)} run{'s' if len(runs) > 1 else ''} in {file}, {file.stat().st_size / 1e6:.1f} MB"

@@ -11,7 +11,7 @@ from hapbench_command import (
     exit_status,
     leave,
     stop_on_ctrl_c,
-    write,
+    write_all,
 )
 
 if __name__ == "__main__":
@@ -21,7 +21,7 @@ from hapbench.errors import InputError
 
 from .figures import load_figures
 from .ledger import load_claims
-from .page import place_live_page, thesis_page
+from .page import live_page_in, thesis_page
 from .runs import REPLAY_DIRECTORY, load_runs
 
 # Scenes of the replay: (scenario, further settings, algorithms). The page initially shows the first two algorithms.
@@ -128,8 +128,7 @@ def run(options):
         runs, ledger, figures, [recorded[path] for path in replayed if path in recorded]
     )
     out = options.out or options.results / "report.html"
-    write(out, page)
-    place_live_page(out.parent)
+    write_all({out: page, **live_page_in(out.parent)})
     print(f"{out}: {len(page.encode()) / 1e6:.1f} MB, {len(runs)} runs")
 
 

@@ -2,7 +2,6 @@
 reader moves the tool of a scene."""
 import json
 import os
-import shutil
 from pathlib import Path
 from urllib.parse import quote
 
@@ -133,8 +132,11 @@ def live_link(scenario):
     return f'<p><a href="{LIVE}#scenario={scene}">Touch this scene in the live page</a></p>'
 
 
-def place_live_page(folder):
-    """Copies the live page, if it exists, into the folder of the pages that link to it."""
-    page = live_page()
-    if page and page != folder / LIVE:
-        shutil.copyfile(page, folder / LIVE)
+def live_page_in(folder):
+    """Returns a dict from the live page's file in `folder` to its content, for write_all(): the folder holds pages that
+    link to the live page. The dict is empty if the live page does not exist, or is in this folder already.
+    """
+    page, copy = live_page(), folder / LIVE
+    if not page or copy.exists() and copy.samefile(page):
+        return {}
+    return {copy: page.read_bytes()}
