@@ -68,6 +68,37 @@ class Axes(unittest.TestCase):
         self.assertEqual(names_of(planar, "velocity"), ["vx", "vz"])
         self.assertEqual(planar["stiffness"], whole["stiffness"])
 
+    def test_a_quantity_with_a_row_that_is_no_number_is_named(self):
+        """The warning has the first row, the number of rows and what the audit does without the quantity."""
+        plain = log("t,px,pz,fx,fz", ALONG, DEPTH, ACROSS, NORMAL)
+        without = audit(plain)
+        file = scratch_folder(self) / "log.csv"
+        for quantity, names, rows, text, consequence in (
+            ("contacts", ("contacts",), range(len(TIME)), "False", "the force decides which rows"),
+            ("contacts", ("contacts",), [41], "nan", "the force decides which rows"),
+            ("velocity", ("vx", "vz"), [7, 41], "x", "differences of the positions"),
+            ("measured", ("measured_x", "measured_z"), [5], "inf", "does not check whether"),
+        ):
+            lines = text_of(plain | dict.fromkeys(names, ZERO)).splitlines()
+            for row in rows:
+                lines[row + 1] = ",".join([*lines[row + 1].split(",")[:-1], text])
+            file.write_text("\n".join(lines) + "\n")
+            words = ("audit", file, "--json", "--out", file.parent / "out")
+            found = json.loads(hapbench(*words))
+            (warning,) = set(found["warnings"]) - set(without["warnings"])
+            column = f"{4 + len(names) + 1} {names[-1]}"
+            self.assertIn(
+                f'{quantity}: line {rows[0] + 2}: got "{text}" in column {column}; rows without a '
+                f"finite number: {len(rows)} of {len(TIME)}; ",
+                warning,
+            )
+            self.assertIn(consequence, warning)
+            self.assertNotIn(quantity, found["columns"])
+            self.assertEqual(found["energy"], without["energy"])
+        given = plain | {"contacts": np.where(TIME == TIME[9], np.nan, 1.0)}
+        (warning,) = set(audit(given)["warnings"]) - set(without["warnings"])
+        self.assertIn("contacts: row 10: got nan in column 6 contacts", warning)
+
     def test_one_axis_of_a_planar_log_can_be_named(self):
         planar = log("t,x,y,fx,fy", ALONG, DEPTH, ACROSS, NORMAL)
         for columns, position, force in (
@@ -153,8 +184,9 @@ class Contact(unittest.TestCase):
         file.write_text(file.read_text().replace(";velocity", ";load"))
         file.write_text(re.sub(r"(?m)^0,500;(.*);.*$", r"0,500;\1;1.200", file.read_text()))
         done = ran(PROGRAM, *words, "--columns", "velocity=load")
-        self.assertIn('line 502: column 4 load: got "1.200"; allowed: a finite number', done.stderr)
-        self.assertIn("the columns of velocity were not read", done.stderr)
+        self.assertIn('velocity: line 502: got "1.200" in column 4 load', done.stderr)
+        self.assertIn("the audit does not use this quantity", done.stderr)
+        self.assertIn("the point may separate thousands", done.stderr)
 
     def test_a_few_rows_in_contact_are_audited(self):
         for rows in ([300], [300, 301], [300, 700], [0], [len(TIME) - 1]):

@@ -31,7 +31,13 @@ MAX_MISSING = 50
 # difference.
 FOLLOWED = 0.05
 TOUCH = "touch_N="  # prefix of the field touch_N in --set
-EXTRA = ("velocity", "measured", "contacts")  # quantities that `hapbench import` does not read
+# Quantities that `hapbench import` does not read, and what the audit does without each of them.
+WITHOUT = {
+    "velocity": "it computes velocities from differences of the positions",
+    "measured": "it does not check whether the device renders the force",
+    "contacts": "the force decides which rows are in contact (--set touch_N=... sets the threshold)",
+}
+EXTRA = tuple(WITHOUT)
 ALL = [name for name in QUANTITIES] + list(EXTRA)
 
 
@@ -196,13 +202,8 @@ def log_of(recording, options, wanted):
             continue
         scale = 1.0 if quantity != "measured" else read.scales.get("force", 1.0)
         values = np.column_stack([scale * recording.column(column)[kept] for column in found])
-        bad = np.argwhere(~np.isfinite(values))
-        if len(bad):
-            row, column = kept[bad[0][0]], found[bad[0][1]]
-            read.notes.append(
-                f"{recording.location(row)}: column {names.title(column)}: got {recording.shown(column, row)}; allowed: "
-                f"a finite number{recording.cause_of_point(column, row)}: the columns of {quantity} were not read"
-            )
+        if not np.isfinite(values).all():
+            read.notes.append(unused_text(quantity, recording, found, kept, values))
             continue
         extra[quantity] = values if quantity == "contacts" else on_axes(values, axes)
         used[quantity] = [
@@ -238,6 +239,20 @@ def log_of(recording, options, wanted):
     log.quantum_m, log.quantum_N = quanta(log.position), quanta(log.force)
     log.held, log.held_force = held_of(log, log.position), held_of(log, log.force)
     return log
+
+
+def unused_text(quantity, recording, columns, kept, values):
+    """Returns the warning that a quantity of EXTRA is not used, because some of its values are not finite numbers. It
+    names the first of these values. `columns`: columns of the quantity. `kept`: indices of the rows of the log in
+    `recording`. `values`: numbers in these rows and columns."""
+    unknown = ~np.isfinite(values)
+    rows = np.flatnonzero(unknown.any(axis=1))
+    row, column = kept[rows[0]], columns[unknown[rows[0]].argmax()]
+    return (
+        f"{quantity}: {recording.row_word} {recording.row_numbers[row]}: got {recording.shown(column, row)} in column "
+        f"{recording.title(column)}; rows without a finite number: {len(rows)} of {len(kept)}; the audit does not use "
+        f"this quantity: {WITHOUT[quantity]}; allowed: a number in every row{recording.cause_of_point(column, row)}"
+    )
 
 
 def missing_rows(steps):
