@@ -122,8 +122,74 @@ class Damaged(Given):
         cut(run / "contacts.csv", 500)
         self.assert_warns(run, "contacts.csv: 498 rows, but trajectory.csv", commands=["report"])
         (run / "trajectory.csv").unlink()
-        self.assert_refuses(run, "the file was removed: repeat the run", ["plot"])
-        self.assert_warns(run, "trajectory.csv: missing, although", commands=["report"])
+        absent = "trajectory.csv: is missing, although the run has written it: repeat the run"
+        self.assert_refuses(run, absent, ["plot"])
+        self.assert_warns(run, absent, commands=["report"])
+
+    def test_rows_that_are_not_in_the_order_of_time(self):
+        for name in ("trajectory.csv", "energy.csv"):
+            run = self.copy("run")
+            file = run / name
+            lines = file.read_text().splitlines(keepends=True)
+            file.write_text("".join([*lines[:99], lines[100], lines[99], *lines[101:]]))
+            self.assert_refuses(run, f"{file}: line 101: step: got 98 after 99; allowed: rows")
+            put(file, 100, "step", "98")
+            put(file, 101, "step", "99")
+            self.assert_refuses(run, f"{file}: line 101: time_s: got ")
+        run = self.copy("run")
+        file = run / "trajectory.csv"
+        lines = file.read_text().splitlines(keepends=True)
+        file.write_text("".join([*lines[:100], lines[99], *lines[101:]]))
+        gap = "999 of 1000 rows; the first missing row is of step 99"
+        self.assert_warns(run, f"{file}: {gap}", commands=["plot"])
+
+    def test_a_summary_with_other_values_than_the_program_writes(self):
+        for key, value, text in (
+            ("metrics/force_max_N", "a", '/metrics/force_max_N: got "a"; allowed: a number'),
+            ("metrics/final_position_m", [0, True, 0], "/metrics/final_position_m/1: got true;"),
+            ("passivity/energy_min_J", "NaN", '/passivity/energy_min_J: got "NaN"; allowed'),
+            ("steps", "1000", '/steps: got "1000"; allowed: a number'),
+            ("outcome", "exploded", '/outcome: got "exploded"; allowed: "completes", "leaves_'),
+        ):
+            run = self.copy("run")
+            summary = json.loads((run / "summary.json").read_text())
+            *section, name = key.split("/")
+            (summary[section[0]] if section else summary)[name] = value
+            (run / "summary.json").write_text(json.dumps(summary))
+            self.assert_refuses(run, f"{run / 'summary.json'}: {text}")
+
+    def test_why_a_table_is_not_there(self):
+        """A message names the cause that is true, and a fix."""
+
+        def folder(file):
+            file.mkdir()
+
+        def cycle(file):
+            file.symlink_to(file.name)
+
+        def dangling(file):
+            file.symlink_to("elsewhere.csv")
+
+        def packed(file):
+            file.with_name(f"{file.name}.gz").write_bytes(b"")
+
+        for name, words in (("trajectory.csv", ()), ("energy.csv", ("--y", "energy"))):
+            for change, text in (
+                (folder, "is a folder, not a file: remove the folder"),
+                (cycle, f"is a link to {name}, which leads in a circle: remove the link"),
+                (dangling, "is a link to elsewhere.csv, which does not exist: remove the link"),
+                (packed, f"is missing, but {name}.gz is there: decompress {name}.gz"),
+            ):
+                run = self.copy("run")
+                (run / name).unlink()
+                change(run / name)
+                status, error = called("plot", run, *words)
+                self.assertEqual((status, error.count("error")), (2, 1), error)
+                self.assertIn(f"{run / name}: {text}", error.splitlines()[-1])
+                self.assert_warns(run, f"{name}: {text}", commands=["report"])
+        self.assert_warns(run, "energy.csv: is missing, but", commands=["plot"])
+        (run / "scenario.effective.json").unlink()
+        self.assertIn("scenario.effective.json: is missing, although", called("plot", run)[1])
 
     def test_a_cut_last_line_is_refused(self):
         for size, text in ((1, f"line 301: {CUT}"), (12, "line 301: "), (4, "line 301: ")):

@@ -8,8 +8,8 @@ import numpy as np
 
 from hapbench.columns import header, read_columns
 from hapbench.errors import InputError
-from hapbench.results import at
 from hapbench_command import SCHEMA, nearest
+from hapbench_report.completeness import absence_of, is_recorded
 from hapbench_report.markup import column
 from hapbench_report.recording import REQUIRED, settled_rows
 
@@ -116,7 +116,9 @@ def quantity(name, runs):
             f"{' or '.join(sorted(set(known.values())) or [TRAJECTORY])}{hint}"
         )
     if not any(has(run, found) for run in runs):
-        lacks = found.columns[0] if found.file in tables_of(runs[0]) else found.file
+        if found.file not in tables_of(runs[0]):
+            raise InputError(f"--y {name}: {without_table(runs[0], found.file)}")
+        lacks = found.columns[0]
         raise InputError(
             f"--y {name}: {runs[0].folder}: has no {lacks}; run it with --set {switch_of(lacks)}=true"
         )
@@ -134,6 +136,13 @@ def switch_of(lacks):
         for field, about in record.items()
         if re.search(rf"\b{re.escape(lacks)}\b", about["description"])
     )
+
+
+def without_table(run, table):
+    """Returns the text that a table of a run is not there, and what to do."""
+    if is_recorded(run, table) and not run.trials:
+        return f"{run.folder / table}: {absence_of(run.folder / table)}"
+    return f"{run.folder}: has no {table}; run it with --set {switch_of(table)}=true"
 
 
 def has(run, quantity):
@@ -157,12 +166,7 @@ class Samples:
             wanted.setdefault(q.file, {"time_s"}).update(q.columns)
         present, self.failed = tables_of(run), failed(run)
         if TRAJECTORY not in present:
-            was_there = at(run.scenario, "/record/trajectory") is True and not run.trials
-            raise InputError(
-                f"{run.folder}: has no {TRAJECTORY}; "
-                + ("the file was removed: repeat the run" if was_there else "run it with ")
-                + ("" if was_there else f"--set {switch_of(TRAJECTORY)}=true")
-            )
+            raise InputError(without_table(run, TRAJECTORY))
         tables = {
             file: finite_columns(run.folder / file, sorted(columns))
             for file, columns in wanted.items()

@@ -1,11 +1,12 @@
 """The runs in a results directory (every directory with a summary.json), and their provenance."""
 import json
-from functools import cached_property
+from functools import cache, cached_property
 from pathlib import Path
 
 from hapbench import results
 from hapbench.errors import ResultError
-from hapbench.results import at, member, number_or_none, objects, read_object
+from hapbench.results import at, member, number_or_none, objects, read_object, shown
+from hapbench_command import SCHEMA, require_name
 
 from .markup import cell, heading_cell, table, text
 
@@ -74,16 +75,37 @@ def load_runs(directory: Path, but=None):
 def load_run(directory, path):
     """Returns the run in a directory. `path`: Run.path of the result."""
     run = results.load_run(directory, Run)
+    file = directory / results.SUMMARY
     for key in ("metrics", "provenance", "targets", "tolerances"):
-        member(run.summary, key, dict, directory / results.SUMMARY)
+        member(run.summary, key, dict, file)
     for key in ("algorithm", "outcome"):
         if not isinstance(run.summary.get(key), str):
             raise ResultError(
-                f"{directory / results.SUMMARY}: line 1: no field {key}; allowed: the summary of a run, which the "
-                "program writes"
+                f"{file}: line 1: no field {key}; allowed: the summary of a run, which the program writes"
             )
+    require_name(f"{file}: /outcome: got", run.outcome, outcomes())
+    require_numbers({key: run.summary.get(key) for key in ("steps", "tolerances")}, file)
+    require_numbers(run.sections, file)
     run.path = path
     return run
+
+
+@cache
+def outcomes():
+    """Returns the names of the outcomes of a run, from the field `expect` of the schema of a scenario."""
+    schema = json.loads(SCHEMA.read_text(encoding="utf-8"))
+    return at(schema, "/else/properties/expect/properties/outcome/anyOf/0/enum")
+
+
+def require_numbers(value, file, pointer=""):
+    """Raises ResultError for a member of a JSON value that is neither a finite number nor null."""
+    if isinstance(value, (dict, list)):
+        for key, part in value.items() if isinstance(value, dict) else enumerate(value):
+            require_numbers(part, file, f"{pointer}/{key}")
+    elif value is not None and number_or_none(value) is None:
+        raise ResultError(
+            f"{file}: {pointer}: got {shown(value)}; allowed: a number or null; the file was edited: repeat the run"
+        )
 
 
 def plugin_text(run):
