@@ -21,6 +21,7 @@ from hapbench_style import SHEETS, legend_columns, picture, plt
 
 setUpModule = make_runs
 ALWAYS = (-np.inf, np.inf)
+LOG = SOURCE / "tests/data/loop.csv"
 
 
 class Plot(Given):
@@ -131,7 +132,11 @@ class Plot(Given):
         self.assert_shows(bur.with_suffix(".svg"), "outlines: the tool at four times")
 
     def test_bad_input(self):
-        mesh, sweep = self.root / "mesh", self.root / "sweep"
+        mesh, sweep, table = (self.root / name for name in ("mesh", "sweep", "table.csv"))
+        table.write_text("a,b\n1,2\n")
+        trace = mesh / "contact_trace.csv"
+        trace.write_text("time_s,x_m\n")
+        self.addCleanup(trace.unlink)
         for words, message in (
             ((mesh, "--y", "forse"), 'nearest valid name: "force"'),
             ((mesh, "--y", "qqq"), "or a column of trajectory.csv: step, time_s,"),
@@ -157,6 +162,11 @@ class Plot(Given):
             ),
             (("report", sweep), "is a sweep"),
             (("report", mesh, "--out", "x.pdf"), "allowed: .html"),
+            ((table,), f'{table}: is a file, not a folder; allowed: a folder that "hapbench run"'),
+            (("report", LOG), f'{LOG}: is a file, not a folder; allowed: a folder that "hapbench'),
+            ((sweep / "sweep.csv",), f"is a table of the folder {sweep}; allowed: {sweep}"),
+            ((trace,), f"{trace}: is a file of a run, and is not drawn alone; allowed: {mesh}, "),
+            (("report", trace), f"{trace}: is a file of a run, and is not drawn alone; allowed: "),
         ):
             error = (
                 drawn(*words, expected=2) if words[0] == "report" else plotted(*words, expected=2)

@@ -15,6 +15,15 @@ from hapbench_report.markup import column
 from hapbench_report.runs import load_run, load_runs
 
 SUMMARY, SWEEP, COMPARISON = "summary.json", "sweep.csv", "comparison.csv"
+# Files that stand for the folder of their run, if they are given as an argument.
+STAND_FOR_RUN = (SUMMARY, "trajectory.csv")
+# Tables of folders of compare, sweep, limit, tune and converge.
+TABLES_OF_FOLDERS = (
+    *(SWEEP, COMPARISON, "ranking.csv"),
+    *("limit.csv", "limit_runs.csv", "tune.csv", "tune_trials.csv"),
+    *("converge.csv", "converge_levels.csv", "convergence.csv", "convergence_model.csv"),
+)
+LOG_HEADER = "# hapbench loop log:"  # begin of the first line of a log of a haptic loop
 # Matches the name of a repetition's folder in a comparison with --seeds.
 SEED_FOLDER = re.compile(r"seed_(\d+)")
 # Titles of fields whose names are too short to be clear, and symbols of fields in formulas.
@@ -52,14 +61,10 @@ def given_runs(words, with_contacts=False):
     found = {}
     for word in words:
         folder = Path(word)
-        if folder.is_file() and (folder.parent / SUMMARY).is_file():
-            folder = folder.parent  # the argument RUN/trajectory.csv stands for RUN
+        if folder.name in STAND_FOR_RUN and (folder.parent / SUMMARY).is_file():
+            folder = folder.parent
         if not folder.is_dir():
-            raise InputError(
-                f'{folder}: no such folder; allowed: a folder that "hapbench run", '
-                '"compare" or "sweep" '
-                f"wrote{nearest(folder.name, [beside.name for beside in folder.parent.glob('*/')])}"
-            )
+            raise InputError(why_no_folder(folder))
         runs, lacks = (
             ([load_run(folder, folder.name)], [])
             if (folder / SUMMARY).is_file()
@@ -81,6 +86,25 @@ def given_runs(words, with_contacts=False):
             print_warning(text)
     distinguish(run.algorithm for run in found.values())
     return list(found.values())
+
+
+def why_no_folder(path):
+    """Returns why a path, which is not a folder, is not drawn, and what is allowed."""
+    written = 'a folder that "hapbench run", "compare" or "sweep" wrote'
+    if not path.exists():
+        close = nearest(path.name, [beside.name for beside in path.parent.glob("*/")])
+        return f"{path}: no such folder; allowed: {written}{close}"
+    if (path.parent / SUMMARY).is_file():
+        return (
+            f"{path}: is a file of a run, and is not drawn alone; allowed: {path.parent}, the folder of the run (for "
+            '"hapbench plot", --y also takes columns of its tables)'
+        )
+    if path.name in TABLES_OF_FOLDERS:
+        return f"{path}: is a table of the folder {path.parent}; allowed: {path.parent}"
+    return (
+        f'{path}: is a file, not a folder; allowed: {written}, or for "hapbench plot" a log of a loop, whose first line '
+        f'begins with "{LOG_HEADER}" ("hapbench audit" draws other logs of time, position and force)'
+    )
 
 
 def compared(folder):

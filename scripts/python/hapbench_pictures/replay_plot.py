@@ -14,10 +14,10 @@ from hapbench.results import number_or_none
 from hapbench_looks import SERIES
 from hapbench_style import GREY, SETTINGS, curve, legend_above, legend_height, plt
 
+from .given import LOG_HEADER
 from .panels import SPANS
 
 REPLAY, COMPARISON = "replay.csv", "replay_comparison.csv"
-HEADER = "# hapbench loop log:"
 # A call of the loop is late if the time since the previous call exceeds LATE times the period of the loop.
 LATE = 1.5
 MODES = {  # columns, title and factor of the quantity that the loop sends to the device, by mode
@@ -49,10 +49,10 @@ def log_of(path):
     if not file.is_file():
         return None
     with file.open(encoding=ENCODING, errors="replace") as lines:
-        is_log = lines.readline().startswith(HEADER)
+        is_log = lines.readline().startswith(LOG_HEADER)
     if path.is_dir() and not is_log:
         raise InputError(
-            f'{file}: line 1: does not begin with "{HEADER}"; allowed: a log of a loop'
+            f'{file}: line 1: does not begin with "{LOG_HEADER}"; allowed: a log of a loop'
         )
     return file if is_log else None
 
@@ -81,7 +81,7 @@ def log_text(file):
     first, _, rest = data.partition(b"\n")
     second, _, rows = rest.partition(b"\n")
     try:
-        about = json.loads(text_of(first, file).removeprefix(HEADER))
+        about = json.loads(text_of(first, file).removeprefix(LOG_HEADER))
     except ValueError as error:
         raise InputError(f"{file}: line 1: not JSON: {error}") from error
     if not isinstance(about, dict) or about.get("mode") not in MODES:
