@@ -244,9 +244,11 @@ def stop_on_ctrl_c(name):
 
 
 def stopped():
-    return (
-        f"stopped; written: {', '.join(_written)}" if _written else "stopped; nothing was written"
-    )
+    return f"stopped; {written()}"
+
+
+def written():
+    return f"written: {', '.join(_written)}" if _written else "nothing was written"
 
 
 def leave(status):
@@ -476,11 +478,26 @@ def _bytes_of(data):
 
 @contextmanager
 def named_in_errors(file):
-    """Makes an OSError in the `with` statement name `file`, and not a temporary file or a folder."""
+    """Makes an OSError in the `with` statement, which writes `file`, name this file and not a temporary file or a
+    folder."""
     try:
         yield
     except OSError as error:
         raise OSError(error.errno, error.strerror, str(file)) from error
+
+
+# Cause and fix of errors that occur when a file is written.
+WHY_UNWRITABLE = {
+    errno.EISDIR: "is a folder; allowed: the name of a file",
+    errno.EEXIST: "a part of the path is a file, not a folder; allowed: a path of folders",
+    errno.ENOTDIR: "a part of the path is a file, not a folder; allowed: a path of folders",
+    errno.ENOENT: "cannot be created there; allowed: a folder on a disk",
+    errno.ELOOP: "is a link that leads in a circle; allowed: another name",
+    errno.ENAMETOOLONG: "the name is too long; allowed: a shorter name",
+    errno.EACCES: "no permission to write there; allowed: a folder in which you may write",
+    errno.EPERM: "no permission to write there; allowed: a folder in which you may write",
+    errno.EROFS: "the disk is read-only; allowed: a folder in which you may write",
+}
 
 
 def _target_of(link):
@@ -502,9 +519,13 @@ def unwritable(error):
         print_error(f"cannot write to standard output: {error.strerror or error}")
         return FAILED
     if error.errno in (errno.ENOSPC, errno.EDQUOT, errno.EIO):
-        print_error(f"cannot write {error.filename}: {error.strerror}")
+        print_error(
+            f"cannot write {error.filename}: {error.strerror}; {written()}; free some space, or name a folder on "
+            "another disk with --out"
+        )
         return FAILED
-    print_error(f"--out {error.filename}: {error.strerror}")
+    cause = WHY_UNWRITABLE.get(error.errno, f"{error.strerror}; allowed: another name")
+    print_error(f"--out {error.filename}: {cause}")
     return BAD_INPUT
 
 

@@ -186,10 +186,15 @@ class Damaged(Given):
                 status, error = called("plot", run, *words)
                 self.assertEqual((status, error.count("error")), (2, 1), error)
                 self.assertIn(f"{run / name}: {text}", error.splitlines()[-1])
-                self.assert_warns(run, f"{name}: {text}", commands=["report"])
+                if change is folder:
+                    self.assert_warns(run, f"{name}: {text}", commands=["report"])
         self.assert_warns(run, "energy.csv: is missing, but", commands=["plot"])
         (run / "scenario.effective.json").unlink()
         self.assertIn("scenario.effective.json: is missing, although", called("plot", run)[1])
+        status, error = called("report", self.root / "run", run, "--tolerance", "0")
+        text = f"{run / 'scenario.effective.json'}: is missing, although the run has written it"
+        self.assertEqual((status, error.count("\n")), (2, 1))
+        self.assertIn(f"{text}: repeat the run", error)
 
     def test_a_cut_last_line_is_refused(self):
         for size, text in ((1, f"line 301: {CUT}"), (12, "line 301: "), (4, "line 301: ")):

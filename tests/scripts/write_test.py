@@ -4,12 +4,16 @@ import os
 import stat
 import threading
 import unittest
+from contextlib import redirect_stderr
+from io import StringIO
 from pathlib import Path
 from unittest import mock
 
 from fixture import scratch_folder
 
-from hapbench_command import write, write_all
+from hapbench.columns import header, read_columns, read_text
+from hapbench.errors import ResultError
+from hapbench_command import exit_status, write, write_all
 
 
 class Write(unittest.TestCase):
@@ -91,6 +95,45 @@ class Write(unittest.TestCase):
             self.assertEqual(caught.exception.filename, str(files[1]))
             self.assertEqual(sorted(os.listdir(self.root)), old)
             self.assertEqual([(self.root / name).read_text() for name in old], ["old"] * len(old))
+
+    def test_errors_name_the_cause_and_a_fix(self):
+        (self.root / "a").symlink_to("b")
+        (self.root / "b").symlink_to("a")
+        (self.root / "file").write_text("")
+        (self.root / "full").symlink_to("/dev/full")
+        for name, status, text in (
+            ("", 2, f"--out {self.root}: is a folder; allowed: the name of a file"),
+            (
+                "a",
+                2,
+                f"--out {self.root / 'a'}: is a link that leads in a circle; allowed: another",
+            ),
+            (
+                "file/x",
+                2,
+                "x: a part of the path is a file, not a folder; allowed: a path of folders",
+            ),
+            ("n" * 300, 2, "the name is too long; allowed: a shorter name"),
+            ("full", 1, "full: No space left on device; "),
+        ):
+            printed = StringIO()
+            with redirect_stderr(printed):
+                found = exit_status("test", "", lambda name=name: write(self.root / name, "data"))
+            self.assertEqual((found, printed.getvalue().count("\n")), (status, 1), printed)
+            self.assertIn(text, printed.getvalue())
+            self.assertNotIn("Errno", printed.getvalue())
+
+    def test_files_that_cannot_be_read(self):
+        (self.root / "a").symlink_to("a")
+        for name, text in (
+            ("missing", "no such file; allowed: a file that hapbench wrote; repeat the command"),
+            ("", "is a folder; allowed: a file that hapbench wrote"),
+            ("a", "is a link that leads in a circle; allowed: a file that hapbench wrote"),
+        ):
+            for read in (read_text, header, read_columns):
+                with self.assertRaises(ResultError) as caught:
+                    read(self.root / name)
+                self.assertTrue(str(caught.exception).startswith(f"{self.root / name}: {text}"))
 
 
 if __name__ == "__main__":

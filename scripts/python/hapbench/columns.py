@@ -1,8 +1,11 @@
 """Reads CSV files. Columns of numbers are read with numpy in chunks, so that a million rows take only seconds. Other
 tables are read as rows of texts."""
 import csv
+import errno
 import io
 import math
+import shlex
+from contextlib import contextmanager
 
 import numpy as np
 
@@ -30,19 +33,38 @@ def text_of(data, file, line=1):
 
 def read_text(file):
     """Returns the content of a text file that a user may have edited."""
+    return text_of(read_bytes(file), file)
+
+
+def read_bytes(file):
+    with readable(file):
+        return file.read_bytes()
+
+
+@contextmanager
+def readable(file):
+    """Turns an OSError in the `with` statement, which reads `file`, into a ResultError with the cause and a fix."""
     try:
-        return text_of(file.read_bytes(), file)
+        yield
     except OSError as error:
-        raise ResultError(f"{file}: cannot be read: {error}") from error
+        again = "allowed: a file that hapbench wrote; repeat the command that writes it"
+        permission = f"no permission to read the file; chmod u+r {shlex.quote(str(file))} gives it"
+        causes = {
+            errno.ENOENT: f"no such file; {again}",
+            errno.EISDIR: f"is a folder; {again}",
+            errno.ENOTDIR: f"a part of the path is a file, not a folder; {again}",
+            errno.ELOOP: f"is a link that leads in a circle; {again}",
+            errno.EACCES: permission,
+            errno.EPERM: permission,
+        }
+        cause = causes.get(error.errno, f"cannot be read: {error.strerror}; {again}")
+        raise ResultError(f"{file}: {cause}") from error
 
 
 def header(file):
     """Returns the names of the columns, from the first line of a table."""
-    try:
-        with file.open("rb") as stream:
-            first = stream.readline()
-    except OSError as error:
-        raise ResultError(f"{file}: cannot be read: {error}") from error
+    with readable(file), file.open("rb") as stream:
+        first = stream.readline()
     return text_of(first, file).strip().split(",")
 
 
@@ -59,7 +81,7 @@ def read_columns(file, names=None, may_be_empty=False, required=()):
         raise ResultError(f"{file}: line 1: no column {absent[0]}")
     wanted, parts, last = [every.index(name) for name in names], [], b""
     finite = [name in required for name in names]
-    with file.open("rb") as stream:
+    with readable(file), file.open("rb") as stream:
         stream.readline()
         while piece := b"".join(stream.readlines(PIECE_BYTES)):
             try:

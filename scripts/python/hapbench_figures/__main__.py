@@ -8,6 +8,7 @@ from importlib import import_module
 from pathlib import Path
 
 import hapbench_style as style
+from hapbench.columns import read_bytes
 from hapbench.errors import InputError, ResultError
 from hapbench.results import Files, MissingResult, read_json
 from hapbench_command import (
@@ -15,6 +16,7 @@ from hapbench_command import (
     SUCCESS,
     Arguments,
     exit_status,
+    named_in_errors,
     print_error,
     write,
     write_all,
@@ -198,7 +200,7 @@ def record(directory, page, drawn, claims):
         on_record = page / f"{figure.stem}.svg"
         if figure.id not in drawn or not (figure.thesis or on_record.is_file()):
             continue
-        files[on_record] = (directory / on_record.name).read_bytes()
+        files[on_record] = read_bytes(directory / on_record.name)
         rows[figure.id] = measured(figure, claims)
         name = f"Figure {figure.thesis}" if figure.thesis else "Ours"
         text += f"\n## {name}: {figure.title}\n\n![{figure.title}]({on_record.name})\n\n{drawn[figure.id]['caption']}"
@@ -217,7 +219,8 @@ def run(chosen):
         raise InputError(f"{chosen.results}: no such directory")
     directory = Path(chosen.out)
     style.plt.rcParams.update(style.SETTINGS)
-    directory.mkdir(parents=True, exist_ok=True)
+    with named_in_errors(directory):
+        directory.mkdir(parents=True, exist_ok=True)
     entries, skipped, bad = [], False, {}
     for figure in figures:
         results = Files(chosen.results)

@@ -8,9 +8,10 @@ import json
 import math
 import zlib
 
-from hapbench.columns import is_number, read_rows
+from hapbench.columns import is_number, read_bytes, read_rows
 from hapbench.errors import InputError
 from hapbench.results import SCENARIO, SUMMARY, read_object
+from hapbench_report.completeness import absence_of
 
 SWEEP, TRAJECTORY = "sweep.csv", "trajectory.csv"
 NO_RESULTS = (
@@ -111,6 +112,8 @@ def fields_of(run):
     """Returns the value of each field of a run's scenario as a text, by the path of the field. The text of a file is
     its name and a checksum of its contents. Expectations are excluded, because they do not change a run.
     """
+    if not (run / SCENARIO).is_file():
+        raise InputError(f"{run / SCENARIO}: {absence_of(run / SCENARIO)}")
     scenario = read_object(run / SCENARIO, parse_float=str, parse_int=str)
     found = dict(flat({key: value for key, value in scenario.items() if key != "expect"}))
     files = {
@@ -119,7 +122,7 @@ def fields_of(run):
         if path.endswith(".file") and (run / name).is_file()
     }
     return found | {
-        path: f"{file.name}, {zlib.crc32(file.read_bytes()):08x}" for path, file in files.items()
+        path: f"{file.name}, {zlib.crc32(read_bytes(file)):08x}" for path, file in files.items()
     }
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from hapbench.columns import CUT_LINE, ENCODING, is_finite_number, text_of
+from hapbench.columns import CUT_LINE, ENCODING, is_finite_number, read_bytes, readable, text_of
 from hapbench.errors import InputError
 from hapbench.results import number_or_none
 from hapbench_looks import SERIES
@@ -48,7 +48,7 @@ def log_of(path):
         )
     if not file.is_file():
         return None
-    with file.open(encoding=ENCODING, errors="replace") as lines:
+    with readable(file), file.open(encoding=ENCODING, errors="replace") as lines:
         is_log = lines.readline().startswith(LOG_HEADER)
     if path.is_dir() and not is_log:
         raise InputError(
@@ -77,7 +77,7 @@ class Log:
 
 def log_text(file):
     """Returns (object of the first line, names of the columns, bytes of the rows) of a log."""
-    data = file.read_bytes()
+    data = read_bytes(file)
     first, _, rest = data.partition(b"\n")
     second, _, rows = rest.partition(b"\n")
     try:

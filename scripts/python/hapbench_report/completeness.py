@@ -6,7 +6,7 @@ from math import ceil
 
 import numpy as np
 
-from hapbench.columns import PIECE_BYTES, header, read_columns
+from hapbench.columns import PIECE_BYTES, header, read_columns, readable
 from hapbench.errors import ResultError
 from hapbench.results import SCENARIO, SUMMARY, at
 from hapbench_command import plain
@@ -67,7 +67,7 @@ def scanned(file):
     """Returns (number of rows of a table, list with a text about the first field that is not finite). Columns of
     REQUIRED are excluded from the text, because their readers reject such a field."""
     names, line, first, count = header(file), 1, "", 0
-    with file.open("rb") as stream:
+    with readable(file), file.open("rb") as stream:
         stream.readline()
         while piece := b"".join(stream.readlines(PIECE_BYTES)):
             for match in NOT_FINITE.finditer(piece):

@@ -4,6 +4,7 @@ import re
 from dataclasses import dataclass
 from pathlib import Path
 
+from hapbench.columns import read_bytes
 from hapbench.errors import InputError
 from hapbench.results import member, objects, read_json, shown
 
@@ -76,7 +77,7 @@ def figure(entry, i, file):
         str(entry.get("thesis_figure") or ""),
         caption,
         list(map(str, sources)),
-        drawing.read_bytes(),
+        read_bytes(drawing),
     )
 
 

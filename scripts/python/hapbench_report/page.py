@@ -5,6 +5,7 @@ import os
 from pathlib import Path
 from urllib.parse import quote
 
+from hapbench.columns import read_bytes
 from hapbench.results import at, objects_in
 
 from .figures import figures_section
@@ -139,4 +140,4 @@ def live_page_in(folder):
     page, copy = live_page(), folder / LIVE
     if not page or copy.exists() and copy.samefile(page):
         return {}
-    return {copy: page.read_bytes()}
+    return {copy: read_bytes(page)}
