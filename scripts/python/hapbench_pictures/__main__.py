@@ -11,7 +11,8 @@ PLOT_NOTES = [
     "or any column of the runs' tables. force, speed and other vectors are drawn as their length; "
     "--y fx_N,fy_N,fz_N draws components.",
     "Runs: several folders are drawn into one picture; the folder of a comparison stands for all its runs. "
-    "Each force law has its colour. A "
+    "Each force law has its own colour; if all runs use one law, each run has its own colour. There are six such "
+    "colours; a seventh run has the look of the first. Runs that differ only in the seed share a colour. A "
     "circle marks the start of a path, a square its end, a triangle the first touch.",
     "Peaks: a peak of more than three times the range of settled contact is cut off and labelled "
     "with its value, and so is a peak that is 100 times (in a failed run 5 times) as large as the "
