@@ -6,9 +6,10 @@ import shutil
 import numpy as np
 
 from figure_checks import legend_labels
-from fixture import SOURCE
+from fixture import PROGRAM, SOURCE, ran
 from pictures_test import Given, make_root, plotted
 
+from hapbench_pictures.log_faults import COLUMNS
 from hapbench_pictures.panels import largest_shown
 from hapbench_pictures.replay_plot import Log, draw_logs
 from hapbench_style import SHEETS, plt
@@ -54,6 +55,52 @@ class Replays(Given):
         plt.close(figure)
         plotted(folder, LOG, "--out", self.root / "both.svg")
         self.assert_shows(self.root / "both.svg", "|force| [N]", "|difference| [N]")
+
+    def test_faults_for_which_a_replay_is_refused_are_named(self):
+        """Each warning has the line and the cause. `run --replay` rejects the same logs, except for a field nan and a
+        time that goes back."""
+        whole = LOG.read_text(encoding="utf-8").splitlines()
+        names = whole[1].split(",")
+        self.assertEqual(names, COLUMNS)
+        file = self.root / "faulty.csv"
+
+        def changed(lines, line, old, new):
+            self.assertIn(old, lines[line - 1])
+            return [*lines[: line - 1], lines[line - 1].replace(old, new, 1), *lines[line:]]
+
+        def field(name, text):
+            cells = whole[19].split(",")
+            cells[names.index(name)] = text
+            return [*whole[:19], ",".join(cells), *whole[20:]]
+
+        for lines, text in (
+            (whole, ""),
+            ([*whole[:9], "", *whole[9:]], ""),
+            ([*whole[:19], *whole[20:]], "line 20: got call 18 where call 17 is expected"),
+            ([*whole[:20], *whole[19:]], "line 21: got call 17 where call 18 is expected"),
+            (changed(whole, 1, '"scale":1.0', '"scale":0'), "line 1: mount.scale: got 0; allowed"),
+            (
+                changed(whole, 1, 'wxyz":[1.0', 'wxyz":[2.0'),
+                "orientation_wxyz: got a quaternion of",
+            ),
+            (changed(whole, 1, '"version":1', '"version":2'), "line 1: version: got 2; allowed: 1"),
+            (changed(whole, 1, '"ramp_s"', '"ramp"'), "line 1: mount.ramp_s: got null; allowed"),
+            (changed(whole, 2, "hx_m,hy_m", "hy_m,hx_m"), 'line 2: column 4: got "hy_m"; allowed:'),
+            (field("has", "-1"), 'line 20: has: got "-1"; allowed: a whole number >= 0'),
+            (field("hx_m", ""), "line 20: hx_m: got an empty field; allowed: a finite number"),
+            (field("hx_m", "nan"), 'line 20: hx_m: got "nan"; allowed: a finite number'),
+            (field("time_ns", "5"), "line 20: time_ns: got a time "),
+        ):
+            file.write_text("\n".join(lines) + "\n")
+            faults = Log(file).faults
+            self.assertEqual(len(faults), bool(text), (text, faults))
+            error = ran(PROGRAM, "plot", file, "--quiet").stderr if text else ""
+            self.assertEqual(error.count("warning"), bool(text))
+            self.assertIn(f"{file}: " if text else "", error)
+            self.assertIn(text, error)
+            is_accepted = not text or "nan" in text or "time_ns" in text
+            replayed = ran(PROGRAM, "run", "drag_molar", "--replay", file, "--out", self.root / "r")
+            self.assertEqual(replayed.returncode == 2, not is_accepted, replayed.stderr)
 
     def test_what_is_refused(self):
         folder = self.other()

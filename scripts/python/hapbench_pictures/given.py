@@ -102,8 +102,8 @@ def why_no_folder(path):
     if path.name in TABLES_OF_FOLDERS:
         return f"{path}: is a table of the folder {path.parent}; allowed: {path.parent}"
     return (
-        f'{path}: is a file, not a folder; allowed: {written}, or for "hapbench plot" a log of a loop, whose first line '
-        f'begins with "{LOG_HEADER}" ("hapbench audit" draws other logs of time, position and force)'
+        f'{path}: is a file, not a folder; allowed: {written}, or for "hapbench plot" a log of a loop, whose first '
+        f'line begins with "{LOG_HEADER}" ("hapbench audit" draws other logs of time, position and force)'
     )
 
 

@@ -11,10 +11,12 @@ import numpy as np
 from hapbench.columns import CUT_LINE, ENCODING, is_finite_number, read_bytes, readable, text_of
 from hapbench.errors import InputError
 from hapbench.results import number_or_none
+from hapbench_command import print_warning
 from hapbench_looks import SERIES
 from hapbench_style import GREY, SETTINGS, curve, legend_above, legend_height, plt
 
 from .given import LOG_HEADER
+from .log_faults import log_faults
 from .panels import SPANS
 
 REPLAY, COMPARISON = "replay.csv", "replay_comparison.csv"
@@ -59,16 +61,18 @@ def log_of(path):
 
 class Log:
     """A log of a haptic loop: at each call, the time since the first call [s], the quantity that the loop sends to the
-    device, and True if the call is late or the previous call is missing."""
+    device, and True if the call is late or the previous call is missing. `faults`: texts about faults of the file.
+    """
 
     def __init__(self, file):
-        about, names, rows = log_text(file)
+        about, names, text = log_text(file)
         self.columns, self.title, factor = MODES[about["mode"]]
-        rows = log_numbers(file, names, rows, ("call", "time_ns", *self.columns))
+        rows = log_numbers(file, names, text, ("call", "time_ns", *self.columns))
         if not len(rows):
             raise InputError(f"{file}: holds no call")
         self.name = f"{about['scenario']}, {'replay' if file.name == REPLAY else file.stem}"
         self.call, self.time = rows[:, 0].astype(int), 1e-9 * (rows[:, 1] - rows[0, 1])
+        self.faults = log_faults(file, about, names, text, self.call, self.time)
         self.applied, self.period = factor * rows[:, 2:], about["period_s"]
         self.late = np.append(
             False, (np.diff(self.time) > LATE * self.period) | (np.diff(self.call) > 1)
@@ -128,6 +132,8 @@ def draw_logs(files, sheet):
     """Returns the figure of one or two logs: the quantity that the loop sends to the device over time. For two logs,
     also draws their difference at each call that both logs contain."""
     logs = [read_log(file) for file in files]
+    for text in (text for log in logs for text in log.faults):
+        print_warning(text)
     if len({log.title for log in logs}) > 1:
         raise InputError(f"{files[0]}, {files[1]}: one log has forces, the other one positions")
     return figure_of(logs, sheet)

@@ -115,8 +115,8 @@ def steps_in_order(file):
         if back.size:
             row = int(back[0]) + 1  # the header is line 1, and row 0 is line 2
             raise ResultError(
-                f"{file}: line {row + 2}: {name}: got {plain(values[row])} after {plain(values[row - 1])}; allowed: rows "
-                f"in the order of time; the file was edited: sort its rows by step, or repeat the run"
+                f"{file}: line {row + 2}: {name}: got {plain(values[row])} after {plain(values[row - 1])}; allowed: "
+                "rows in the order of time; the file was edited: sort its rows by step, or repeat the run"
             )
     return columns["step"]
 
