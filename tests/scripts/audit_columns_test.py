@@ -10,6 +10,7 @@ from fixture import PROGRAM, hapbench, ran, scratch_folder
 os.environ.setdefault("HAPBENCH_PROGRAM", str(PROGRAM))
 
 from hapbench import InputError, audit  # noqa: E402  (finds the program in the environment)
+from hapbench_audit.log import log_of_table  # noqa: E402
 
 TIME = 0.001 * np.arange(1200)  # [s]
 STIFFNESS = 800.0  # [N/m]
@@ -167,6 +168,37 @@ class Contact(unittest.TestCase):
         out = file.parent / "out"
         self.assertIn("no row is in contact", hapbench("audit", file, "--out", out, expected=2))
         self.assertFalse(out.exists())
+
+    def test_further_quantities_have_the_units_of_their_names(self):
+        speed = np.gradient(DEPTH, TIME)
+        expected = log_of_table(
+            dict(zip("t x f v".split(), (TIME, DEPTH, NORMAL, speed))), {}, {}, False, None
+        )
+        for velocity, factor in (
+            ("v [mm/s]", 1e3),
+            ("v_mm_per_s", 1e3),
+            ("v_m_per_s", 1.0),
+            ("v (um/s)", 1e6),
+        ):
+            names = ("t", "x", "f [mN]", velocity, "f_measured [N]")
+            columns = (TIME, DEPTH, 1e3 * NORMAL, factor * speed, NORMAL)
+            found = log_of_table(
+                dict(zip(names, columns)),
+                {"velocity": velocity, "measured": names[4]},
+                {},
+                False,
+                None,
+            )
+            np.testing.assert_allclose(found.velocity, expected.velocity, rtol=1e-12)
+            np.testing.assert_allclose(found.measured, found.force, rtol=1e-12)
+        found = log_of_table(
+            {**dict(zip("t x f".split(), (TIME, DEPTH, NORMAL))), "v [km/h]": speed},
+            {"velocity": "v [km/h]"},
+            {},
+            False,
+            None,
+        )
+        self.assertIn('the unit "km/h" of column', "".join(found.notes))
 
     def test_a_point_is_not_a_decimal_sign_among_decimal_commas(self):
         file, millinewtons = scratch_folder(self) / "log.csv", (1e3 * NORMAL).round().astype(int)

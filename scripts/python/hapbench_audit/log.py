@@ -1,12 +1,13 @@
 """Reads the log of any engine: times, positions and forces in SI units, and further quantities if the log has columns
 for them."""
+import re
 from dataclasses import dataclass, field
 from functools import cached_property
 from types import SimpleNamespace
 
 import numpy as np
 from hapbench_command import fail, finite_number, quoted, require_name
-from hapbench_import.columns import ABSENT, Names
+from hapbench_import.columns import ABSENT, UNITS, Names, unit_in, without_unit
 from hapbench_import.holds import Hold, hold_of
 from hapbench_import.options import QUANTITIES, assignments, options_of
 from hapbench_import.recording import EXACT, Recording, open_recording
@@ -20,6 +21,8 @@ LONG_INTERVALS = 10.0  # number of mean intervals; a longer time step is a gap, 
 LATEST_START = (
     1e6  # if the first time of a log [s] is at least this large, times count from the first row
 )
+# Unit of a velocity at the end of a column name, as in "vx [mm/s]" and vx_mm_per_s. Group 1: the unit of length.
+SPEED = re.compile(r"(?:^|[\s_\[({<,])([A-Za-zµμ]+)(?:/|_per_| per )s(?:ec)?[\])}>]?$")
 FASTEST = 5.0  # largest plausible speed of a hand [m/s]
 # Largest error of a time step [intervals] at which the number of missing rows in the step is unambiguous. At an error
 # of 0.5, two numbers of missing rows fit equally well.
@@ -200,8 +203,10 @@ def log_of(recording, options, wanted):
         found = extra_columns(names, quantity, wanted.get(quantity), axes)
         if not found:
             continue
-        scale = 1.0 if quantity != "measured" else read.scales.get("force", 1.0)
-        values = np.column_stack([scale * recording.column(column)[kept] for column in found])
+        scales = [scale_of(quantity, recording, column, read) for column in found]
+        values = np.column_stack(
+            [scale * recording.column(column)[kept] for scale, column in zip(scales, found)]
+        )
         if not np.isfinite(values).all():
             read.notes.append(unused_text(quantity, recording, found, kept, values))
             continue
@@ -239,6 +244,34 @@ def log_of(recording, options, wanted):
     log.quantum_m, log.quantum_N = quanta(log.position), quanta(log.force)
     log.held, log.held_force = held_of(log, log.position), held_of(log, log.force)
     return log
+
+
+def scale_of(quantity, recording, column, read):
+    """Returns the factor from the unit of a column to m/s (velocity) or N (measured). The unit follows the name of the
+    column, such as "vx [mm/s]" or vx_mm_per_s. A measured force without a unit has the unit of the force. Adds a note to
+    `read` about a unit that is not known."""
+    if quantity == "contacts":
+        return 1.0
+    name = recording.names[column]
+    stated = without_unit(name)[1]
+    if quantity == "measured":
+        unit, known, factor = (
+            stated and unit_in("force", stated.text),
+            UNITS["force"],
+            read.scales.get("force", 1.0),
+        )
+    else:
+        speed = SPEED.search(name)
+        unit, known, factor = speed and unit_in("position", speed[1]), UNITS["position"], 1.0
+    if unit:
+        return known[unit]
+    if stated and (stated.is_sure or quantity == "velocity"):
+        si = "N" if quantity == "measured" else "m/s"
+        read.notes.append(
+            f"{quantity}: the unit {quoted(stated.text)} of column {recording.title(column)} is not known; its numbers "
+            f"are read in {si}"
+        )
+    return factor
 
 
 def unused_text(quantity, recording, columns, kept, values):

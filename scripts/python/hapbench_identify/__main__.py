@@ -21,6 +21,7 @@ from hapbench_command import (
     stop_on_ctrl_c,
     table_text,
     write,
+    write_all,
 )
 
 if __name__ == "__main__":
@@ -210,11 +211,12 @@ def identify(options, out):
         if parameters[name]["value"]
     }
     missing = not_in_log()
-    write(Path(out), json.dumps(device, indent=2) + "\n")
+    files = {Path(out): json.dumps(device, indent=2) + "\n"}
     # A pipe or a device, such as /dev/stdout, is in no folder of results.
     picture = None if is_stream(Path(out)) else Path(out).with_suffix(".svg")
     if picture:
-        draw(picture, log, found)
+        files[picture] = drawn(log, found)
+    write_all(files)
     table = [
         [
             f"{name} [{UNITS[name]}]",
@@ -386,7 +388,8 @@ def warnings_of(parameters, found, log):
     return warnings
 
 
-def draw(file, log, found):
+def drawn(log, found):
+    """Returns the picture of a fit as SVG: the positions of log and simulation, and the residual."""
     from hapbench_style import (
         AMBER,
         PETROL,
@@ -423,7 +426,7 @@ def draw(file, log, found):
     below.plot(time, residual / unit, ".", ms=1.5, color=PETROL)
     below.set_ylabel(f"residual [{name}]")
     below.set_xlabel("time [s]")
-    write(file, picture(figure, "svg"))
+    return picture(figure, "svg")
 
 
 def design_of(words):
