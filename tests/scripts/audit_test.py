@@ -221,7 +221,22 @@ class KnownAnswers(unittest.TestCase):
         self.assertTrue(0.6 * expected < seen < 1.1 * expected, (expected, seen))
         finding = rules_of(found)["edge"]
         self.assertIn(f"expect a buzz near {expected:.0f} Hz", finding["says"])
+        self.assertIn("slower because it loses contact", finding["says"])
         self.assertIn("energy", rules_of(found))
+
+    def test_the_script_of_a_hand_is_no_buzz(self):
+        """Checks a run whose stiffness is above the limit of a device that the run does not have. The tool bounces once
+        while it lands. Then the hand moves it at 2.5 Hz, which gives harmonics at 12.5 Hz and 17.5 Hz.
+        """
+        folder = scratch_folder(self)
+        hapbench("run", "tap_wall", "--quiet", "--out", folder / "tap")
+        words = ("audit", folder / "tap/trajectory.csv", "--json", "--device", "omega.3")
+        found = json.loads(hapbench(*words, "--out", folder / "audit"))
+        self.assertGreater(found["device"]["ratio"], 4.0)
+        self.assertGreater(found["metrics"]["contacts_lost_per_s"], 1.0)
+        self.assertEqual(found["metrics"]["contacts_lost_after_landing"], 0)
+        self.assertEqual(found["buzz"], [])
+        self.assertEqual(found["diagnosis"], [])
 
 
 def handle_at_wall(mass, viscous, delay, stiffness, seconds=3.0):

@@ -10,6 +10,7 @@ from fixture import PROGRAM
 os.environ.setdefault("HAPBENCH_PROGRAM", str(PROGRAM))
 
 from hapbench import audit  # noqa: E402  (finds the program in the environment)
+from hapbench_audit import text  # noqa: E402
 
 T = 1e-3  # interval of the rows [s]
 
@@ -282,6 +283,29 @@ class Oscillations(unittest.TestCase):
         # Errors of less than 2 % come from noise of the other forces, and from the scalloping loss of the window with
         # zero padding to four times the length.
         self.assertAlmostEqual(strongest["amplitude_N"], 0.3, delta=6e-3)
+
+    def test_an_oscillation_during_slow_motion(self):
+        """Checks an oscillation at 60 Hz whose frequency is a multiple of the frequency of a slow motion, 2.5 Hz. Its
+        amplitude exceeds the largest amplitude of a harmonic, 2 / 24 of 1 N."""
+        t = T * np.arange(4000)
+        z = np.where(t < 0.2, 1e-3, -2e-3 - 1e-3 * np.sin(2.0 * np.pi * 2.5 * t))
+        force = spring(z, 1000.0)
+        for amplitude, frequencies in ((0.2, [60.0]), (0.0, [])):
+            added = amplitude * np.sin(2.0 * np.pi * 60.0 * t)
+            found = audit(log_of(t, z, np.where(force > 0.0, force + added, 0.0)))
+            self.assertEqual([round(one["frequency_Hz"], 0) for one in found["buzz"]], frequencies)
+
+    def test_a_tool_that_hammers_loses_contact_three_times(self):
+        """Checks logs with several losses of contact after the landing. Two losses are no repetition."""
+        t = T * np.arange(1500)
+        for count in (2, 3):
+            z = np.where(t < 0.2, 1e-3, -1e-3 - 2e-4 * np.sin(2.0 * np.pi * 3.0 * t))
+            for i in range(count):
+                z[600 + 200 * i : 610 + 200 * i] = 1e-4
+            found = audit(log_of(t, z, spring(z, 5000.0)), device="omega.3")
+            self.assertEqual(found["metrics"]["contacts_lost_after_landing"], count)
+            self.assertEqual(found["metrics"]["contacts_lost_in_spectrum"], count)
+            self.assertEqual(text.hammers(found["metrics"]), count >= 3)
 
     def test_a_press_is_no_oscillation(self):
         for seconds in (0.1, 0.15, 0.3):

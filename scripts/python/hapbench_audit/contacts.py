@@ -41,6 +41,14 @@ class Contacts:
         """Number of losses of contact that last less than SETTLING."""
         return sum(after - first - 1 for first, after in self.stretches)
 
+    def lost_after_landing(self, first, after):
+        """Returns the number of losses of contact that last less than SETTLING and begin in the rows from `first` to
+        before `after`, but not in a landing."""
+        releases = [
+            row for start, end in self.stretches for row in self.runs[start : end - 1, 1].tolist()
+        ]
+        return int(sum(first <= row < after and not self.landing[row] for row in releases))
+
 
 def contacts_of(log):
     """Returns the Contacts of a log, by the rule of rows_in_contact(). Fails if no row is in contact or if all

@@ -10,7 +10,7 @@ from hapbench_command import output_of_program
 from .contacts import runs_of
 from .force import CUTOFF, reversals
 from .normal import main_direction
-from .text import HAMMERS, expected_text
+from .text import expected_text, hammers
 
 # Smallest force that can be saturated, as a fraction of the largest force of the log.
 AT_LIMIT = 0.999
@@ -69,7 +69,7 @@ def findings_of(log, contacts, audit):
     found, force = Findings(), audit["metrics"]
     mean, device = force["force_mean_in_contact_N"], audit["device"]
     vibration = share(force["force_rms_above_30Hz_N"], mean)
-    vibrates = (vibration or 0.0) > HAS_BUZZ or (force["contacts_lost_per_s"] or 0.0) > HAMMERS
+    vibrates = (vibration or 0.0) > HAS_BUZZ or hammers(force)
     ratio = device["ratio"] if device and vibrates else None
     if ratio is not None:
         found.add("edge", ratio, ratio_to_limit(device), limit_text(audit))
@@ -150,11 +150,10 @@ def against_buzz(audit, ratio):
     encoder = encoder_share(audit, audit["metrics"]["force_mean_in_contact_N"])
     if (encoder or 0.0) > rules()["encoder"]["threshold"]:
         return 'the advice of the rule "encoder"'
-    lost = audit["metrics"]["contacts_lost_per_s"] or 0.0
-    if lost > HAMMERS:
+    if hammers(audit["metrics"]):
         text = (
             "a smaller stiffness, less restitution or more damping: the tool hammers and loses contact "
-            f"{lost:.3g} times per second"
+            f"{audit['metrics']['contacts_lost_per_s']:.3g} times per second"
         )
         return text + ("; --device FILE.json shows the limit" if audit["device"] is None else "")
     if audit["device"] is None:
@@ -202,7 +201,7 @@ def against_pop(log, contacts, audit):
                 else f": check the normals and depths of the contacts there (the tool moves by {1e3 * moved:.3g} mm "
                 "in the row of the largest step)"
             )
-    if (force["contacts_lost_per_s"] or 0.0) > HAMMERS:
+    if hammers(force):
         return (
             f"contact is lost {force['contacts_lost_per_s']:.3g} times per second: a smaller stiffness, less "
             "restitution or more damping, and a force that starts at zero at touch"

@@ -18,6 +18,11 @@ LOWEST_PEAK = 10.0  # lowest frequency of a reported peak [Hz]; voluntary motion
 # A frequency counts as a multiple of another frequency if its distance from the exact multiple is at most this fraction
 # of the frequency.
 HARMONIC = 0.02
+# The n-th harmonic of a slow motion has at most OVERTONE / n times the amplitude of the motion. The force of a motion
+# that presses and releases once per period with the range R has harmonics of at most 2 R / (pi n). Its first harmonic
+# is 2 R / pi times sin(pi d), where d is the fraction of the period in which it presses. The value 2 thus covers d from
+# 1/6 to 5/6.
+OVERTONE = 2.0
 # If the amplitude of the strongest peak is below this fraction of the mean force, no peak is reported.
 MIN_PEAK = 0.01
 SHORTEST_SPECTRUM = 64  # smallest number of rows from which a spectrum is computed
@@ -105,6 +110,10 @@ def force_of(log, contacts):
         else None,
         "contacts": len(contacts.runs),
         "contacts_lost_per_s": lost_per_s(log, contacts),
+        "contacts_lost_after_landing": contacts.lost_after_landing(0, len(size)),
+        "contacts_lost_in_spectrum": contacts.lost_after_landing(
+            *(longest_stretch(log, contacts) or (0, 0))
+        ),
     }
     worst = int(np.argmax(np.where(settled, step, 0.0))) if enough else int(np.argmax(step))
     found["time_of_largest_step_s"] = float(log.time[worst])
@@ -187,11 +196,28 @@ def is_same(frequency, other, resolution):
     return abs(frequency - times * other) <= max(resolution, HARMONIC * frequency)
 
 
+def is_overtone(spectrum, tops, i, resolution):
+    """Returns True if the peak `i` can be a harmonic of a slower motion: its frequency is a multiple of the frequency
+    of a stronger peak, and its amplitude is at most OVERTONE divided by this multiple, times the amplitude of the
+    stronger peak. `tops`: indices of all local maxima of the spectrum."""
+    frequency, amplitude, _ = spectrum
+    for slow in tops[(tops < i) & (amplitude[tops] > amplitude[i])].tolist():
+        times = round(frequency[i] / frequency[slow])
+        if (
+            times > 1
+            and amplitude[i] <= OVERTONE / times * amplitude[slow]
+            and is_same(frequency[i], frequency[slow], resolution)
+        ):
+            return True
+    return False
+
+
 def peaks_of(log, contacts, spectrum, mean):
     """Returns frequency [Hz] and amplitude [N] of the strongest oscillations above LOWEST_PEAK, strongest first. A peak
     is more than 4 times as large as the median amplitude of its neighbourhood, and so large that noise alone causes a
     peak in a log only with the probability FALSE_ALARM. Its frequency is no multiple of the frequency of a stronger
-    peak. The oscillation persists in the middle third of longest_stretch(). `mean`: mean force in contact [N].
+    oscillation, and it is no harmonic of a slower motion by is_overtone(). The oscillation persists in the middle third
+    of longest_stretch(). `mean`: mean force in contact [N].
     """
     if spectrum is None or not mean:
         return []
@@ -208,6 +234,7 @@ def peaks_of(log, contacts, spectrum, mean):
         False, (amplitude[1:-1] > amplitude[:-2]) & (amplitude[1:-1] >= amplitude[2:]), False
     ]
     top[-1] = amplitude[-1] > amplitude[-2]
+    tops = np.flatnonzero(top)
     first, after = longest_stretch(log, contacts)
     third = (after - first) // 3
     found = []
@@ -217,9 +244,9 @@ def peaks_of(log, contacts, spectrum, mean):
             break
         near = np.abs(frequency - frequency[i]) < max(10.0 * resolution, 0.2 * frequency[i])
         is_peak = amplitude[i] > max(stands_out, 4.0) * np.median(amplitude[near])
-        if not is_peak or any(
-            is_same(frequency[i], one["frequency_Hz"], resolution) for one in found
-        ):
+        if not is_peak or is_overtone(spectrum, tops, i, resolution):
+            continue
+        if any(is_same(frequency[i], one["frequency_Hz"], resolution) for one in found):
             continue
         if i == len(frequency) - 1:
             # At half the sampling rate, the lines of the positive and the negative frequency coincide, which doubles

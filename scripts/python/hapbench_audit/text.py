@@ -4,6 +4,8 @@ from hapbench_report.markup import rounded_up
 
 
 HAMMERS = 1.0  # number of contact losses per second above which the tool hammers
+# Smallest number of contact losses after landings of a tool that hammers. Fewer losses do not show a repetition.
+MIN_LOSSES = 3
 
 
 def number(value, digits=3, none="-"):
@@ -274,13 +276,21 @@ def ratios_text(device):
 def expected_text(audit):
     """Returns a text with the frequency of the oscillation that the linear analysis predicts and the frequency in the
     log."""
-    buzz, lost = audit["buzz"], audit["metrics"]["contacts_lost_per_s"] or 0.0
+    buzz, lost = audit["buzz"], audit["metrics"]["contacts_lost_in_spectrum"]
     text = f"expect a buzz near {audit['device']['expected_frequency_Hz']:.0f} Hz; the log "
     if not buzz:
-        return text + "does not buzz"
+        return text + "shows no buzz"
     slower = buzz[0]["frequency_Hz"] < 0.95 * audit["device"]["expected_frequency_Hz"]
     text += f"buzzes at {buzz[0]['frequency_Hz']:.0f} Hz"
-    return text + (", slower because it loses contact" if slower and lost > HAMMERS else "")
+    return text + (", slower because it loses contact" if slower and lost >= MIN_LOSSES else "")
+
+
+def hammers(metrics):
+    """Returns True if the tool loses contact repeatedly, not only while it lands."""
+    return (
+        metrics["contacts_lost_after_landing"] >= MIN_LOSSES
+        and (metrics["contacts_lost_per_s"] or 0.0) > HAMMERS
+    )
 
 
 def measured_rows(measured):
