@@ -58,8 +58,28 @@ SERIES = (
     Look("", "#000000", "#F2F2F2", (1, 1.65), "^"),
     Look("", "#752B6E", "#FC84FE", (5, 1.5), "v"),
     Look("", "#494944", "#B4B8B3", (3, 1, 1, 1), "D"),
-    Look("", "#14794E", "#8EE288", (6, 2), "x"),
+    Look("", "#14794E", "#8EE288", (6, 2), "X"),
 )
+# Markers of series(). All can be filled, because hollow marks have a meaning in some pictures.
+SERIES_MARKERS = (*(look.marker for look in SERIES), "<", ">", "p", "*", "d", "h", "P")
+
+
+def series(count):
+    """Returns the looks of `count` curves. The first looks are SERIES. Each further look has a colour of SERIES with
+    another marker and other dashes. The number of markers, 13, has no common divisor with the number of colours, 6, so
+    that 78 looks differ in colour or marker."""
+    looks = []
+    for i in range(count):
+        turn, colour = divmod(i, len(SERIES))
+        looks.append(
+            replace(
+                SERIES[colour],
+                dash=SERIES[(colour + turn) % len(SERIES)].dash,
+                marker=SERIES_MARKERS[i % len(SERIES_MARKERS)],
+            )
+        )
+    return looks
+
 
 # Name, colour and hatching of each class of runs. The first five classes also differ in brightness, so that they can be
 # distinguished in grey.

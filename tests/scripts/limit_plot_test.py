@@ -3,12 +3,14 @@ import csv
 
 import numpy as np
 from matplotlib.colors import to_hex
+from matplotlib.markers import MarkerStyle
 
 from figure_checks import assert_fits, curves_of, legend_labels
-from fixture import hapbench
+from fixture import PROGRAM, hapbench, in_process
 from pictures_test import Given, made, make_root, plotted
 
 from hapbench.columns import read_records
+from hapbench_pictures.__main__ import main as pictures
 from hapbench_pictures.device_plot import (
     ALTERNATING_LABEL,
     BEYOND_LABEL,
@@ -19,6 +21,7 @@ from hapbench_pictures.device_plot import (
     UNQUOTED_LABEL,
     device_of,
 )
+from hapbench_looks import SERIES, series
 from hapbench_pictures.study_plot import draw_study
 from hapbench_style import RED, SHEETS, plt
 
@@ -105,7 +108,6 @@ class Limits(Given):
         self.assert_plot_shows(
             folder,
             "largest force, no order",
-            "max depth inside, no order",
             "final position m.x, order 1.",
             "formal order 1",
             "time step [s]",
@@ -114,6 +116,28 @@ class Limits(Given):
         )
         made("converge", "converge", "springs_oscillation", "--metric", "inside_max_m")
         self.assertIn("nothing to draw: no level has an error above 0", plotted(folder, expected=2))
+
+    def test_a_metric_without_an_error_is_named_and_not_drawn(self):
+        """Checks a study whose metric force_reversals is 0 at all levels, so that it has no relative error."""
+        metrics = "force_max_N,force_reversals,inside_max_m"
+        folder = made("zero", "converge", "tap_wall", "--metric", metrics, "--levels", 3)
+        words = in_process(pictures, "plot", folder, HAPBENCH_PROGRAM=str(PROGRAM))[2]
+        self.assertIn("force_reversals: no relative error above 0; not drawn", words)
+        self.assertNotIn("RuntimeWarning", words)
+        labels = legend_labels(draw_study(folder))
+        self.assertEqual(
+            [label.partition(",")[0] for label in labels[:2]], ["largest force", "max depth inside"]
+        )
+
+    def test_many_metrics_differ(self):
+        """Checks that ten metrics have ten marks, and that more looks than markers still differ."""
+        looks = series(30)
+        self.assertEqual(tuple(looks[: len(SERIES)]), SERIES)
+        self.assertEqual(len({look.marker for look in looks[:10]}), 10)
+        for part in ("marker", "dash"):
+            self.assertEqual(len({(look.colour, getattr(look, part)) for look in looks}), 30, part)
+        for look in looks:
+            self.assertTrue(MarkerStyle(look.marker).is_filled(), look.marker)
 
     def test_the_program_finds_knees(self):
         """Checks that the program finds the knee of a Pareto front of cost and error. The points of the front have the

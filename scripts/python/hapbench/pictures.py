@@ -3,7 +3,6 @@ import argparse
 import json
 import tempfile
 from collections.abc import Callable, Iterable
-from itertools import cycle
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -54,7 +53,7 @@ def plot_table(table: "Table", y: Iterable[str], x: str | None, width: str) -> A
         raise ValueError(f"width: got {width!r}; allowed: {', '.join(WIDTHS)}")
     find_packages()
     _import_pyplot()
-    from hapbench_looks import SERIES
+    from hapbench_looks import series
     from hapbench_style import SETTINGS, SHEETS, legend_above, legend_height, plt
 
     of_numbers = [name for name, values in table.items() if values.dtype != object]
@@ -70,7 +69,7 @@ def plot_table(table: "Table", y: Iterable[str], x: str | None, width: str) -> A
         sheet = SHEETS[width]
         with plt.rc_context(SETTINGS):
             figure, ((ax,),) = sheet.panels(1, 1, 2.2 + legend_height(shown, sheet.width))
-            for name, look in zip(shown, cycle(SERIES)):
+            for name, look in zip(shown, series(len(shown))):
                 ax.plot(table[x], table[name], color=look.colour, ls=look.line, label=name)
             ax.set_xlabel(_label(x, table.units[x]))
             ax.set_ylabel(_label(shown[0] if len(shown) == 1 else "", ", ".join(sorted(units))))

@@ -6,7 +6,7 @@ from matplotlib.lines import Line2D
 from matplotlib.transforms import ScaledTranslation
 
 from hapbench.columns import number_in, numbers
-from hapbench_looks import SERIES, law_name
+from hapbench_looks import law_name, series
 from hapbench_style import BLACK, GREY, PUBLISHED_LINE, legend_above, legend_height
 
 from .given import axis
@@ -43,7 +43,7 @@ def device_of(row):
 def looks_of(rows):
     """Returns the look of each device by name, in the order of the table."""
     names = list(dict.fromkeys(map(device_of, rows)))
-    return {name: SERIES[i % len(SERIES)] for i, name in enumerate(names)}
+    return dict(zip(names, series(len(names))))
 
 
 def linear(rows):

@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.patches import Polygon
 from scipy.spatial import cKDTree
 
-from hapbench_looks import SERIES, Look, look
+from hapbench_looks import Look, look, series
 from hapbench_style import LINE, curve, equal_curves, note, reduced, striped
 
 from .given import shown
@@ -54,9 +54,9 @@ def looks(runs, labels, groups=()):
     nth = {group: algorithms[:i].count(algorithm) for i, (group, algorithm) in enumerate(distinct)}
     one_each, alike = len(set(algorithms)) == len(distinct), len(set(algorithms)) == 1
     width = RunLook.width if len(distinct) == len(runs) else THIN
-    found = []
+    found, many = [], series(len(runs))
     for run, label, group in zip(runs, labels, groups):
-        of_law, of_series = look(run.algorithm), SERIES[nth[group] % len(SERIES)]
+        of_law, of_series = look(run.algorithm), many[nth[group]]
         colours = of_series if alike and not one_each else of_law
         found.append(
             RunLook(
