@@ -48,11 +48,14 @@ constexpr int kLastDigit = -12;     ///< last decimal place of a number without 
 
 }  // namespace
 
-std::string bound_text(double value, double tolerance) {
-  const double bound = std::abs(value) + tolerance, unit = math::pow(10.0, leading_digit(bound));
+std::string significant_up(double bound, int digits) {
+  const double unit = math::pow(10.0, leading_digit(bound) - digits + 1);
   // Without the factor 1 - 1e-12, the rounding error of a bound such as 0.3 could give 0.4.
-  const double rounded_up = std::ceil(bound / unit * (1.0 - 1e-12)) * unit;
-  return (value < 0.0 ? "0 +- " : "<= ") + significant(rounded_up, 1);
+  return significant(std::ceil(bound / unit * (1.0 - 1e-12)) * unit, digits);
+}
+
+std::string bound_text(double value, double tolerance) {
+  return (value < 0.0 ? "0 +- " : "<= ") + significant_up(std::abs(value) + tolerance, 1);
 }
 
 std::string deserved(double value, const std::optional<double>& tolerance, int digits) {

@@ -9,6 +9,8 @@ namespace hapbench {
 
 /// Returns a number with `digits` significant digits; "-" for NaN and infinities.
 std::string significant(double value, int digits = 4);
+/// Returns an upper bound, which is above 0, rounded up to `digits` significant digits.
+std::string significant_up(double bound, int digits);
 inline constexpr int kAllDigits = 17;
 /// Returns a number rounded to `digits` significant digits, in the shorter of the notations "43373200" and "4.34e+17".
 /// A magnitude from 1e-4 to 1 is always written without an exponent. Returns "-" for NaN and infinities. With

@@ -35,13 +35,13 @@ bool is_unresolved(double error, double of_reference) {
   return error < kResolvedError * of_reference;
 }
 
-/// Returns the larger of two errors as text, in multiples of `unit`: `error` of the setting, and `of_reference`, the
-/// error of the reference solution. The text begins with "<" if is_unresolved(). Returns "-" for a setting without an
-/// error.
-std::string error_text(const Setting& s, double error, double of_reference, double unit) {
+/// Returns an error of the setting as text, in multiples of `unit`. `difference`: difference of the setting from the
+/// reference solution. `of_reference`: error of the reference solution. If is_unresolved(), the text is "<" and the
+/// largest possible error, the sum of both. Returns "-" for a setting without an error.
+std::string error_text(const Setting& s, double difference, double of_reference, double unit) {
   if (!s.error) return "-";
-  const double shown = std::max(error, of_reference) / unit;
-  return fmt::format("{}{}", is_unresolved(error, of_reference) ? "< " : "", significant(shown, 2));
+  if (!is_unresolved(difference, of_reference)) return significant(difference / unit, 2);
+  return "< " + significant_up((difference + of_reference) / unit, 2);
 }
 
 /// Returns true if the table marks an error of the setting with "<".
@@ -76,11 +76,13 @@ Columns<Setting> error_columns(double max_error) {
        "rms distance of the tip's positions from the reference solution, at the times of the largest time step; empty "
        "if the trajectory cannot be predicted, or if one of the runs ended early",
        position_error},
-      {"error um", "1", "position_error_m in micrometres; <: not resolved by the reference solution", micrometres,
-       only_printed()},
+      {"error um", "1",
+       "position_error_m in micrometres; <: not resolved by the reference solution, largest possible error",
+       micrometres, only_printed()},
       {"force_error_N", "N", "rms difference of the rendered forces from the reference solution at the same times",
        force_error},
-      {"error mN", "1", "force_error_N in millinewtons; <: not resolved by the reference solution", millinewtons,
+      {"error mN", "1",
+       "force_error_N in millinewtons; <: not resolved by the reference solution, largest possible error", millinewtons,
        only_printed()},
       {"reference_position_error_m", "m", "error of the reference solution's positions", reference_position},
       {"reference_force_error_N", "N", "error of the reference solution's forces", reference_force},
@@ -91,8 +93,9 @@ Columns<Setting> error_columns(double max_error) {
       {"% of\nstep", "1", "processor time of a step as a percentage of the time step, its deadline in real time", share,
        only_printed()},
       {"on front", "",
-       "front: no other setting of the problem is both cheaper and more accurate; knee: bend of the front", mark,
-       only_printed()}};
+       "front: the error is resolved, and no other setting of the problem is both cheaper and more accurate; knee: "
+       "bend of the front",
+       mark, only_printed()}};
 }
 
 /// Returns the columns of convergence_timing.csv. Their values are times, which differ if the command is repeated.
@@ -111,10 +114,30 @@ Columns<Setting> timing_columns() {
       {"deadline_share", "1", "processor time of a step divided by the time step, its deadline in real time",
        simulated},
       {"on_front", "",
-       "true if the outcome is expected and no other resolved setting of the problem is both cheaper and more accurate",
+       "true if the outcome is expected, the error is resolved, and no other setting of the problem is both cheaper "
+       "and more accurate; an error that is not resolved counts as its bound",
        &Setting::on_front},
       {"knee", "", "true for the knee of the front: the point farthest below the chord, in logarithms",
        &Setting::is_knee}};
+}
+
+/// Returns a setting as text, such as "rk4 at 0.001 s".
+std::string name_of(const Setting& setting) {
+  return fmt::format("{} at {} s", setting.integrator, significant(setting.step_s, 6));
+}
+
+/// Returns a sentence for a problem without a setting whose error is at most `max_error` [m] for certain.
+std::string none_below_text(const WorkPrecisionProblem& problem, double max_error) {
+  constexpr const char* kSmaller = "--levels with a larger number adds smaller time steps";
+  if (problem.cheapest_possibly_below(max_error) != nullptr)
+    return fmt::format(
+        "no setting is shown to be below {:g} m, because the reference is known to {} m only; {}, also for "
+        "the reference",
+        max_error, significant_up(problem.settings.front().reference_error.position, 3), kSmaller);
+  const bool all_known = std::ranges::all_of(problem.settings, [](const Setting& s) { return s.error.has_value(); });
+  return fmt::format("no setting {} an error below {:g} m{}; {}", all_known ? "has" : "is shown to have", max_error,
+                     all_known ? "" : ": \"-\" marks settings without an error, because runs ended differently",
+                     kSmaller);
 }
 
 /// Returns a sentence with the cheapest setting of a problem whose position error is below `max_error` [m], or the
@@ -130,18 +153,20 @@ std::string answer_text(const WorkPrecisionProblem& problem, double max_error) {
   const auto failed = std::ranges::find(problem.settings, false, &Setting::is_expected);
   if (best == nullptr && failed != problem.settings.end())
     return fmt::format(
-        "no setting is recommended: with {} at {} s the run ends as {}, which the scene does not expect; the error of "
+        "no setting is recommended: with {} the run ends as {}, which the scene does not expect; the error of "
         "a failed run is not meaningful, for example if the tool does not move",
-        failed->integrator, significant(failed->step_s, 6), outcome_name(failed->outcome));
-  if (best == nullptr)
-    return fmt::format("no setting has an error below {:g} m; --levels with a larger number adds smaller time steps",
-                       max_error);
+        name_of(*failed), outcome_name(failed->outcome));
+  if (best == nullptr) return none_below_text(problem, max_error);
+  const std::string cost = fmt::format("{} ms per simulated second, {} % of the time step, which is the deadline",
+                                       significant(1e3 * best->cost.per_simulated_second(), 2),
+                                       significant(100.0 * best->cost.per_simulated_second(), 2));
+  const Setting* cheaper = problem.cheapest_possibly_below(max_error);
+  if (cheaper == best)
+    return fmt::format("the cheapest setting below {:g} m is {}: {}", max_error, name_of(*best), cost);
   return fmt::format(
-      "the cheapest setting below {:g} m is {} at {} s: {} ms per simulated second, {} % of the time step, which is "
-      "the deadline",
-      max_error, best->integrator, significant(best->step_s, 6),
-      significant(1e3 * best->cost.per_simulated_second(), 2),
-      significant(100.0 * best->cost.per_simulated_second(), 2));
+      "the cheapest setting that is shown to be below {:g} m is {}: {}; {} is cheaper and may also be below, but its "
+      "error is only known to be at most {} m",
+      max_error, name_of(*best), cost, name_of(*cheaper), significant_up(cheaper->largest_error(), 3));
 }
 
 }  // namespace
@@ -158,7 +183,7 @@ void report_work_precision(const std::vector<WorkPrecisionProblem>& problems, do
       report.add_text(layout.wrapped(
           fmt::format(
               "<: the difference from the reference solution is less than {:g} times the error of the reference "
-              "solution, so that the error is at most the sum of both",
+              "solution; the printed bound is the sum of both",
               kResolvedError),
           0));
     report.add_text(layout.wrapped(answer_text(problem, max_error), 0));

@@ -139,6 +139,45 @@ class Limits(Given):
         for look in looks:
             self.assertTrue(MarkerStyle(look.marker).is_filled(), look.marker)
 
+    def test_bounds_are_hollow_and_agree_with_the_front(self):
+        """Checks the picture of a study in which no error of rk4 is resolved. Hollow marks are at the bounds, which
+        are the numbers of the printed table. No mark is left of and below a mark of the front."""
+        folder = made(
+            "bounds",
+            "converge",
+            "springs_oscillation",
+            "--over",
+            "integrator.type=rk4,velocity_verlet,event",
+            "--levels",
+            3,
+        )
+        errors = read_records(folder / "convergence.csv")
+        hidden = [row for row in errors if row["resolved"] == "false"]
+        self.assertTrue(hidden)
+        bounds = [
+            1e6 * (float(row["position_error_m"]) + float(row["reference_position_error_m"]))
+            for row in hidden
+        ]
+        (ax,) = draw_study(folder).axes
+        hollow = [line for line in ax.lines if line.get_markerfacecolor() == "white"]
+        drawn = np.concatenate([line.get_ydata() for line in hollow])
+        np.testing.assert_allclose(sorted(drawn), sorted(bounds))
+        points = np.concatenate(
+            [
+                line.get_xydata()
+                for line in ax.lines
+                if line.get_marker() not in ("None", "o", None, "")
+            ]
+            + [line.get_xydata() for line in hollow]
+        )
+        times = read_records(folder / "convergence_timing.csv")
+        front = [i for i, row in enumerate(times) if row["on_front"] == "true"]
+        self.assertTrue(front)
+        for i in front:
+            cost = 1e3 * float(times[i]["seconds_per_simulated_second"])
+            error = 1e6 * float(errors[i]["position_error_m"])
+            self.assertFalse(((points[:, 0] < cost) & (points[:, 1] < error)).any(), times[i])
+
     def test_the_program_finds_knees(self):
         """Checks that the program finds the knee of a Pareto front of cost and error. The points of the front have the
         decimal logarithms (0, 0), (1, -3), (2, -3.5) and (3, -4). The second point is farthest below the chord between

@@ -24,14 +24,12 @@ namespace {
 
 constexpr const char* kIntegratorPath = "integrator.type";
 
-/// The reference solution of a curve uses another integrator than the curve: the first integrator of this list, or the
-/// second for the curve of the first integrator.
-const IntegratorEntry* const kReferenceIntegrators[] = {&kRk4, &kVelocityVerlet};
-
-std::string reference_integrator(const std::string& of_curve) {
-  const std::string first = kReferenceIntegrators[0]->info.name;
-  return of_curve == first ? kReferenceIntegrators[1]->info.name : first;
-}
+/// Integrator of the reference solution. All settings of a problem have the same reference solution, so that equal
+/// trajectories have equal errors.
+const IntegratorEntry& kReferenceIntegrator = kRk4;
+/// If a curve has the integrator of the reference solution, this integrator computes a second solution. A setting and a
+/// reference solution of one integrator could share an error that their difference does not show.
+const IntegratorEntry& kCheckingIntegrator = kVelocityVerlet;
 
 /// A run of the study: a problem with an integrator and a time step.
 struct StudyRun {
@@ -78,6 +76,8 @@ class Study {
 
   std::size_t problems() const { return problems_; }
   const std::vector<std::string>& curves() const { return curves_; }
+  /// Returns true if a second integrator checks the reference solution.
+  bool checks_reference() const { return std::ranges::count(curves_, kReferenceIntegrator.info.name) > 0; }
   std::size_t finest() const { return question_.levels - 1; }
   std::size_t reference_level() const { return levels_.axis.values.size() - 1; }
   const LevelSweep& levels() const { return levels_; }
@@ -111,12 +111,12 @@ class Motions {
  public:
   explicit Motions(const Study& study) : study_(study) {
     for (std::size_t problem = 0; problem < study.problems(); ++problem) {
-      for (const std::string& curve : study.curves()) {
+      for (const std::string& curve : study.curves())
         for (std::size_t level = 0; level <= study.finest(); ++level) add({problem, curve, level});
-        // Two levels of the reference solution give an estimate of its error.
-        for (const std::size_t back : {0u, 1u})
-          add({problem, reference_integrator(curve), study.reference_level() - back});
-      }
+      // Two levels of the reference solution give an estimate of its error.
+      for (const std::size_t back : {0u, 1u})
+        add({problem, kReferenceIntegrator.info.name, study.reference_level() - back});
+      if (study.checks_reference()) add({problem, kCheckingIntegrator.info.name, study.reference_level()});
     }
   }
 
@@ -147,22 +147,22 @@ class Motions {
 
   const SampledMotion& at(const StudyRun& run) const { return motions_.at(run); }
 
-  /// Returns the reference solution of a curve.
-  const SampledMotion& reference(std::size_t problem, const std::string& curve) const {
-    return at({problem, reference_integrator(curve), study_.reference_level()});
+  /// Returns the reference solution of a problem.
+  const SampledMotion& reference(std::size_t problem) const {
+    return at({problem, kReferenceIntegrator.info.name, study_.reference_level()});
   }
 
-  /// Returns the error of the reference solution of a curve: the largest of its difference from the next coarser level
-  /// and its differences from the reference solutions of the other curves. Returns nothing if the solutions ended
-  /// differently.
-  std::optional<MotionDifference> reference_error(std::size_t problem, const std::string& curve) const {
-    const SampledMotion& reference = this->reference(problem, curve);
+  /// Returns the error of the reference solution of a problem: its difference from the next coarser level. If a second
+  /// integrator checks the reference solution, and its solution differs more, returns this difference. Returns nothing
+  /// if the solutions ended differently.
+  std::optional<MotionDifference> reference_error(std::size_t problem) const {
     std::vector<const SampledMotion*> others = {
-        &at({problem, reference_integrator(curve), study_.reference_level() - 1})};
-    for (const std::string& other : study_.curves()) others.push_back(&this->reference(problem, other));
+        &at({problem, kReferenceIntegrator.info.name, study_.reference_level() - 1})};
+    if (study_.checks_reference())
+      others.push_back(&at({problem, kCheckingIntegrator.info.name, study_.reference_level()}));
     MotionDifference largest;
     for (const SampledMotion* other : others) {
-      const auto found = difference(reference, *other);
+      const auto found = difference(reference(problem), *other);
       if (!found) return std::nullopt;
       largest.position = std::max(largest.position, found->position);
       largest.force = std::max(largest.force, found->force);
@@ -184,35 +184,19 @@ class Motions {
   std::vector<SampledMotion> shifted_;  ///< shifted motions, by problem
 };
 
-/// Marks the Pareto front of a problem and its knee. Excludes unresolved errors, because their true value is unknown,
-/// and runs with an unexpected outcome.
-void mark_front(std::vector<WorkPrecisionSetting>& settings) {
-  std::vector<CostAndError> points;
-  std::vector<std::size_t> indices;
-  for (std::size_t i = 0; i < settings.size(); ++i) {
-    if (!settings[i].is_resolved() || !settings[i].is_expected) continue;
-    points.push_back({settings[i].cost.per_simulated_second(), settings[i].error->position});
-    indices.push_back(i);
-  }
-  const std::vector<std::size_t> front = pareto_front(points);
-  for (const std::size_t i : front) settings[indices[i]].on_front = true;
-  if (const auto found = knee(points, front)) settings[indices[*found]].is_knee = true;
-}
-
 /// Returns the settings of a problem with their errors, without their cost.
 std::vector<WorkPrecisionSetting> settings_of(const Study& study, const Motions& motions, std::size_t problem,
                                               bool is_predictable) {
   std::vector<WorkPrecisionSetting> settings;
+  const auto reference_error = motions.reference_error(problem);
   for (const std::string& curve : study.curves()) {
-    const auto reference_error = motions.reference_error(problem, curve);
     for (std::size_t level = 0; level <= study.finest(); ++level) {
       WorkPrecisionSetting setting{study.name(problem), curve};
       setting.reference_error = reference_error.value_or(MotionDifference{});
       const StudyRun run = {problem, curve, level};
       setting.outcome = motions.at(run).outcome;
       setting.is_expected = outcome_is_expected(study.load(run).scenario().expect, setting.outcome);
-      if (reference_error && is_predictable)
-        setting.error = difference(motions.at({problem, curve, level}), motions.reference(problem, curve));
+      if (reference_error && is_predictable) setting.error = difference(motions.at(run), motions.reference(problem));
       settings.push_back(std::move(setting));
     }
   }
@@ -220,26 +204,46 @@ std::vector<WorkPrecisionSetting> settings_of(const Study& study, const Motions&
 }
 
 std::string reference_text(const Study& study) {
-  std::vector<std::string> names;
-  for (const std::string& curve : study.curves())
-    if (std::ranges::find(names, reference_integrator(curve)) == names.end())
-      names.push_back(reference_integrator(curve));
-  return fmt::format("{} at {} = {}", fmt::join(names, " and "), kStepPath,
-                     level_text(study.levels(), study.reference_level()));
+  return fmt::format("{} at {} = {}{}", kReferenceIntegrator.info.name, kStepPath,
+                     level_text(study.levels(), study.reference_level()),
+                     study.checks_reference() ? ", checked by " + std::string(kCheckingIntegrator.info.name) : "");
+}
+
+/// Returns the cheapest setting with an expected outcome whose `error_of` is at most `max_error`; null if no setting
+/// has both.
+const WorkPrecisionSetting* cheapest(const std::vector<WorkPrecisionSetting>& settings, double max_error,
+                                     double (WorkPrecisionSetting::*error_of)() const) {
+  const WorkPrecisionSetting* best = nullptr;
+  for (const WorkPrecisionSetting& setting : settings) {
+    if (!setting.is_expected || !setting.error || (setting.*error_of)() > max_error) continue;
+    if (best == nullptr || setting.cost.per_simulated_second() < best->cost.per_simulated_second()) best = &setting;
+  }
+  return best;
 }
 
 }  // namespace
 
 const WorkPrecisionSetting* WorkPrecisionProblem::cheapest_below(double max_error) const {
-  const WorkPrecisionSetting* best = nullptr;
-  for (const WorkPrecisionSetting& setting : settings) {
-    // An unresolved error is at most the sum of the measured difference and the error of the reference.
-    if (!setting.is_expected || !setting.error ||
-        setting.error->position + setting.reference_error.position > max_error)
-      continue;
-    if (best == nullptr || setting.cost.per_simulated_second() < best->cost.per_simulated_second()) best = &setting;
+  return cheapest(settings, max_error, &WorkPrecisionSetting::largest_error);
+}
+
+const WorkPrecisionSetting* WorkPrecisionProblem::cheapest_possibly_below(double max_error) const {
+  return cheapest(settings, max_error, &WorkPrecisionSetting::smallest_error);
+}
+
+void mark_front(std::vector<WorkPrecisionSetting>& settings) {
+  std::vector<CostAndError> points;
+  std::vector<WorkPrecisionSetting*> compared;
+  for (WorkPrecisionSetting& setting : settings) {
+    if (!setting.error || !setting.is_expected) continue;
+    points.push_back({setting.cost.per_simulated_second(),
+                      setting.is_resolved() ? setting.error->position : setting.largest_error()});
+    compared.push_back(&setting);
   }
-  return best;
+  std::vector<std::size_t> front = pareto_front(points);
+  std::erase_if(front, [&](std::size_t i) { return !compared[i]->is_resolved(); });
+  for (const std::size_t i : front) compared[i]->on_front = true;
+  if (const auto found = knee(points, front)) compared[*found]->is_knee = true;
 }
 
 std::vector<WorkPrecisionProblem> work_precision(const WorkPrecisionQuestion& question, const JobOptions& jobs) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -16,8 +17,9 @@
 /// Work-precision studies: the discretisation error of integrators and time steps, and their cost.
 ///
 /// A problem is a scene with given values of all fields except integrator and time step. Two force laws give two
-/// problems, because they have different solutions. The error of a setting is the difference from the converged
-/// solution of the same problem, at times that all settings share.
+/// problems, because they have different solutions. The error of a setting is the difference from the reference
+/// solution of the same problem, at times that all settings share. The reference solution is a converged solution by
+/// rk4. If rk4 is also the integrator of settings, a solution by velocity_verlet checks the reference solution.
 namespace hapbench {
 
 /// Inputs of work_precision().
@@ -47,33 +49,45 @@ struct WorkPrecisionSetting {
   /// True if the scenario expects the outcome. The error of a run with another outcome has no meaning: a tool that does
   /// not move has a small error.
   bool is_expected = true;
-  /// Difference from the reference solution. Empty if the problem is not predictable, if the reference solutions ended
-  /// differently, or if the run ended otherwise than its reference.
+  /// Difference from the reference solution. Empty if the problem is not predictable, if the runs for the reference
+  /// solution ended differently, or if the run ended otherwise than its reference.
   std::optional<MotionDifference> error = {};
   MotionDifference reference_error = {};  ///< error of the reference solution
   RunCost cost = {};
-  /// True if the setting is on the Pareto front of the problem: every other setting has a larger position error or a
-  /// larger cost. Only settings with an expected outcome and a resolved error are compared.
+  /// True if the setting is on the Pareto front of the problem (mark_front()).
   bool on_front = false;
   bool is_knee = false;  ///< true for the knee of the front (pareto_front.hpp)
 
   /// Returns true if the position error is known and resolved. The outcome does not matter.
   bool is_resolved() const { return error && error->position >= kResolvedError * reference_error.position; }
+
+  // Bounds of the position error [m] by the triangle inequality. Precondition: the setting has an error.
+  double largest_error() const { return error->position + reference_error.position; }
+  double smallest_error() const { return std::max(error->position - reference_error.position, 0.0); }
 };
 
 /// A problem with its settings, ordered by integrator, then by decreasing time step.
 struct WorkPrecisionProblem {
   std::string name;
-  std::string reference = {};  ///< description of the reference solutions
+  std::string reference = {};  ///< description of the reference solution
   /// Rms distance [m] between two runs with the smallest time step whose starting positions are kInitialShift apart.
   double grown_shift = 0.0;
   bool is_predictable = true;  ///< true if grown_shift is at most the requested error
   std::vector<WorkPrecisionSetting> settings = {};
 
-  /// Returns the cheapest setting with an expected outcome and a position error of at most `max_error`; null if no
+  /// Returns the cheapest setting with an expected outcome whose largest_error() is at most `max_error`; null if no
   /// setting has both.
   const WorkPrecisionSetting* cheapest_below(double max_error) const;
+  /// Returns the cheapest setting with an expected outcome whose smallest_error() is at most `max_error`; null if no
+  /// setting has both. The position error of this setting may exceed `max_error`.
+  const WorkPrecisionSetting* cheapest_possibly_below(double max_error) const;
 };
+
+/// Marks the Pareto front of the settings of a problem, and its knee. A setting is on the front if its error is
+/// resolved and its outcome is expected, and if no other setting with an expected outcome is both cheaper and more
+/// accurate. An unresolved error of another setting counts as its largest_error(). Unresolved settings are not on the
+/// front, because their order is unknown.
+void mark_front(std::vector<WorkPrecisionSetting>& settings);
 
 /// Runs all settings, their reference solutions and the measurements of cost. The measurements run one at a time,
 /// everything else in parallel. Throws InputError before anything runs, and Stopped.

@@ -1,13 +1,11 @@
 """Picture of the results of `converge --over`: the error at each time step over the processor time, with a panel for
 each problem and a curve for each integrator."""
-from itertools import cycle
-
 import numpy as np
 from matplotlib.lines import Line2D
 
 from hapbench.columns import number_in, numbers
 from hapbench.errors import InputError
-from hapbench_looks import SERIES, distinguish, law_name
+from hapbench_looks import distinguish, law_name, series
 from hapbench_style import GREY, PLATE, SHEET, legend_above, note, number_ticks
 from hapbench_style import look as style_look
 
@@ -93,21 +91,20 @@ def draw_model_errors(files, sheet=SHEET):
 
 
 def draw_work_precision(files, sheet=SHEET):
-    """Returns the figure. Filled marks are resolved errors. Hollow marks are errors below ten times the error of the
-    reference solution. A ring marks the knee of the Pareto front of error and processor time. Grey lines mark the
-    requested error and real time.
+    """Returns the figure. Filled marks are resolved errors. Hollow marks are bounds of errors that the reference
+    solution does not resolve. A ring marks the knee of the Pareto front of error and processor time. Grey lines mark
+    the requested error and real time.
     """
     errors, times = files.records(ERRORS), files.records(TIMES)
-    cost, error = 1e3 * numbers(times, "seconds_per_simulated_second"), 1e6 * numbers(
-        errors, "position_error_m"
-    )
+    cost = 1e3 * numbers(times, "seconds_per_simulated_second")
+    error = error_or_bound(errors)
     if not (np.isfinite(error) & (error > 0)).any():
         raise InputError(
             'nothing to draw: no setting has an error; "hapbench converge" printed the reason for each problem'
         )
     problems = list(dict.fromkeys(row["problem"] for row in errors))
     integrators = list(dict.fromkeys(row["integrator"] for row in errors))
-    looks = dict(zip(integrators, cycle(SERIES)))
+    looks = dict(zip(integrators, series(len(integrators))))
     is_knee = is_true(times, "knee")
     requested = 1e6 * number_in(errors[0], "asked_error_m")
     rows, columns = sheet.grid(len(problems))
@@ -115,7 +112,7 @@ def draw_work_precision(files, sheet=SHEET):
     figure, axes = sheet.panels(rows, columns, 0.5 + (sheet.panel(2.4) + 0.2) * rows, sharey=True)
     for ax, problem in zip(axes.flat, problems):
         of_problem = np.array([row["problem"] == problem for row in errors])
-        series = [
+        drawn = [
             curve
             for name in integrators
             for curve in curves(
@@ -128,9 +125,7 @@ def draw_work_precision(files, sheet=SHEET):
             )
         ]
         across = Axis("processor time per\nsimulated second [ms]", cost, log=True)
-        over_axes(
-            ax, across, Axis("rms error of the\ntip's position [µm]", error, log=True), series
-        )
+        over_axes(ax, across, Axis("rms error of the\ntip's position [µm]", error, log=True), drawn)
         ax.axhline(requested, zorder=1, **REQUESTED)
         if cost[of_problem].max() > 0.1 * REAL_TIME:
             ax.axvline(REAL_TIME, zorder=1, **SPEED)
@@ -151,6 +146,15 @@ def draw_work_precision(files, sheet=SHEET):
     )
     legend_above(figure, marks, names, columns=None)
     return figure
+
+
+def error_or_bound(rows):
+    """Returns the position error of each setting [um]. If the error is not resolved, returns its bound: the difference
+    from the reference solution plus the error of the reference solution."""
+    difference, of_reference = (
+        1e6 * numbers(rows, name) for name in ("position_error_m", "reference_position_error_m")
+    )
+    return np.where(is_true(rows, "resolved"), difference, difference + of_reference)
 
 
 def leave_room(ax):
@@ -176,7 +180,7 @@ def legend_of(looks, requested, has_knee, has_unresolved, has_real_time):
         names.append("knee")
     if has_unresolved:
         marks.append(Line2D([], [], marker="s", color=GREY, mfc="white", ls="none"))
-        names.append("not resolved by the reference")
+        names.append("bound, not resolved by the reference")
     marks.append(Line2D([], [], **REQUESTED))
     names.append(f"error that is asked for: {requested:g} µm")
     if has_real_time:
@@ -221,13 +225,13 @@ def is_true(rows, column):
     return np.array([row[column] == "true" for row in rows])
 
 
-def curves(name, series, chosen, errors, cost, error):
-    """Yields (label, processor times, errors, style) of the curve of an integrator, and of its unresolved errors as
-    hollow marks."""
+def curves(name, of_curve, chosen, errors, cost, error):
+    """Yields (label, processor times, errors, style) of the curve of an integrator, and of the bounds of its
+    unresolved errors as hollow marks."""
     resolved = is_true(errors, "resolved")
-    look = {"color": series.colour, "marker": series.marker}
+    look = {"color": of_curve.colour, "marker": of_curve.marker}
     shown = chosen & np.isfinite(error) & (error > 0)
-    yield name, cost[shown], np.where(resolved, error, np.nan)[shown], look | {"ls": series.line}
+    yield name, cost[shown], np.where(resolved, error, np.nan)[shown], look | {"ls": of_curve.line}
     hollow = shown & ~resolved
     if hollow.any():
         yield None, cost[hollow], error[hollow], look | {"ls": "none", "mfc": "white"}

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <map>
 #include <string>
 
@@ -36,6 +37,22 @@ std::vector<WorkPrecisionProblem> study(const std::vector<std::string>& over, do
   return work_precision(question, {});
 }
 
+/// Returns a setting whose run of one simulated second costs `cost` [s], with a reference solution of the error 1.
+WorkPrecisionSetting priced(double cost, double error) {
+  WorkPrecisionSetting setting{"summation", "rk4"};
+  setting.error = {.position = error};
+  setting.reference_error = {.position = 1.0};
+  setting.cost = {.step_s = 1e-3 * cost, .time_step_s = 1e-3};
+  return setting;
+}
+
+std::vector<bool> front_of(std::vector<WorkPrecisionSetting> settings) {
+  mark_front(settings);
+  std::vector<bool> front;
+  for (const WorkPrecisionSetting& setting : settings) front.push_back(setting.on_front);
+  return front;
+}
+
 /// Returns the exact rms error [m] of the position that velocity Verlet computes with the time step h = `step` [s]. The
 /// mean is over the times k kStep with k = 0 … kSteps - 1. The solution of velocity Verlet is x_0 cos(omega' t) with
 /// cos(omega' h) = 1 - (omega h)^2 / 2.
@@ -58,8 +75,9 @@ TEST(WorkPrecision, FindsTheErrorsOfAnOscillator) {
   ASSERT_EQ(problem.settings.size(), 8u);
   for (const WorkPrecisionSetting& setting : problem.settings) {
     ASSERT_TRUE(setting.error) << setting.integrator << " " << setting.step_s;
-    // The force is K times the position.
-    EXPECT_NEAR(setting.error->force, kStiffness * setting.error->position, 1e-9 * setting.error->force);
+    // The force is K times the position, and is rounded.
+    const double rounding = kStiffness * kStart * std::numeric_limits<double>::epsilon();
+    EXPECT_NEAR(setting.error->force, kStiffness * setting.error->position, 1e-9 * setting.error->force + rounding);
     EXPECT_GT(setting.cost.step_s, 0.0);
     EXPECT_EQ(setting.cost.steps, static_cast<std::uint64_t>(std::lround(kSteps * kStep / setting.step_s)));
     if (setting.integrator != "velocity_verlet") continue;
@@ -80,6 +98,43 @@ TEST(WorkPrecision, ChoosesTheCheapestSettingBelowAnError) {
     }
   }
   EXPECT_EQ(problem.cheapest_below(1e-300), nullptr);
+}
+
+/// Checks that an unresolved error, which is at most 3 + 1, beats dearer settings with a larger error.
+TEST(WorkPrecision, CountsAnUnresolvedErrorAsItsBound) {
+  const WorkPrecisionSetting unresolved = priced(3, 3);
+  ASSERT_FALSE(unresolved.is_resolved());
+  EXPECT_EQ(front_of({priced(1, 40), priced(2, 20), unresolved, priced(4, 10)}),
+            (std::vector<bool>{true, true, false, false}));
+  // A failed run beats no setting.
+  WorkPrecisionSetting failed = unresolved;
+  failed.is_expected = false;
+  EXPECT_EQ(front_of({priced(1, 40), priced(2, 20), failed, priced(4, 10)}),
+            (std::vector<bool>{true, true, false, true}));
+}
+
+TEST(WorkPrecision, SeparatesErrorsThatAreBelowFromErrorsThatMayBe) {
+  WorkPrecisionProblem problem{"summation"};
+  problem.settings = {priced(1, 40), priced(2, 3), priced(3, 1)};
+  // The errors of the last two settings are at most 4 and 2, and may be 0.
+  EXPECT_EQ(problem.cheapest_below(3.5), &problem.settings[2]);
+  EXPECT_EQ(problem.cheapest_possibly_below(3.5), &problem.settings[1]);
+  EXPECT_EQ(problem.cheapest_below(1.5), nullptr);
+  EXPECT_EQ(problem.cheapest_possibly_below(1.5), &problem.settings[2]);
+}
+
+/// Checks that all settings have the same reference solution. Without contacts, `event` computes the trajectory of rk4.
+TEST(WorkPrecision, GivesEqualTrajectoriesEqualErrors) {
+  const WorkPrecisionProblem problem = study({"integrator.type=rk4,velocity_verlet,event"})[0];
+  ASSERT_EQ(problem.settings.size(), 12u);
+  for (std::size_t level = 0; level < 4; ++level) {
+    const WorkPrecisionSetting &rk4 = problem.settings[level], &event = problem.settings[8 + level];
+    ASSERT_TRUE(rk4.error && event.error);
+    EXPECT_EQ(rk4.error->position, event.error->position);
+    EXPECT_EQ(rk4.reference_error.position, event.reference_error.position);
+  }
+  // The reference solution is as exact as its check by velocity_verlet shows.
+  EXPECT_GE(problem.settings[0].reference_error.position, 0.9 * exact_error_of_verlet(kStep / 128));
 }
 
 TEST(WorkPrecision, TreatsEveryLawAsAProblem) {
