@@ -149,7 +149,7 @@ int CommandLine::parse_and_run(ProgramArguments arguments) {
   } catch (const CLI::CallForHelp&) {
     const std::vector<CLI::App*> chosen = app_->get_subcommands();
     const Layout layout = context_.layout();
-    fmt::print("{}", chosen.empty() ? program_help(layout) : command_help(*chosen.front(), layout));
+    fmt::print("{}", chosen.empty() ? program_help(*app_, layout) : command_help(*chosen.front(), layout));
     return kSuccess;
   } catch (const CLI::CallForVersion& version) {
     fmt::print("{}\n", version.what());

@@ -1,9 +1,12 @@
 #include "scenarios/program/help.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <string_view>
+#include <vector>
 
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/program/commands.hpp"
@@ -76,6 +79,26 @@ std::string options_text(const CLI::App& app, bool arguments, const Layout& layo
   return text.empty() ? "" : fmt::format("\n{}\n{}", bold(stdout, arguments ? "Arguments:" : "Options:"), text);
 }
 
+/// Returns true if a command has the shared option with its usual meaning. In other commands, an option of the same
+/// name has another placeholder, such as `new --out <file.json>`.
+bool has_option(const CommandGuide& guide, const SharedOption& shared, const CLI::App& program) {
+  if (guide.add == nullptr) return std::ranges::count(shared.python_commands, guide.name) > 0;
+  const CLI::Option* option =
+      program.get_subcommand(std::string(guide.name))->get_option_no_throw(std::string(shared.name));
+  return option != nullptr && kind_of_value(*option) == shared.placeholder;
+}
+
+/// Returns a text in parentheses with the commands that have the shared option. If less than a third of all commands do
+/// not have the option, names these instead. Returns an empty text if all commands have the option.
+std::string commands_text(const SharedOption& shared, const CLI::App& program) {
+  std::vector<std::string_view> with, without;
+  for (const CommandGuide& guide : command_guides())
+    (has_option(guide, shared, program) ? with : without).push_back(guide.name);
+  if (without.empty()) return "";
+  const bool names_others = 2 * without.size() < with.size();
+  return fmt::format(" ({}: {})", names_others ? "not in" : "in", fmt::join(names_others ? without : with, ", "));
+}
+
 }  // namespace
 
 std::string front_text(const Layout& layout) {
@@ -95,7 +118,7 @@ std::string front_text(const Layout& layout) {
          "\"hapbench --help\" explains the options that several commands share.\n";
 }
 
-std::string program_help(const Layout& layout) {
+std::string program_help(const CLI::App& program, const Layout& layout) {
   std::string text = front_text(layout) + "\n" + bold(stdout, "Options without a command:") + "\n";
   text += layout.entry("--help", "print this text", 2, 14);
   text += layout.entry(
@@ -103,9 +126,9 @@ std::string program_help(const Layout& layout) {
       2, 14);
   // Indent these options by four spaces: scripts/completion offers only options that are indented by two spaces.
   text += "\n" + bold(stdout, "Options that commands share, written after the command's name:") + "\n";
-  for (const auto& [name, placeholder, help] : shared_options())
-    text += layout.entry(placeholder.empty() ? std::string(name) : fmt::format("{} {}", name, placeholder), help, 4,
-                         kHelpColumn);
+  for (const SharedOption& option : shared_options())
+    text += layout.entry(fmt::format("{}{}{}", option.name, option.placeholder.empty() ? "" : " ", option.placeholder),
+                         std::string(option.help) + commands_text(option, program), 4, kHelpColumn);
   return text + "\n" + bold(stdout, "Exit status:") + "\n" + layout.entry("0", "success", 2, 8) +
          layout.entry("1", "internal fault", 2, 8) + layout.entry("2", "bad input or usage", 2, 8) +
          layout.entry("3", "a run did not end as its scenario expects, or the cause that the command's help names", 2,

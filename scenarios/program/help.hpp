@@ -16,8 +16,8 @@ inline constexpr const char* kProgramSummary = "an offline bench for haptic rend
 /// Returns the text that the program prints without a command: the commands in their groups, and the first
 /// commands to try.
 std::string front_text(const Layout& layout);
-/// Returns the text of `hapbench --help`.
-std::string program_help(const Layout& layout);
+/// Returns the text of `hapbench --help`. `program`: has the commands as subcommands.
+std::string program_help(const CLI::App& program, const Layout& layout);
 /// Returns the help of a command, wrapped to Layout::prose_width().
 std::string command_help(const CLI::App& command, const Layout& layout);
 

@@ -9,21 +9,24 @@ namespace hapbench {
 
 namespace {
 
+constexpr std::string_view kPython[] = {"import", "audit", "plot", "report"};
+constexpr std::string_view kPrinting[] = {"import", "audit"}, kWithFolder[] = {"audit"};
+
 /// The options that mean the same in several commands.
 constexpr SharedOption kSharedOptions[] = {
     {"--set", "<path=value>", "override a field of every scenario, such as time.steps=100; repeatable"},
-    {"--out", "<dir>", "folder of the results (default: results/out/NAME, in the current folder)"},
+    {"--out", "<dir>", "folder of the results (default: results/out/NAME, in the current folder)", kWithFolder},
     {"--jobs", "<n>", "number of threads; results do not depend on it (default: all threads)"},
     {"--seed", "<n>", "seed of the random numbers (default: 1)"},
     {"--module", "<file.so>",
      "load a compiled force law or source of contacts; HAPBENCH_MODULE_PATH names folders of such files"},
     {"--allow-modules", "", "load every library that a scenario names; its code can do anything that you can"},
-    {"--json", "", "print JSON instead of tables, for scripts"},
+    {"--json", "", "print JSON instead of tables, for scripts", kPrinting},
     {"--table", "<format>",
      "print only the tables, without other text: markdown, latex (packages booktabs and siunitx), or csv"},
-    {"--quiet", "", "print nothing on standard output, and no progress"},
-    {"--wide", "", "print all columns, also beyond the width of the terminal"},
-    {"--help", "", "explain the command, with examples"}};
+    {"--quiet", "", "print nothing on standard output, and no progress", kPython},
+    {"--wide", "", "print all columns, also beyond the width of the terminal", kPrinting},
+    {"--help", "", "explain the command, with examples", kPython}};
 
 /// Shared options that the help of each command explains in full, because users need them often.
 constexpr std::string_view kExplained[] = {"--set", "--jobs"};
@@ -35,8 +38,8 @@ std::span<const SharedOption> shared_options() {
 }
 
 std::string shared_option_help(const std::string& name) {
-  for (const auto& [option, placeholder, help] : kSharedOptions)
-    if (option == name) return std::string(help);
+  for (const SharedOption& option : kSharedOptions)
+    if (option.name == name) return std::string(option.help);
   return "";
 }
 

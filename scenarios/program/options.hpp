@@ -23,6 +23,8 @@ struct OutputOptions {
 /// An option with one meaning in every command that has it.
 struct SharedOption {
   std::string_view name, placeholder, help;
+  /// Commands of Python packages that have the option. The other commands declare their options themselves.
+  std::span<const std::string_view> python_commands = {};
 };
 /// Returns the shared options in the order of the help.
 std::span<const SharedOption> shared_options();

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
 #include <regex>
 #include <set>
 
@@ -100,6 +101,39 @@ TEST(Terminal, ListsNoOptionOfACommandAsOneOfTheProgram) {
   EXPECT_EQ(hapbench({"--json"}).status, 2);
   const std::string shared = "Options that commands share, written after the command's name:";
   EXPECT_GE(lines_below(help, shared).size(), 9u);
+}
+
+/// Returns true if the help of a command lists an option: by name and placeholder in a line of its own, or by name in
+/// the line of shared options, which begins with --help.
+bool lists_option(const std::string& help, const std::string& name, const std::string& placeholder) {
+  for (const std::string& line : lines_of(help)) {
+    if ((line + " ").starts_with("  " + name + (placeholder.empty() ? "" : " ") + placeholder + " ")) return true;
+    if (line.starts_with("  --help") && std::regex_search(line, std::regex("[ ,]" + name + "(,| |$)"))) return true;
+  }
+  return false;
+}
+
+TEST(Terminal, NamesTheCommandsThatHaveASharedOption) {
+  std::map<std::string, std::string> helps;
+  for (const std::string& command : command_names())
+    helps[command] =
+        command == "import" ? hapbench({"import", "stroke", "--help"}).out : hapbench({command, "--help"}).out;
+  std::string shared;
+  for (const std::string& line :
+       lines_below(hapbench({"--help"}).out, "Options that commands share, written after the command's name:"))
+    shared += line.starts_with("    --") ? "\n" + line : line.substr(line.find_first_not_of(' ') - 1);
+  // Each entry has a name, a placeholder, a meaning, and the commands that have or do not have the option.
+  static const std::regex kEntry(R"(\n    (--[a-z-]+) ?(<[^>]*>)? [^\n]*?(?: \((not )?in: ([a-z, ]+)\))?(?=\n|$))");
+  std::size_t entries = 0;
+  for (std::sregex_iterator entry(shared.begin(), shared.end(), kEntry), end; entry != end; ++entry, ++entries) {
+    const bool names_others = !(*entry)[4].matched || (*entry)[3].matched;
+    const std::string named = ", " + (*entry)[4].str() + ",";
+    for (const auto& [command, help] : helps) {
+      const bool is_named = named.find(" " + command + ",") != std::string::npos;
+      EXPECT_EQ(lists_option(help, (*entry)[1], (*entry)[2]), is_named != names_others) << command << (*entry)[0];
+    }
+  }
+  EXPECT_EQ(entries, 11u);
 }
 
 /// Checks that there are at most 85 option names, because users could not remember more.
