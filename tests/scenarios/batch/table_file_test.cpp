@@ -79,7 +79,7 @@ TEST_F(TableFiles, OfAnotherDefinitionAreRefusedAndLeftAlone) {
   expect_refusal([&] { TableFile(title("theirs")); }, "sweep.csv.part: holds 1 finished runs of another sweep");
   EXPECT_EQ(read_file(part_), whole);
   fs::remove(directory_ / "sweep.json.part");
-  expect_refusal([&] { resumed(); }, "is not the table of this sweep");
+  expect_refusal([&] { resumed(); }, "sweep.json.part is missing; allowed: another --out");
 }
 
 TEST_F(TableFiles, DamagedAtRandomAreReadOrRefused) {
