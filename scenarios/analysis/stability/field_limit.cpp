@@ -138,6 +138,7 @@ void add_interval(const LimitQuestion& question, const StableInterval& interval,
                   FieldLimit& limit) {
   const IntervalSearchOptions& search = question.search;
   limit.scattered = interval.scattered;
+  limit.scattered_at_current = interval.scattered_at_current;
   if (interval.stable) {
     if (question.between) limit.tried_between = verification_samples(search, interval);
     limit.end.value = search.value_at(*interval.stable);

@@ -81,6 +81,7 @@ struct FieldLimit {
   std::size_t tried_between = 0;
   /// True if stable values exist, but no contiguous stable interval is as long as kNearLimit times the limit.
   bool scattered = false;
+  bool scattered_at_current = false;      ///< StableInterval::scattered_at_current
   std::vector<JudgedValue> runs;          ///< all runs, by increasing value
   std::vector<JudgedValue> inconsistent;  ///< unstable runs inside the interval and stable runs outside of it
   std::size_t undecided = 0;              ///< number of runs that were too short to judge (RunStability::undecided)

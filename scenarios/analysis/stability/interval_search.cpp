@@ -194,10 +194,10 @@ std::vector<double> parameters_below(const IntervalSearchOptions& options, doubl
 }
 
 // NOLINTNEXTLINE(readability-function-cognitive-complexity): one search whose repetitions share the evaluated values.
-StableInterval find_verified_interval(const IntervalSearchOptions& options, EvaluatedParameters& evaluated,
+StableInterval find_verified_interval(IntervalSearchOptions options, EvaluatedParameters& evaluated,
                                       const IsStable& stable, bool near,
                                       const std::function<void(std::span<const double>)>& ahead) {
-  bool scattered = false;
+  bool scattered = false, scattered_at_current = false;
   // Stable parameters up to this value are isolated samples, which the search treats as unstable.
   double scattered_up_to = -1.0;
   const auto counts_as_stable = [&](double t) { return t > scattered_up_to && stable(t); };
@@ -211,8 +211,9 @@ StableInterval find_verified_interval(const IntervalSearchOptions& options, Eval
     return std::nullopt;
   };
   while (true) {
-    const StableInterval interval = find_stable_interval(options, evaluated, counts_as_stable, true);
+    StableInterval interval = find_stable_interval(options, evaluated, counts_as_stable, true);
     if (!interval.stable) return {.scattered = scattered};
+    interval.scattered_at_current = scattered_at_current;
     const double first = interval.first.value_or(*interval.stable);
     // Verify the whole interval, then the neighbourhood of its limit.
     if (first_failing(parameters_between(first, *interval.stable, kVerificationSamples))) continue;
@@ -220,11 +221,16 @@ StableInterval find_verified_interval(const IntervalSearchOptions& options, Eval
     const std::optional<double> failing = first_failing(parameters_below(options, *interval.stable));
     if (!failing) return interval;
     if (*failing > first) continue;
-    // The unstable sample lies below the interval: the interval is shorter than kNearLimit times the limit. Search
-    // above the interval. If the interval contains the current value, stop instead.
+    // The unstable sample lies below the interval: the interval is shorter than kNearLimit times the limit.
     scattered = true;
     const std::optional<double> current = options.current_parameter();
-    if (current && first <= *current && *current <= *interval.stable) return {.scattered = true};
+    if (current && first <= *current && *current <= *interval.stable) {
+      // The search began in this interval and has not seen the intervals below it. Search again from t = 0.
+      scattered_at_current = true;
+      options.current.reset();
+      continue;
+    }
+    // Search above the interval.
     scattered_up_to = *interval.stable;
     for (auto& [t, is_stable] : evaluated) is_stable = is_stable && t > scattered_up_to;
   }

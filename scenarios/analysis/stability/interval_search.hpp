@@ -47,6 +47,9 @@ struct StableInterval {
   std::optional<double> before = {};  ///< unstable parameter just below `first`; empty if t = 0 is stable
   /// True if stable parameters exist, but no contiguous stable interval is as long as kNearLimit times the limit.
   bool scattered = false;
+  /// True if the current value is stable, but its stable interval is shorter than kNearLimit times its limit. The
+  /// result is then the first longer interval, counted from t = 0.
+  bool scattered_at_current = false;
 };
 
 /// Evaluated parameters. The value of an entry is true if the parameter is stable.
@@ -88,9 +91,10 @@ std::vector<double> parameters_below(const IntervalSearchOptions& options, doubl
 
 /// Finds an interval as find_stable_interval does with `beside`, and verifies it: by kVerificationSamples samples
 /// between its ends and, if `near` is true, by kSamplesNearLimit samples just below the limit. If a sample is unstable,
-/// searches again with this sample as an unstable parameter. Calls `ahead` with parameters before it evaluates them, so
-/// that the caller can evaluate them in parallel.
-StableInterval find_verified_interval(const IntervalSearchOptions& options, EvaluatedParameters& evaluated,
+/// searches again with this sample as an unstable parameter. Ignores intervals that are shorter than kNearLimit times
+/// their limit, also the interval of the current value. Calls `ahead` with parameters before it evaluates them, so that
+/// the caller can evaluate them in parallel.
+StableInterval find_verified_interval(IntervalSearchOptions options, EvaluatedParameters& evaluated,
                                       const IsStable& stable, bool near,
                                       const std::function<void(std::span<const double>)>& ahead);
 

@@ -76,6 +76,13 @@ std::string remarks_text(const LimitRow& row, const Layout& layout) {
         significant(limit.own->value), run_verdict_name(limit.own->verdict),
         question.search.smallest ? "high" : "low"));
   }
+  if (limit.scattered_at_current && limit.end.value && limit.own) {
+    say(fmt::format(
+        "the run at the scenario's value {} is stable, but around it stable and unstable values alternate and no "
+        "interval of {:g} % is stable: the limit is the end of the first longer interval, counted from the {} end of "
+        "the range",
+        significant(limit.own->value), 100.0 * kNearLimit, question.search.smallest ? "high" : "low"));
+  }
   if (limit.theory_has_none)
     say(fmt::format("by the eigenvalues of one step, no value of the range is stable{}",
                     limit.end.value ? "; the runs are too short to show the growth" : ""));
