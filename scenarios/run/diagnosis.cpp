@@ -56,8 +56,8 @@ constexpr Rule kRules[] = {
      "the loop is unstable without contact", unstable_alone, against_unstable_servo,
      [](const DiagnosedRun& r) { return ": " + unstable_without_wall(r.scenario()); }},
     {"edge",
-     "K divided by the linear limit of the loop of device, hand, tool and contact (without dry friction), in a run "
-     "that vibrates, diverges or loses contact",
+     "K divided by the linear limit of the loop of device, hand, tool and contact (without dry friction and without a "
+     "slow drift along the surface), in a run that vibrates, diverges or loses contact",
      "1", kMaxLimitRatio, "K is {} times the linear stability limit", stability_limit_ratio, against_unstable_stiffness,
      no_more, true},
     {"loop",

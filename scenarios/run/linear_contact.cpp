@@ -4,13 +4,18 @@
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <limits>
+#include <numbers>
 #include <utility>
+#include <vector>
 
 #include "algorithms/stages/damping_and_limits.hpp"
+#include "results/observe/contact_forces.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/scene_loop.hpp"
 #include "sim/core/hash.hpp"
+#include "sim/core/math.hpp"
 
 namespace hapbench {
 namespace {
@@ -261,6 +266,40 @@ std::optional<ContactAtRest> contact_at_rest(const Scenario& scenario, const Nam
   return ContactAtRest{contact, is_equilibrium, position};
 }
 
+/// Returns ln |z| of an eigenvalue of a loop: the growth in one step.
+double growth(const std::complex<double>& z) {
+  return math::log(std::sqrt(std::norm(z)));
+}
+
+/// Returns true if a mode is a drift: it grows by more than e^(2 pi) within a turn, so that no oscillation is visible.
+/// An example is a tool that begins to roll off a dome.
+bool is_drift(const std::complex<double>& z) {
+  return z.real() > 0.0 && growth(z) > 0.0 && std::abs(math::atan2(z.imag(), z.real())) <= growth(z);
+}
+
+/// Returns true if all drifts grow by less than e in 1 / (2 pi kVibrationCutoff). Less than half of the amplitude of
+/// such a drift passes a high-pass of first order at the cutoff, so that it is no cause of vibration. `dt`: time step
+/// [s].
+bool drifts_slowly(const std::vector<Eigen::MatrixXd>& loop, double dt) {
+  const double fast = 2.0 * std::numbers::pi * kVibrationCutoff * dt;
+  return std::ranges::none_of(loop, [fast](const Eigen::MatrixXd& matrix) {
+    const Eigen::VectorXcd all = eigenvalues(matrix);
+    return std::ranges::any_of(all, [fast](const auto& z) { return is_drift(z) && growth(z) >= fast; });
+  });
+}
+
+/// Returns true if is_stable_loop() holds for all eigenvalues except drifts.
+bool is_stable_except_drift(const std::vector<Eigen::MatrixXd>& loop) {
+  if (is_stable_loop(loop)) return true;
+  std::vector<Eigen::MatrixXd> modes;  // one matrix for each eigenvalue and its conjugate
+  for (const Eigen::MatrixXd& matrix : loop)
+    for (const std::complex<double>& z : eigenvalues(matrix)) {
+      if (is_drift(z)) continue;
+      modes.emplace_back(Eigen::Matrix2d{{z.real(), -z.imag()}, {z.imag(), z.real()}});
+    }
+  return is_stable_loop(modes);
+}
+
 }  // namespace
 
 std::optional<ContactAtRest> linear_contact(const CheckedScenario& scenario,
@@ -290,7 +329,10 @@ std::optional<bool> ContactLoops::is_stable(const Scenario& scenario, const Name
   known_ = contact;
   known_rendering_ = scenario.rendering;
   const std::vector<Eigen::MatrixXd> loop = contact_loop(scenario, *contact);
-  return loop.empty() ? std::nullopt : std::optional(is_stable_loop(loop));
+  if (loop.empty()) return std::nullopt;
+  if (!is_stiffness_) return is_stable_loop(loop);
+  if (!ignores_drift_) ignores_drift_ = drifts_slowly(loop, scenario.time.step);
+  return *ignores_drift_ ? is_stable_except_drift(loop) : is_stable_loop(loop);
 }
 
 std::optional<double> limit_along(const LimitWalk& walk, const std::function<std::optional<bool>(double)>& is_stable) {

@@ -64,7 +64,9 @@ class ContactLoops {
       : near_(near), is_stiffness_(is_stiffness), at_any_pose_(at_any_pose) {}
 
   /// Returns true if the loop of the scenario is stable. Returns nothing if there is no contact to linearise, or if
-  /// contact_loop() is empty.
+  /// contact_loop() is empty. The loop of a stiffness field may drift: with a real eigenvalue, the tool leaves an
+  /// equilibrium, such as the top of a dome, at any K. Such drifts do not count if they are slower than any vibration
+  /// above kVibrationCutoff in the first call. No K is a limit for such a drift.
   std::optional<bool> is_stable(const Scenario& scenario, const NamedFiles& files,
                                 const std::shared_ptr<const PointShell>& shell);
 
@@ -81,6 +83,7 @@ class ContactLoops {
   /// The last contact that was found. It has the stiffness K and the damping B of known_rendering_.
   std::optional<LinearContact> known_;
   RenderingConfig known_rendering_;
+  std::optional<bool> ignores_drift_;     ///< true if drifts do not count; empty before the first call of is_stable()
   std::optional<Vec3> last_equilibrium_;  ///< tip position at the equilibrium that the last call of is_stable() found
 };
 
@@ -116,7 +119,7 @@ struct StiffnessSearch {
 /// result does not depend on the equilibrium near which the search begins: the search goes down from the scenario's K
 /// by a factor of two below the first stable K, or as far as there is an equilibrium. From there it goes up in steps of
 /// 1 % and follows the equilibrium. If a K has no equilibrium, the loop uses the last contact that was found, converted
-/// to this K by scaled().
+/// to this K by scaled(). Slow drifts do not count as unstable (ContactLoops::is_stable()).
 std::optional<double> linear_stiffness_limit(const CheckedScenario& scenario,
                                              const std::shared_ptr<const PointShell>& shell, const ContactState& near,
                                              const StiffnessSearch& search);

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
 #include <string>
 
 #include "algorithms/stages/damping_and_limits.hpp"
@@ -11,6 +12,7 @@
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/scene/environments.hpp"
 #include "scenarios/scene/load_scenario.hpp"
+#include "tests/results/files.hpp"
 
 namespace hapbench::linear_contact_test {
 namespace {
@@ -73,6 +75,58 @@ TEST(LinearContact, OfAProxyAboveAPointHasTheLimitOfASpring) {
       ASSERT_TRUE(limit) << K;
       EXPECT_NEAR(*limit, closed, 1e-7 * closed) << aside << " " << K;  // error of the central differences
     }
+}
+
+/// Writes a mesh of the top of a sphere with a radius of 10 mm, whose top is at z = 10 mm.
+void write_dome(const std::filesystem::path& file) {
+  constexpr int kCells = 30;  // number of cells along each axis
+  std::string text;
+  for (int i = 0; i <= kCells; ++i)
+    for (int j = 0; j <= kCells; ++j) {
+      const double x = 2e-4 * (i - kCells / 2), y = 2e-4 * (j - kCells / 2);
+      text += fmt::format("v {} {} {}\n", x, y, std::sqrt(1e-4 - x * x - y * y));
+    }
+  const auto vertex = [](int i, int j) { return i * (kCells + 1) + j + 1; };
+  for (int i = 0; i < kCells; ++i)
+    for (int j = 0; j < kCells; ++j)
+      text += fmt::format("f {} {} {}\nf {} {} {}\n", vertex(i, j), vertex(i + 1, j), vertex(i + 1, j + 1),
+                          vertex(i, j), vertex(i + 1, j + 1), vertex(i, j + 1));
+  test::write_plainly(file, text);
+}
+
+/// Checks a ball that a constant force presses on the top of a dome. At any K, the ball drifts down the dome: real
+/// eigenvalues of 1.01 per step of 1 ms, which are no vibration. The limit of the vibration along the normal is 2 b / T
+/// for the combined stiffness of the contacts, which is between K / 2 and K: the normals of all contacts are at most 45
+/// degrees from the force.
+TEST(LinearContact, OfABallOnADomeHasTheLimitOfItsVibration) {
+  constexpr double kViscous = 3.0, kLowest = 2.0 * kViscous / kStep;
+  const test::TemporaryDirectory folder;
+  write_dome(folder / "dome.obj");
+  Json json = Json::parse(R"({
+    "environment": {"type": "mesh", "file": "dome.obj", "scale": 1, "spacing_m": 0.0002},
+    "initial": {"position_m": [0, 0, 0.0111]},
+    "tool": {"diameter_m": 0.002, "length_m": 0.02, "tip": "round"}, "hand": {"type": "force", "z_N": -1},
+    "device": {"type": "impedance", "handle_mass_kg": 0.2, "coulomb_N": 0, "encoder_step_m": 0},
+    "rendering": {"algorithm": "shaped_stiffness", "damping_ratio": 0,
+                  "friction": {"mu_s_N_s_per_m": 3, "mu_f_s_per_m": 0}}
+  })");
+  json["time"] = {{"step_s", kStep}, {"duration_s", 0.6}};
+  json["device"]["viscous_N_s_per_m"] = kViscous;
+  for (const double K : {9000.0, 12000.0, 20000.0}) {
+    json["rendering"]["stiffness_N_per_m"] = K;
+    const CheckedScenario scenario = checked(read_scenario(json, folder.path()));
+    ContactState near;
+    near.pose.position = {0, 0, 0.0107};
+    const auto limit = linear_stiffness_limit(scenario, make_shell(scenario.scenario(), scenario.files()), near);
+    ASSERT_TRUE(limit) << K;
+    EXPECT_GE(*limit, kLowest) << K;
+    EXPECT_LE(*limit, 2.0 * kLowest) << K;
+    const Result result = run_scenario(scenario, {}, false, nullptr, /*diagnose=*/true);
+    for (const Diagnosed& found : *result.diagnosis) {
+      EXPECT_NE(found.rule, "loop") << K;
+      EXPECT_TRUE(found.rule != "edge" || found.value <= K / kLowest) << K << ": " << found.value;
+    }
+  }
 }
 
 /// Returns the value of the rule `edge` in a run at `stiffness` that passes through the surface; 0 without a finding. A
