@@ -7,12 +7,14 @@
 
 #include "algorithms/stages/damping_and_limits.hpp"
 #include "device_model/impedance_device.hpp"
+#include "results/observe/contact_forces.hpp"
 #include "scenarios/input/rounding.hpp"
 #include "scenarios/run/expectations.hpp"
 #include "scenarios/run/linear_contact.hpp"
 #include "scenarios/run/scene_distances.hpp"
 #include "scenarios/run/scene_loop.hpp"
 #include "scenarios/run/scripted_motion.hpp"
+#include "scenarios/run/vibration_frequency.hpp"
 #include "scenarios/run/vibration_limit.hpp"
 #include "scenarios/scene/environments.hpp"
 
@@ -249,12 +251,8 @@ Number bounces(const DiagnosedRun& run) {
 }
 
 std::string buzz_frequency(const DiagnosedRun& run) {
-  const RunObservations::Quarter& last = run.observations.last_quarter;
-  Eigen::Index axis = 0;
-  if (last.rows < kMinQuarterSteps || !(last.high_squares.maxCoeff(&axis) > 0.0)) return "";
-  const double turns = static_cast<double>(last.high_sign_changes[static_cast<std::size_t>(axis)]);
-  if (turns < 2.0) return "";  // a single jump of the force has no frequency
-  return fmt::format(", at about {:.0f} Hz", 0.5 * turns / (run.scenario().time.step * static_cast<double>(last.rows)));
+  const auto frequency = oscillation_frequency(run.observations.last_forces, run.scenario().time.step);
+  return frequency && *frequency > kVibrationCutoff ? fmt::format(", at about {:.0f} Hz", *frequency) : "";
 }
 
 }  // namespace hapbench

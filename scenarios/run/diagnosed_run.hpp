@@ -126,9 +126,8 @@ Number saturation(const DiagnosedRun& run);
 /// which the hand's script may have lifted the tool (scripted_lifts()).
 Number bounces(const DiagnosedRun& run);
 
-/// Returns the frequency of the vibration as text: half the number of sign changes of the strongest component of the
-/// force above 30 Hz in the last quarter, divided by the duration of the steps in this quarter. Empty if this quarter
-/// has fewer than 10 steps, or if there is no force above 30 Hz.
+/// Returns the frequency of the vibration as text: oscillation_frequency() of the rendered force in the last quarter.
+/// Empty if there is no such frequency, or if it is at most kVibrationCutoff.
 std::string buzz_frequency(const DiagnosedRun& run);
 
 }  // namespace hapbench

@@ -1,6 +1,6 @@
 #include "scenarios/run/diagnosis_observer.hpp"
 
-#include <cmath>
+#include <algorithm>
 #include <cstddef>
 #include <variant>
 
@@ -23,18 +23,13 @@ std::optional<double> force_limit(const Scenario& scenario) {
 }  // namespace
 
 DiagnosisObserver::DiagnosisObserver(const Scenario& scenario)
-    : scenario_(scenario),
-      force_limit_(force_limit(scenario)),
-      input_limit_(input_force_limit(scenario.device)),
-      high_pass_(vibration_filter(scenario.time.step)) {}
+    : scenario_(scenario), force_limit_(force_limit(scenario)), input_limit_(input_force_limit(scenario.device)) {
+  // The steps of a quarter are stored; on_step must not allocate.
+  observations_.last_forces.reserve(std::min(kMaxForces, static_cast<std::size_t>(scenario.time.steps) / 4 + 1));
+}
 
 void DiagnosisObserver::on_step(const StepRecord& record) noexcept {
-  // A new trial begins: the high-pass filter starts at the first force.
-  if (record.step == 0) {
-    was_in_contact_ = false;
-    high_.setZero();
-    if (high_pass_) high_pass_->settle_at(record.force.rendered);
-  }
+  if (record.step == 0) was_in_contact_ = false;  // a new trial begins
   if (record.colliding > 0) add_contact(record);
   add_to_quarter(record);
   was_in_contact_ = record.colliding > 0;
@@ -56,16 +51,15 @@ void DiagnosisObserver::add_to_quarter(const StepRecord& record) noexcept {
   RunObservations::Quarter& last = observations_.last_quarter;
   const std::uint64_t quarter = record.step * 4 / static_cast<std::uint64_t>(scenario_.time.steps);
   // Start the statistics again when a new quarter begins.
-  if (record.step == 0 || quarter != quarter_) last = {.start = record.tool.pose.position};
+  if (record.step == 0 || quarter != quarter_) {
+    last = {.start = record.tool.pose.position};
+    observations_.last_forces.clear();
+  }
   quarter_ = quarter;
   ++last.rows;
   last.always_in_contact = last.always_in_contact && record.colliding > 0;
-  if (!high_pass_) return;
-  // Accumulate power and sign changes of the force above 30 Hz.
-  const Vec3 high = high_pass_->filter(record.force.rendered);
-  last.high_squares += high.cwiseAbs2();
-  for (int i = 0; i < 3; ++i) last.high_sign_changes[static_cast<std::size_t>(i)] += high[i] * high_[i] < 0.0;
-  high_ = high;
+  if (observations_.last_forces.size() < observations_.last_forces.capacity())
+    observations_.last_forces.push_back(record.force.rendered);
 }
 
 }  // namespace hapbench

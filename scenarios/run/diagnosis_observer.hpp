@@ -1,12 +1,12 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <utility>
+#include <vector>
 
-#include "results/observe/contact_forces.hpp"
 #include "scenarios/run/linear_contact.hpp"
 #include "scenarios/run/outcome.hpp"
 #include "scenarios/scene/scenario.hpp"
@@ -34,17 +34,18 @@ struct RunObservations {
     std::uint64_t rows = 0;
     bool always_in_contact = true;  ///< true if every step of the quarter is in contact
     Vec3 start = Vec3::Zero();      ///< tip position in the first step of the quarter [m]
-    /// Sum, over the steps of the quarter, of the squared force above 30 Hz, per axis [N^2].
-    Vec3 high_squares = Vec3::Zero();
-    std::array<std::uint64_t, 3> high_sign_changes{};  ///< number of sign changes of the force above 30 Hz, per axis
   } last_quarter;
+  /// Rendered force in the steps of the last quarter [N], at most its first DiagnosisObserver::kMaxForces steps.
+  std::vector<Vec3> last_forces;
   Vec3 tip = Vec3::Zero();  ///< tip position in the last step [m]
   OutcomeFacts facts;       ///< facts of the first trial whose OutcomeFacts are not all empty
 };
 
-/// Accumulates the quantities for the diagnosis rules. Cost: about 20 ns a step; constant memory.
+/// Accumulates the quantities for the diagnosis rules. Cost: about 20 ns a step; at most 400 KB.
 class DiagnosisObserver final : public Observer {
  public:
+  static constexpr std::size_t kMaxForces = 16384;  ///< largest number of stored forces
+
   /// The scenario must outlive the observer.
   explicit DiagnosisObserver(const Scenario& scenario);
 
@@ -75,10 +76,8 @@ class DiagnosisObserver final : public Observer {
   const OutcomeObserver* outcome_ = nullptr;  ///< observer of the current trial; null before the first trial
   /// Limits of the rendered force and of the hand's input force [N]; empty without a limit.
   std::optional<double> force_limit_, input_limit_;
-  std::optional<HighPass> high_pass_;
   std::uint64_t quarter_ = 0;
   bool was_in_contact_ = false;  ///< true if the tool was in contact in the previous step
-  Vec3 high_ = Vec3::Zero();     ///< force above 30 Hz in the previous step [N]
   RunObservations observations_;
 };
 

@@ -413,6 +413,27 @@ TEST(Diagnosis, ReportsTheFrequencyOfABuzz) {
   EXPECT_NEAR(std::stod(frequency[1]), 71.2, 1.5);
 }
 
+/// Checks a hand that presses a ball on a plane with 1.2 N and shakes it at 40 Hz with 0.8 N. The force of the contact
+/// also has harmonics. The peaks of the spectrum are at most half a bin of 1 / (4 * 0.5 s) from their frequency.
+TEST(Diagnosis, ReportsTheFundamentalFrequencyOfABuzz) {
+  const test::TemporaryDirectory folder;
+  test::write_plainly(folder / "shaken.json", R"({
+    "time": {"step_s": 0.0005, "duration_s": 2},
+    "environment": {"type": "plane", "size_m": 0.02, "spacing_m": 0.0002}, "initial": {"position_m": [0, 0, 0.002]},
+    "tool": {"diameter_m": 0.002, "length_m": 0.02, "tip": "round"},
+    "hand": {"type": "force",
+             "z_N": {"type": "sine", "mean": -1.2, "amplitude": 0.8, "period_s": 0.025, "phase_rad": 0}},
+    "rendering": {"algorithm": "shaped_stiffness", "stiffness_N_per_m": 20000, "damping_ratio": 0.7, "mass_kg": 0.1}
+  })");
+  const std::string scene = folder / "shaken.json";
+  const Result result = run({scene.c_str()});
+  const Diagnosed* const found = finding(result, "buzz");
+  ASSERT_NE(found, nullptr);
+  std::smatch frequency;
+  ASSERT_TRUE(std::regex_search(found->says, frequency, std::regex(", at about ([0-9]+) Hz"))) << found->says;
+  EXPECT_NEAR(std::stod(frequency[1]), 40.0, 1.0);
+}
+
 /// Checks that the advice does not name the law that is in use.
 TEST(Diagnosis, AdvisesNoLawThatIsInUse) {
   const LoadedScenario loaded = load_scenario(find_scenario("drag_molar"), {});
