@@ -251,7 +251,10 @@ void PassivityObserver::report(Section& s) const {
       .varies_smoothly()
       .has_either_sign();
   s.metric("net_created_J", "J",
-           "net created energy, max(0, -energy_min_J); 0 means that the run shows no violation of passivity",
+           "net created energy, max(0, -energy_min_J); 0 means that the rendered force shows no violation of passivity "
+           "in this run. The rendered force is the force that the law commands. A device that delays or limits this "
+           "force can create energy that this metric does not count: actuator_J of energy.csv is the work of the force "
+           "that the motors apply",
            if_any(e.rows, e.net_created()), Better::less);
 }
 

@@ -203,6 +203,18 @@ Number encoder_force(const DiagnosedRun& run) {
   return quotient(normal_damping(run.scenario().rendering) * fastest, mean);
 }
 
+Number created_energy(const DiagnosedRun& run) {
+  const Number rendered = run.metric("passivity.net_created_J");
+  const bool is_observed = run.tool != nullptr && run.observations.created_by_motors;
+  return run.if_completed(rendered && is_observed ? run.observations.created_by_motors : rendered);
+}
+
+std::string created_by(const DiagnosedRun& run) {
+  const bool is_observed = run.tool != nullptr && run.observations.created_by_motors;
+  return is_observed ? " by the force of the motors, with the delay and the limits of the device"
+                     : " by the rendered force";
+}
+
 Number damping_share(const DiagnosedRun& run) {
   const Scenario& s = run.scenario();
   const ImpedanceDeviceConfig* device = run.impedance();

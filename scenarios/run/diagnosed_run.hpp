@@ -65,10 +65,11 @@ Number ended(const DiagnosedRun& run) {
 }
 
 /// Thresholds of rules that other rules or the advice also use. The table of the rules in diagnosis.cpp describes the
-/// number that each threshold bounds. kMaxChatter is in 1/s; all other thresholds are pure numbers.
+/// number that each threshold bounds. kMaxChatter is in 1/s and kMaxCreatedEnergy in J; all other thresholds are pure
+/// numbers.
 inline constexpr double kMaxBuzz = 0.1, kMaxLimitRatio = 0.8, kMaxEncoderForce = 0.1, kMaxReduction = 0.1,
                         kMaxChatter = 10.0, kMaxDampingShare = 0.5, kMaxSoftness = 3.0, kMaxCoarseness = 1.15,
-                        kMaxSaturation = 0.01;
+                        kMaxSaturation = 0.01, kMaxCreatedEnergy = 1e-3;
 /// Threshold for shake() [m/s]. It is ten times kMaxVibration, because shake() includes the landing: a landing at speed
 /// v contributes v sqrt(2.6 ms / duration of the run).
 inline constexpr double kMaxShake = 1e-2;
@@ -111,6 +112,11 @@ Number coarseness(const DiagnosedRun& run);
 /// three cases: the device is no impedance device, the damping is Hunt-Crossley damping, or no vibration, force step or
 /// force reversal exceeds its threshold.
 Number encoder_force(const DiagnosedRun& run);
+/// Returns the net energy that the rendering created [J]. On an impedance device, this is the energy that the motors
+/// gave (RunObservations::created_by_motors). Without observations, returns the metric passivity.net_created_J.
+Number created_energy(const DiagnosedRun& run);
+/// Returns the force whose energy created_energy() is, as text.
+std::string created_by(const DiagnosedRun& run);
 /// Returns B dt / m divided by the largest value of B dt / m at which a step is stable. B is the damping along the
 /// stiffest contact, dt the time step, and m the mass of the handle of an impedance device or otherwise of the tool.
 /// The limit is 2 for a handle, and a property of the integrator for a tool.

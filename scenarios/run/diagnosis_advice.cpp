@@ -313,6 +313,12 @@ std::string against_chatter(const DiagnosedRun& run) {
 }
 
 std::string against_energy(const DiagnosedRun& run) {
+  if (const auto* device = run.impedance()) {
+    // If the rendered force alone creates no energy, the delay creates it.
+    const bool delay_creates = device->delay_samples > 0.0 && is_beyond(created_energy(run), kMaxCreatedEnergy) &&
+                               !is_beyond(run.metric("passivity.net_created_J"), kMaxCreatedEnergy);
+    return delay_creates ? "a shorter delay of the device, or a smaller K" : "a smaller K";
+  }
   return run.scenario().rendering.passivity_controller ? "a smaller K"
                                                        : "a smaller K, or rendering.passivity_controller, which is off";
 }

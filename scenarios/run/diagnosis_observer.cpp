@@ -26,10 +26,19 @@ DiagnosisObserver::DiagnosisObserver(const Scenario& scenario)
     : scenario_(scenario), force_limit_(force_limit(scenario)), input_limit_(input_force_limit(scenario.device)) {
   // The steps of a quarter are stored; on_step must not allocate.
   observations_.last_forces.reserve(std::min(kMaxForces, static_cast<std::size_t>(scenario.time.steps) / 4 + 1));
+  if (std::holds_alternative<ImpedanceDeviceConfig>(scenario.device)) observations_.created_by_motors = 0.0;
 }
 
 void DiagnosisObserver::on_step(const StepRecord& record) noexcept {
-  if (record.step == 0) was_in_contact_ = false;  // a new trial begins
+  // A new trial begins.
+  if (record.step == 0) {
+    was_in_contact_ = false;
+    stored_at_start_ = record.springs.energy;
+  }
+  if (record.device && observations_.created_by_motors) {
+    double& created = *observations_.created_by_motors;
+    created = std::max(created, record.device->actuator - stored_at_start_);
+  }
   if (record.colliding > 0) add_contact(record);
   add_to_quarter(record);
   was_in_contact_ = record.colliding > 0;

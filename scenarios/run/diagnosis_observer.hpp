@@ -30,6 +30,10 @@ struct RunObservations {
   /// State at the last step in contact before the tool passed through the surface (OutcomeObserver::has_passed()),
   /// over all trials.
   std::optional<ContactState> last_contact;
+  /// On an impedance device: largest energy that its motors had given in any trial, minus the energy that the springs
+  /// of the rendering held at the start of the trial [J]; at least 0. It includes the delay and the limits of the
+  /// device. Empty for other devices.
+  std::optional<double> created_by_motors;
   struct Quarter {
     std::uint64_t rows = 0;
     bool always_in_contact = true;  ///< true if every step of the quarter is in contact
@@ -53,6 +57,8 @@ class DiagnosisObserver final : public Observer {
   /// observer and outlives the trial.
   void begin(const OutcomeObserver& outcome) noexcept { outcome_ = &outcome; }
 
+  /// The energy of an impedance device is compared with a threshold.
+  bool wants_energy() const noexcept override { return observations_.created_by_motors.has_value(); }
   void on_step(const StepRecord& record) noexcept override;
 
   /// Must be called after each trial. `length`: OutcomeObserver::longest_step() of the trial [m].
@@ -77,7 +83,8 @@ class DiagnosisObserver final : public Observer {
   /// Limits of the rendered force and of the hand's input force [N]; empty without a limit.
   std::optional<double> force_limit_, input_limit_;
   std::uint64_t quarter_ = 0;
-  bool was_in_contact_ = false;  ///< true if the tool was in contact in the previous step
+  bool was_in_contact_ = false;   ///< true if the tool was in contact in the previous step
+  double stored_at_start_ = 0.0;  ///< energy of the springs in the first step of the trial [J]
   RunObservations observations_;
 };
 

@@ -434,6 +434,20 @@ TEST(Diagnosis, ReportsTheFundamentalFrequencyOfABuzz) {
   EXPECT_NEAR(std::stod(frequency[1]), 40.0, 1.0);
 }
 
+/// Checks the energy that the motors of an impedance device give to the hand. With a delay, they give energy that the
+/// rendered force alone would not give. If they saturate, they do not give the energy that the rendered force would.
+TEST(Diagnosis, ComparesTheEnergyAtTheHandle) {
+  const Result delayed = run(
+      {"tap_wall", {"rendering.stiffness_N_per_m=2000", "rendering.damping_N_s_per_m=2", "device.delay_samples=4"}});
+  ASSERT_NE(finding(delayed, "energy"), nullptr);
+  EXPECT_EQ(number_of(delayed.metrics, "passivity.net_created_J"), 0.0);
+  EXPECT_NE(finding(delayed, "energy")->says.find("motors"), std::string::npos) << finding(delayed, "energy")->says;
+  const Result saturated =
+      run({"tap_wall", {"rendering.stiffness_N_per_m=30000", "rendering.damping_ratio=0", "device.force_max_N=1"}});
+  EXPECT_GT(number_of(saturated.metrics, "passivity.net_created_J").value(), 1e-3);
+  EXPECT_EQ(finding(saturated, "energy"), nullptr);
+}
+
 /// Checks that the advice does not name the law that is in use.
 TEST(Diagnosis, AdvisesNoLawThatIsInUse) {
   const LoadedScenario loaded = load_scenario(find_scenario("drag_molar"), {});
@@ -499,6 +513,12 @@ RunObservations moved_in_last_quarter() {
   rows.last_quarter.rows = 100;
   rows.last_force = {0.0, 0.0, 1.0};
   rows.tip = {0.01, 0.0, 0.0};
+  return rows;
+}
+
+RunObservations motors(double created) {
+  RunObservations rows;
+  rows.created_by_motors = created;
   return rows;
 }
 
@@ -572,6 +592,26 @@ std::vector<Trap> traps() {
        {{"passivity.net_created_J", 1.0}},
        "smaller K",
        "passivity_controller"},
+      // The rule compares the energy that the motors gave. If they do not apply the rendered force, the delay can be
+      // the
+      // cause, and the saturation can prevent the creation.
+      {"energy", {"tap_wall"}, {{"passivity.net_created_J", 1.0}}, "", "", Outcome::completes, "", motors(0.0)},
+      {"energy",
+       {"tap_wall", {"device.delay_samples=4"}},
+       {{"passivity.net_created_J", 0.0}},
+       "a shorter delay",
+       "passivity_controller",
+       Outcome::completes,
+       "",
+       motors(2e-3)},
+      {"energy",
+       {"tap_wall"},
+       {{"passivity.net_created_J", 2e-3}},
+       "a smaller K",
+       "delay",
+       Outcome::completes,
+       "",
+       motors(2e-3)},
       {"drift", {"impedance_at_wall"}, {}, "", "", Outcome::completes, "", moved_in_last_quarter()},
       {"drift",
        {"incline_dry", {"hand.x_N=0.4"}},
