@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "algorithms/stages/damping_and_limits.hpp"
+#include "device_model/admittance_device.hpp"
 #include "device_model/impedance_device.hpp"
 #include "results/observe/contact_forces.hpp"
 #include "scenarios/input/rounding.hpp"
@@ -23,6 +24,9 @@ namespace {
 
 /// Smallest number of steps in the last quarter from which drift and vibration frequency are computed.
 constexpr std::uint64_t kMinQuarterSteps = 10;
+/// Number of time steps after a change of the measured position in which the output of the velocity filter is
+/// evaluated. A filter that has not reached its peak within this number passes almost nothing.
+constexpr int kFilterSamples = 100;
 /// Smallest stiffness of the search for the linear limit, in units of K.
 constexpr double kSmallestStiffness = 1e-9;
 /// A loop whose largest stable stiffness is at most this fraction of K counts as unstable at any stiffness: nothing
@@ -154,7 +158,7 @@ Number chatter(const DiagnosedRun& run) {
 
 Number stability_limit_ratio(const DiagnosedRun& run) {
   const Number ratio = ratio_in_vibration(run);
-  return ratio && !is_unstable_at_any_stiffness(*ratio) ? ratio : std::nullopt;
+  return ratio && !is_unstable_at_any_stiffness(*ratio) && !unstable_alone(run) ? ratio : std::nullopt;
 }
 
 Number unstable_alone(const DiagnosedRun& run) {
@@ -192,15 +196,47 @@ Number encoder_force(const DiagnosedRun& run) {
   const bool is_rough = buzz(run).value_or(0.0) > kMaxBuzz || pop(run).value_or(0.0) > kMaxBuzz ||
                         chatter(run).value_or(0.0) > kMaxChatter || run.vibrates();
   if (device == nullptr || !is_rough || run.scenario().rendering.hunt_crossley) return std::nullopt;
-  // Number of time steps after an encoder step in which the output of the velocity filter is evaluated. A filter that
-  // has not reached its peak within this number passes almost nothing.
-  constexpr int kSamples = 100;
   VelocityFilter filter(device->velocity_filter, run.scenario().time.step);
   filter.reset(Vec3::Zero());
   double fastest = 0.0;
-  for (int i = 0; i < kSamples; ++i) fastest = std::max(fastest, filter.read(Vec3(device->encoder_step, 0.0, 0.0)).x());
+  for (int i = 0; i < kFilterSamples; ++i)
+    fastest = std::max(fastest, filter.read(Vec3(device->encoder_step, 0.0, 0.0)).x());
   const Number mean = run.metric("force_mean_in_contact_N");
   return quotient(normal_damping(run.scenario().rendering) * fastest, mean);
+}
+
+Number position_noise_force(const DiagnosedRun& run) {
+  const ImpedanceDeviceConfig* device = run.impedance();
+  if (device == nullptr) return std::nullopt;
+  // The variance of filtered white noise is the variance of the noise times the sum of the squared response to an
+  // impulse.
+  VelocityFilter filter(device->velocity_filter, run.scenario().time.step);
+  filter.reset(Vec3::Zero());
+  double squares = 0.0;
+  for (int i = 0; i < kFilterSamples; ++i) {
+    const double velocity = filter.read(Vec3(i == 0 ? device->position_noise : 0.0, 0.0, 0.0)).x();
+    squares += velocity * velocity;
+  }
+  const RenderingConfig& rendering = run.scenario().rendering;
+  return rendering.hunt_crossley ? 0.0 : normal_damping(rendering) * std::sqrt(squares);
+}
+
+Number sensor_noise_force(const DiagnosedRun& run) {
+  const Scenario& s = run.scenario();
+  const auto* device = std::get_if<AdmittanceDeviceConfig>(&s.device);
+  if (device == nullptr) return std::nullopt;
+  // White noise w with the spectral density S = noise^2 dt in M x'' + B x' + K x = w gives K x the variance S K / (2 B)
+  // and B x' the variance S B / (2 M). With little damping, the variance of K x is still S K t / (2 M) after a time t.
+  const double M = s.rendering.mass, B = normal_damping(s.rendering);
+  const double density = device->sensor.noise * device->sensor.noise * s.time.step;
+  const double decay = B > 0.0 ? std::min(M / B, run.result.duration) : run.result.duration;
+  return std::sqrt(density * (s.rendering.stiffness * decay + B) / (2.0 * M));
+}
+
+bool noise_explains_vibration(const DiagnosedRun& run, const Number& force) {
+  constexpr double kShare = 0.5;
+  const Number measured = run.metric("force_rms_above_30Hz_N");
+  return force && measured && *force > 0.0 && *force >= kShare * *measured;
 }
 
 Number created_energy(const DiagnosedRun& run) {
@@ -213,6 +249,15 @@ std::string created_by(const DiagnosedRun& run) {
   const bool is_observed = run.tool != nullptr && run.observations.created_by_motors;
   return is_observed ? " by the force of the motors, with the delay and the limits of the device"
                      : " by the rendered force";
+}
+
+bool stiffer_hand_helps(const DiagnosedRun& run) {
+  const RunObservations& rows = run.observations;
+  const auto& friction = run.scenario().rendering.dry_friction;
+  if (!friction || rows.last_spring.isZero(0.0) || spring_of(run.scenario().hand) == nullptr) return true;
+  const Vec3 normal = rows.last_spring.normalized();
+  const double along_normal = rows.last_hand_force.dot(normal);
+  return (rows.last_hand_force - along_normal * normal).norm() > friction->mu * std::abs(along_normal);
 }
 
 Number damping_share(const DiagnosedRun& run) {

@@ -93,8 +93,8 @@ Number pop(const DiagnosedRun& run);
 Number shake(const DiagnosedRun& run);
 Number chatter(const DiagnosedRun& run);
 /// Returns K divided by the largest stable K of the linear loop in contact, rounded to six digits. Has a value only if
-/// the run diverged, lost contact or vibrates, the run has a linear loop, and this loop is stable at some K
-/// (unstable_loop() is empty).
+/// the run diverged, lost contact or vibrates, the run has a linear loop, this loop is stable at some K
+/// (unstable_loop() is empty), and unstable_alone() is empty.
 Number stability_limit_ratio(const DiagnosedRun& run);
 /// Returns 1 if the run diverged, lost contact or vibrates, the tool moves freely, and the loop of hand and device is
 /// unstable even without contact, by its eigenvalues; otherwise an empty value.
@@ -105,18 +105,31 @@ Number unstable_loop(const DiagnosedRun& run);
 /// Returns true if the linear loop with a contact is stable at some stiffness of at least K / 10000 after `change`.
 bool is_stable_at_some_stiffness(const DiagnosedRun& run, const std::function<void(Scenario&)>& change);
 /// Returns the point spacing divided by the spacing at which four points would be in contact. The number of contacts is
-/// proportional to 1 / spacing^2. Empty if the path of the tip in contact is shorter than ten spacings, or if the
-/// contacts come from a recording or a module.
+/// proportional to 1 / spacing^2. Empty if the path of the tip along the surface is shorter than ten spacings, or if
+/// the contacts come from a recording or a module.
 Number coarseness(const DiagnosedRun& run);
 /// Returns the largest damping force that one encoder increment causes, divided by the mean force in contact. Empty in
 /// three cases: the device is no impedance device, the damping is Hunt-Crossley damping, or no vibration, force step or
 /// force reversal exceeds its threshold.
 Number encoder_force(const DiagnosedRun& run);
+/// Returns the rms of the force [N] that the noise of the measured position causes through the damping B. Empty unless
+/// the device is an impedance device; 0 without noise and for Hunt-Crossley damping.
+Number position_noise_force(const DiagnosedRun& run);
+/// Returns the rms of the rendered force [N] that the noise of the force sensor of an admittance device causes: white
+/// noise moves a virtual mass on a contact with K and B. Empty for other devices.
+Number sensor_noise_force(const DiagnosedRun& run);
+/// Returns true if the noise causes at least half of the measured rms of the force above 30 Hz. `force`: rms of the
+/// force that the noise causes [N].
+bool noise_explains_vibration(const DiagnosedRun& run, const Number& force);
 /// Returns the net energy that the rendering created [J]. On an impedance device, this is the energy that the motors
 /// gave (RunObservations::created_by_motors). Without observations, returns the metric passivity.net_created_J.
 Number created_energy(const DiagnosedRun& run);
 /// Returns the force whose energy created_energy() is, as text.
 std::string created_by(const DiagnosedRun& run);
+/// Returns true if a stiffer hand could move a tool that dry friction holds. A hand whose spring acts in all directions
+/// presses harder if it is stiffer. It helps only if its force along the surface exceeds mu times its force along the
+/// normal.
+bool stiffer_hand_helps(const DiagnosedRun& run);
 /// Returns B dt / m divided by the largest value of B dt / m at which a step is stable. B is the damping along the
 /// stiffest contact, dt the time step, and m the mass of the handle of an impedance device or otherwise of the tool.
 /// The limit is 2 for a handle, and a property of the integrator for a tool.

@@ -97,8 +97,10 @@ bool is_too_stiff(const DiagnosedRun& run) {
   return is_beyond(stability_limit_ratio(run), kMaxLimitRatio);
 }
 
-/// Returns the advice if the linear loop is unstable: because of K, or at any K. Empty if it is stable.
+/// Returns the advice if the linear loop is unstable: without contact, because of K, or at any K. Empty if it is
+/// stable.
 std::optional<std::string> against_instability(const DiagnosedRun& run) {
+  if (is_beyond(unstable_alone(run), 0.5)) return against_unstable_servo(run);
   if (is_too_stiff(run)) return "a smaller K: the rule \"edge\" names the stability limit";
   if (is_beyond(unstable_loop(run), 0.5)) return against_unstable_loop(run);
   return std::nullopt;
@@ -107,18 +109,15 @@ std::optional<std::string> against_instability(const DiagnosedRun& run) {
 /// Returns the remedies for measured causes of a rough force.
 std::vector<std::string> against_measured_causes(const DiagnosedRun& run) {
   std::vector<std::string> remedies;
-  const Scenario& s = run.scenario();
   if (is_too_stiff(run)) remedies.emplace_back("a smaller K");
   if (is_beyond(unstable_loop(run), 0.5)) remedies.push_back(against_unstable_loop(run));
   if (is_beyond(encoder_force(run), kMaxEncoderForce)) remedies.push_back(against_encoder(run));
   if (is_beyond(run.of_mean_force("reduction_force_step_max_N"), kMaxReduction))
     remedies.emplace_back("rendering.reduction null");
   if (run.tool != nullptr && is_beyond(coarseness(run), kMaxCoarseness)) remedies.push_back(against_coarseness(run));
-  if (const auto* device = run.impedance(); device != nullptr && device->position_noise > 0.0)
+  if (noise_explains_vibration(run, position_noise_force(run)))
     remedies.emplace_back("a velocity filter against device.position_noise_m");
-  if (const auto* device = std::get_if<AdmittanceDeviceConfig>(&s.device);
-      device != nullptr && device->sensor.noise > 0.0)
-    remedies.emplace_back("a smaller device.sensor.noise_N");
+  if (noise_explains_vibration(run, sensor_noise_force(run))) remedies.emplace_back("a smaller device.sensor.noise_N");
   return remedies;
 }
 
@@ -126,6 +125,8 @@ std::vector<std::string> against_measured_causes(const DiagnosedRun& run) {
 /// for a tool that is free to move. `laws`: the words after "… shows which algorithm has" in the last sentence.
 /// `metric`: metric by which the algorithms are compared.
 std::string against_roughness(const DiagnosedRun& run, const char* laws, const char* metric) {
+  // No algorithm and no K help a loop that is unstable without contact.
+  if (is_beyond(unstable_alone(run), 0.5)) return against_unstable_servo(run);
   std::vector<std::string> remedies = against_measured_causes(run);
   const std::string comparison =
       fmt::format("\"hapbench compare SCENARIO --algorithms all --by {}\" shows which algorithm has {}", metric, laws);
@@ -157,6 +158,7 @@ std::string against_divergence(const DiagnosedRun& run) {
   if (run.observations.in_contact == 0)
     return "check the hand, the device (servo gains, delay) and time.step_s: the run diverged without contact, so K "
            "has no effect";
+  if (is_beyond(unstable_alone(run), 0.5)) return against_unstable_servo(run);
   std::vector<std::string> remedies;
   if (is_beyond(unstable_loop(run), 0.5)) remedies.push_back(against_unstable_loop(run));
   if (is_beyond(damping_share(run), 1.0)) remedies.push_back("a smaller " + damping_field(run.scenario().rendering));
@@ -198,7 +200,8 @@ std::string against_loss(const DiagnosedRun& run) {
 std::string against_standstill(const DiagnosedRun& run) {
   // A tool that ends without a rendered force is held by the device or led by the hand; the law has no effect.
   const bool is_rendered = !run.observations.last_force.isZero(0.0);
-  std::vector<std::string> remedies = {"a stiffer hand"};
+  std::vector<std::string> remedies;
+  if (!is_rendered || stiffer_hand_helps(run)) remedies.emplace_back("a stiffer hand");
   if (is_rendered && run.scenario().rendering.has_friction()) remedies.emplace_back("a smaller rendering.friction");
   if (const auto* device = run.impedance(); device != nullptr && device->coulomb > 0.0)
     remedies.emplace_back("a device with a smaller device.coulomb_N");
@@ -302,6 +305,7 @@ std::string against_saturation(const DiagnosedRun& run) {
 }
 
 std::string against_bounces(const DiagnosedRun& run) {
+  if (is_beyond(unstable_alone(run), 0.5)) return against_unstable_servo(run);
   if (is_too_stiff(run)) return "a smaller K";
   const std::string field = damping_field(run.scenario().rendering);
   return is_beyond(damping_share(run), kMaxDampingShare) ? "a smaller " + field
@@ -313,6 +317,7 @@ std::string against_chatter(const DiagnosedRun& run) {
 }
 
 std::string against_energy(const DiagnosedRun& run) {
+  if (is_beyond(unstable_alone(run), 0.5)) return against_unstable_servo(run);
   if (const auto* device = run.impedance()) {
     // If the rendered force alone creates no energy, the delay creates it.
     const bool delay_creates = device->delay_samples > 0.0 && is_beyond(created_energy(run), kMaxCreatedEnergy) &&

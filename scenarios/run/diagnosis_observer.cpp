@@ -44,6 +44,8 @@ void DiagnosisObserver::on_step(const StepRecord& record) noexcept {
   was_in_contact_ = record.colliding > 0;
   observations_.tip = record.tool.pose.position;
   observations_.last_force = record.force.rendered;
+  observations_.last_spring = record.force.spring;
+  observations_.last_hand_force = record.hand_force;
 }
 
 void DiagnosisObserver::add_contact(const StepRecord& record) noexcept {
@@ -53,7 +55,9 @@ void DiagnosisObserver::add_contact(const StepRecord& record) noexcept {
   if (outcome_ == nullptr || !outcome_->has_passed()) observations_.last_contact = contact_state(record);
   if (force_limit_ && f.norm() >= kAtLimit * *force_limit_) ++observations_.at_force_limit;
   if (input_limit_ && record.hand.input.norm() >= kAtLimit * *input_limit_) ++observations_.at_input_limit;
-  if (was_in_contact_) observations_.path_in_contact += (record.tool.pose.position - observations_.tip).norm();
+  if (!was_in_contact_) return;
+  const Vec3 moved = record.tool.pose.position - observations_.tip, normal = record.force.spring.stableNormalized();
+  observations_.path_in_contact += (moved - moved.dot(normal) * normal).norm();
 }
 
 void DiagnosisObserver::add_to_quarter(const StepRecord& record) noexcept {

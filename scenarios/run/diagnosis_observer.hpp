@@ -23,17 +23,21 @@ struct RunObservations {
   std::uint64_t at_force_limit = 0;
   /// Number of steps in contact whose hand force reaches the input limit of the device.
   std::uint64_t at_input_limit = 0;
-  double path_in_contact = 0.0;  ///< path length of the tip in contact [m]
+  /// Path length of the tip in contact [m]. Motion along the spring force is left out: a vibration normal to the
+  /// surface is no path.
+  double path_in_contact = 0.0;
   /// Largest OutcomeObserver::longest_step() of all trials [m].
   double longest_step = 0.0;
   Vec3 last_force = Vec3::Zero();  ///< rendered force in the last step [N]
-  /// State at the last step in contact before the tool passed through the surface (OutcomeObserver::has_passed()),
-  /// over all trials.
-  std::optional<ContactState> last_contact;
+  /// Spring force of the rendering, and force of the hand on the handle, in the last step [N].
+  Vec3 last_spring = Vec3::Zero(), last_hand_force = Vec3::Zero();
   /// On an impedance device: largest energy that its motors had given in any trial, minus the energy that the springs
   /// of the rendering held at the start of the trial [J]; at least 0. It includes the delay and the limits of the
   /// device. Empty for other devices.
   std::optional<double> created_by_motors;
+  /// State at the last step in contact before the tool passed through the surface (OutcomeObserver::has_passed()),
+  /// over all trials.
+  std::optional<ContactState> last_contact;
   struct Quarter {
     std::uint64_t rows = 0;
     bool always_in_contact = true;  ///< true if every step of the quarter is in contact

@@ -448,6 +448,31 @@ TEST(Diagnosis, ComparesTheEnergyAtTheHandle) {
   EXPECT_EQ(finding(saturated, "energy"), nullptr);
 }
 
+/// Checks that no advice names K or the algorithm if the loop is unstable without contact.
+TEST(Diagnosis, AdvisesOnlyTheServoIfItAloneIsUnstable) {
+  const Result result = run({"device_at_wall", {"device.servo.delay_samples=4"}});
+  ASSERT_NE(finding(result, "servo"), nullptr);
+  EXPECT_GT(result.diagnosis->size(), 1u);
+  for (const Diagnosed& found : *result.diagnosis) {
+    EXPECT_EQ(found.attempt.find("smaller K"), std::string::npos) << found.rule << ": " << found.attempt;
+    EXPECT_EQ(found.attempt.find("algorithm"), std::string::npos) << found.rule << ": " << found.attempt;
+  }
+}
+
+/// Checks that a vibration along the normal is no path along the surface.
+TEST(Diagnosis, CountsThePathAlongTheSurface) {
+  const LoadedScenario loaded = load_scenario(find_scenario("drag_molar"), {});
+  DiagnosisObserver observer(loaded.scenario);
+  StepRecord record;
+  record.colliding = 1;
+  record.force.spring = {0.0, 0.0, 2.0};
+  for (int i = 0; i < 10; ++i, ++record.step) {
+    record.tool.pose.position = {1e-3 * i, 0.0, i % 2 == 0 ? 0.0 : 1e-3};
+    observer.on_step(record);
+  }
+  EXPECT_NEAR(observer.rows().path_in_contact, 9e-3, 1e-15);  // rounding
+}
+
 /// Checks that the advice does not name the law that is in use.
 TEST(Diagnosis, AdvisesNoLawThatIsInUse) {
   const LoadedScenario loaded = load_scenario(find_scenario("drag_molar"), {});
@@ -522,12 +547,30 @@ RunObservations motors(double created) {
   return rows;
 }
 
+/// Returns observations of a tool that a hand presses down with 1 N and pulls along x with 1 N.
+RunObservations pulled() {
+  RunObservations rows = pressed();
+  rows.last_spring = {0.0, 0.0, 1.0};
+  rows.last_hand_force = {1.0, 0.0, -1.0};
+  return rows;
+}
+
 const Scene kMolar = {"drag_molar"}, kOmegaMolar = {"drag_molar", {kOmega}}, kLed = {"recorded_wipe"};
 constexpr const char* kMean = "force_mean_in_contact_N";
 
 std::vector<Trap> traps() {
   const std::vector<std::pair<const char*, double>> buzz = {{kMean, 1.0}, {"force_rms_above_30Hz_N", 0.5}};
   const Scene passive = {"peg_in_hole_2d_shaped_stiffness"};  // nothing presses this tool
+  const auto sticky = [](const char* mu) {
+    return Scene{"poke_plane",
+                 {R"(hand={"type":"impedance","target":{"x_m":0.01,"y_m":0,"z_m":-0.01}})",
+                  fmt::format(R"(rendering.friction={{"type":"dry","mu":{}}})", mu)}};
+  };
+  const auto handle_noise = [](const char* noise) {
+    return Scene{"tap_wall",
+                 {fmt::format("device.position_noise_m={}", noise), "rendering.damping_N_s_per_m=5",
+                  R"(device.velocity_filter={"type":"difference"})"}};
+  };
   return {
       // If a law fails, the time step is not the cause. If a hand drives the tool away, K is not the cause.
       {"fault", kMolar, {}, "correct the law", "time.step_s", Outcome::diverges, "gives a force that is not finite"},
@@ -542,6 +585,10 @@ std::vector<Trap> traps() {
       {"stuck", {"drag_molar_dry"}, {}, "rendering.friction", "device.coulomb_N", Outcome::stuck, "", pressed()},
       // Without a rendered force, neither the friction of the surface nor the law holds the tool.
       {"stuck", {"drag_molar_dry"}, {}, "a stiffer hand", "rendering.friction", Outcome::stuck},
+      // A hand whose spring acts in all directions presses harder if it is stiffer: 1 N along the surface moves a tool
+      // with a normal force of 1 N only if mu is below 1.
+      {"stuck", sticky("1.2"), {}, "rendering.friction", "a stiffer hand", Outcome::stuck, "", pulled()},
+      {"stuck", sticky("0.8"), {}, "a stiffer hand", "device.coulomb_N", Outcome::stuck, "", pulled()},
       // If the tool diverges, its long steps are a consequence, so the rule `step` finds nothing. A slower hand does
       // not help a tool that a script moves.
       {"step", kMolar, {}, "", "", Outcome::diverges, "", long_step()},
@@ -612,6 +659,13 @@ std::vector<Trap> traps() {
        Outcome::completes,
        "",
        motors(2e-3)},
+      // Noise is a cause if it explains at least half of the vibration of 0.5 N. The noise of a position of 0.1 mm
+      // gives
+      // B sqrt(2) 0.1 mm / dt = 0.7 N at 1 kHz.
+      {"buzz", {"device_at_wall", {"device.sensor.noise_N=1e-9"}}, buzz, "a smaller K", "sensor.noise_N"},
+      {"buzz", {"device_at_wall", {"device.sensor.noise_N=100"}}, buzz, "sensor.noise_N", "a smaller K"},
+      {"buzz", handle_noise("1e-12"), buzz, "a smaller K", "position_noise_m"},
+      {"buzz", handle_noise("1e-4"), buzz, "position_noise_m", "a smaller K"},
       {"drift", {"impedance_at_wall"}, {}, "", "", Outcome::completes, "", moved_in_last_quarter()},
       {"drift",
        {"incline_dry", {"hand.x_N=0.4"}},
