@@ -87,9 +87,7 @@ class RestingTool {
     for (int i = 0; i < kIterations; ++i) {
       const Vec3 before = position_;
       const LinearContact here = linearised();
-      const Mat3 slope = here.rendered.stiffness + here.input * here.hand.stiffness;
-      if (slope.isZero(0.0)) return false;  // a surface that is too soft: no displacement changes the force
-      Vec3 step = newton_step(slope);
+      Vec3 step = newton_step(here.rendered.stiffness + here.input * here.hand.stiffness);
       const double longest = kLargestStep * parts_.tool->half_width();
       if (const double length = step.norm(); length > longest) step *= longest / length;
       place(before + step);
