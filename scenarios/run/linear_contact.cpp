@@ -256,14 +256,13 @@ std::optional<ContactAtRest> contact_at_rest(const Scenario& scenario, const Nam
   const bool is_equilibrium = tool.find_equilibrium();
   // Without an equilibrium, linearise at the pose `near`. The last pose of the search may lie where the force jumps,
   // and derivatives across a jump have no meaning.
-  const Vec3 position = is_equilibrium ? tool.position() : near.pose.position;
   LinearContact contact = is_equilibrium ? tool.linearised() : RestingTool(linear, files, shell, near).linearised();
   if (!contact.rendered.stiffness.allFinite() || !contact.rendered.damping.allFinite()) return std::nullopt;
   // A hand that is attached to the handle also moves between the samples. It is therefore part of the device and not of
   // the contact.
   if (std::holds_alternative<MassSpringDamperHandFields>(linear.hand) && handle_moves_tool(linear.device))
     contact.hand = {};
-  return ContactAtRest{contact, is_equilibrium, position};
+  return ContactAtRest{contact, is_equilibrium};
 }
 
 /// Returns ln |z| of an eigenvalue of a loop: the growth in one step.
@@ -319,7 +318,6 @@ LinearContact scaled(LinearContact contact, const RenderingConfig& from, const R
 std::optional<bool> ContactLoops::is_stable(const Scenario& scenario, const NamedFiles& files,
                                             const std::shared_ptr<const PointShell>& shell) {
   const auto at_rest = contact_at_rest(scenario, files, shell, near_);
-  last_equilibrium_ = at_rest && at_rest->is_equilibrium ? std::optional(at_rest->position) : std::nullopt;
   std::optional<LinearContact> contact;
   if (at_rest && (at_rest->is_equilibrium || (at_any_pose_ && !known_)))
     contact = at_rest->contact;
@@ -354,53 +352,25 @@ std::optional<double> limit_along(const LimitWalk& walk, const std::function<std
 }
 
 std::optional<double> linear_stiffness_limit(const CheckedScenario& scenario,
-                                             const std::shared_ptr<const PointShell>& shell, const ContactState& near,
-                                             const StiffnessSearch& search) {
-  // kDown, kUp: factors between successive values of K. kBelow: factor from the first stable K down to the start of the
-  // search upwards.
-  constexpr double kDown = 1.1, kUp = 1.01, kBelow = 2.0;
+                                             const std::shared_ptr<const PointShell>& shell, const ContactState& near) {
+  // kStep: factor between successive values of K; kMax, kMin: range of K, in units of the scenario's K.
+  constexpr double kStep = 1.1, kMax = 2.0, kMin = 1e-9;
   constexpr double kResolution = 1e-10;
-  double K = scenario.scenario().rendering.stiffness;
+  const double K = scenario.scenario().rendering.stiffness;
   if (!(K > 0.0) || !has_linear_loop(scenario.scenario())) return std::nullopt;
-  ContactLoops loops(near, /*is_stiffness=*/true, search.at_any_pose);
+  ContactLoops loops(near, /*is_stiffness=*/true, /*at_any_pose=*/true);
   Scenario at = scenario.scenario();
-  const auto is_stable = [&](double stiffness) {
+  LimitWalk walk{.start = K};
+  walk.next = [&](double value, bool up) {
+    if (up) return std::min(value * kStep, kMax * K);
+    return value / kStep < kMin * K ? value : value / kStep;
+  };
+  walk.is_resolved = [](double stable, double unstable) { return unstable - stable <= kResolution * unstable; };
+  const auto limit = limit_along(walk, [&](double stiffness) {
     at.rendering.stiffness = stiffness;
     return loops.is_stable(at, scenario.files(), shell);
-  };
-  std::optional<bool> stable = is_stable(K);
-  if (!stable) return std::nullopt;
-  // Go down to the first stable K.
-  for (; !stable.value_or(false); stable = is_stable(K)) {
-    K /= kDown;
-    if (K < search.lowest) return 0.0;
-  }
-  // Go further down, to an equilibrium that does not depend on the start.
-  loops.follow();
-  for (const double bottom = K / kBelow; K > bottom; K /= kDown) {
-    if (!is_stable(K / kDown).value_or(false) || !loops.is_at_equilibrium()) break;
-    loops.follow();
-  }
-  // Go up to the first unstable K.
-  double unstable = std::min(kUp * K, search.highest);
-  while (is_stable(unstable).value_or(false)) {
-    loops.follow();
-    K = unstable;
-    if (K >= search.highest) return std::numeric_limits<double>::infinity();
-    unstable = std::min(kUp * K, search.highest);
-  }
-  // Bisect. The searches for the equilibrium start at the equilibrium of the last stable K.
-  while (unstable - K > kResolution * unstable) {
-    const double middle = 0.5 * (K + unstable);
-    (is_stable(middle).value_or(false) ? K : unstable) = middle;
-  }
-  return K;
-}
-
-std::optional<double> linear_stiffness_limit(const CheckedScenario& scenario,
-                                             const std::shared_ptr<const PointShell>& shell, const ContactState& near) {
-  const double K = scenario.scenario().rendering.stiffness;
-  return linear_stiffness_limit(scenario, shell, near, {.lowest = 1e-9 * K, .highest = 2.0 * K, .at_any_pose = true});
+  });
+  return limit ? std::optional(std::max(*limit, 0.0)) : std::nullopt;
 }
 
 }  // namespace hapbench

@@ -31,7 +31,6 @@ inline ContactState contact_state(const StepRecord& record) noexcept {
 struct ContactAtRest {
   LinearContact contact;
   bool is_equilibrium = false;  ///< false if the search did not converge: a surface too soft, or a force that jumps
-  Vec3 position;                ///< tip position at which the contact was linearised [m]
 };
 
 /// Returns derivatives of the rendered force and of the hand's force at the equilibrium of the tool near `near`. Dry
@@ -70,21 +69,13 @@ class ContactLoops {
   std::optional<bool> is_stable(const Scenario& scenario, const NamedFiles& files,
                                 const std::shared_ptr<const PointShell>& shell);
 
-  /// Returns true if the last call of is_stable() found an equilibrium.
-  bool is_at_equilibrium() const { return last_equilibrium_.has_value(); }
-  /// Starts later searches for the equilibrium at the equilibrium of the last call of is_stable(), if there was one.
-  void follow() {
-    if (last_equilibrium_) near_.pose.position = *last_equilibrium_;
-  }
-
  private:
   ContactState near_;
   bool is_stiffness_, at_any_pose_;
   /// The last contact that was found. It has the stiffness K and the damping B of known_rendering_.
   std::optional<LinearContact> known_;
   RenderingConfig known_rendering_;
-  std::optional<bool> ignores_drift_;     ///< true if drifts do not count; empty before the first call of is_stable()
-  std::optional<Vec3> last_equilibrium_;  ///< tip position at the equilibrium that the last call of is_stable() found
+  std::optional<bool> ignores_drift_;  ///< true if drifts do not count; empty before the first call of is_stable()
 };
 
 /// Sequence of values of a scenario field, for the search for the field's linear limit: the value at which the
@@ -104,28 +95,12 @@ struct LimitWalk {
 /// nothing at the start. A later value for which `is_stable` returns nothing counts as unstable.
 std::optional<double> limit_along(const LimitWalk& walk, const std::function<std::optional<bool>(double)>& is_stable);
 
-/// Settings of linear_stiffness_limit().
-struct StiffnessSearch {
-  double lowest = 0.0, highest = 0.0;  ///< range of K [N/m]; `lowest` is positive
-  bool at_any_pose = false;            ///< true if the contact at the scenario's K need not be an equilibrium
-};
-
-/// Returns the largest stiffness K [N/m] at which the loop of hand, device and contact is stable: the first transition
-/// to an unstable loop above a stable K. Infinite if the loop is stable up to the highest K; 0 if no K from the
-/// scenario's K down to the lowest K is stable. Empty if has_linear_loop() is false, if the tool touches nothing at
-/// `near`, or if no contact can be linearised at the scenario's K.
-///
-/// At one K, a tool on a point shell can have several equilibria with different contacts, and so several limits. The
-/// result does not depend on the equilibrium near which the search begins: the search goes down from the scenario's K
-/// by a factor of two below the first stable K, or as far as there is an equilibrium. From there it goes up in steps of
-/// 1 % and follows the equilibrium. If a K has no equilibrium, the loop uses the last contact that was found, converted
-/// to this K by scaled(). Slow drifts do not count as unstable (ContactLoops::is_stable()).
-std::optional<double> linear_stiffness_limit(const CheckedScenario& scenario,
-                                             const std::shared_ptr<const PointShell>& shell, const ContactState& near,
-                                             const StiffnessSearch& search);
-
-/// Returns linear_stiffness_limit() from a billionth of the scenario's K to twice this K, also for a state without an
-/// equilibrium.
+/// Returns the largest stiffness K [N/m] at which the loop of hand, device and contact is stable, searched from the
+/// scenario's K in steps of 10 %, up to twice this K and down to a billionth of it. Infinite if the loop is stable up
+/// to twice K; 0 if no K is stable. At each K, the contact is linearised at the equilibrium of the tool near `near`. If
+/// a K has no equilibrium, the loop uses the last contact that was found, converted to this K by scaled(). Empty if
+/// has_linear_loop() is false or the tool touches nothing at `near`. Slow drifts do not count as unstable
+/// (ContactLoops::is_stable()).
 std::optional<double> linear_stiffness_limit(const CheckedScenario& scenario,
                                              const std::shared_ptr<const PointShell>& shell, const ContactState& near);
 

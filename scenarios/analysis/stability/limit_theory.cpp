@@ -125,12 +125,6 @@ TheoreticalLimit inequality_limit(const LimitQuestion& question) {
 }
 
 std::optional<double> contact_limit(const LimitQuestion& question, double stable, const ContactState& near) {
-  const Range& range = question.search.range;
-  if (question.path == kStiffnessPath && !question.search.smallest) {
-    const CheckedScenario scenario = checked(question.at(stable));
-    return linear_stiffness_limit(scenario, make_shell(scenario.scenario(), scenario.files()), near,
-                                  {.lowest = range.from, .highest = range.to});
-  }
   constexpr double kStep = 1.0 / (4 * kScanIntervals);
   IntervalSearchOptions options = question.search;
   options.current = stable;

@@ -40,9 +40,8 @@ TheoreticalLimit inequality_limit(const LimitQuestion& question);
 /// Returns the limit of the question's field by the eigenvalues of the loop of hand, device and a permanent contact. At
 /// each value of the field, the contact has the derivatives of the rendered force at the equilibrium of the tool
 /// (linear_contact). `near` is the state of a run in which the field has the value `stable`; the search for the
-/// equilibrium starts from `near`, and the search for the limit starts at `stable`. The largest stable stiffness K is
-/// linear_stiffness_limit(), as in the diagnosis of `run`. Returns infinity if the loop is stable at all values of the
-/// range above `stable`, zero if it is stable at no value. Returns nothing if the tool has
+/// equilibrium starts from `near`, and the search for the limit starts at `stable`. Returns infinity if the loop is
+/// stable at all values of the range above `stable`, zero if it is stable at no value. Returns nothing if the tool has
 /// no equilibrium in contact at `stable`, or if has_linear_loop() is false.
 std::optional<double> contact_limit(const LimitQuestion& question, double stable, const ContactState& near);
 

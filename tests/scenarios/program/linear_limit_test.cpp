@@ -77,36 +77,6 @@ TEST_F(LinearLimitOfCommands, IsOneInRunAndLimit) {
   EXPECT_GE(compared, 6u);
 }
 
-/// Checks a round tip that rests on points. From K = 6900 to 7600 N/m it has two equilibria with 37 and with 45 points,
-/// whose limits differ by 4 %. The vibrating runs end near different equilibria.
-TEST_F(LinearLimitOfCommands, IsOneIfTheToolHasTwoEquilibria) {
-  Json json = pressed("shaped_stiffness", "touch", "round");
-  json["time"] = {{"step_s", 0.001}, {"duration_s", 3}};
-  json["environment"] = {{"type", "plane"}, {"size_m", 0.02}, {"spacing_m", 0.0002}};
-  json["initial"] = {{"position_m", {0, 0, 0.0011}}};
-  json["tool"] = {{"diameter_m", 0.002}, {"length_m", 0.02}, {"tip", "round"}};
-  json["hand"] = {{"type", "force"}, {"z_N", -1}};
-  json["device"] = {{"type", "impedance"},
-                    {"handle_mass_kg", 0.2},
-                    {"viscous_N_s_per_m", 3},
-                    {"coulomb_N", 0},
-                    {"encoder_step_m", 0}};
-  json["rendering"]["friction"] = {{"mu_s_N_s_per_m", 3}, {"mu_f_s_per_m", 0}};
-  const std::string scene = folder_ / "scene.json";
-  for (const double current : {6000.0, 12000.0}) {
-    json["rendering"]["stiffness_N_per_m"] = current;
-    test::write_plainly(scene, json.dump());
-    const auto linear = limit_of(scene);
-    ASSERT_TRUE(linear) << current;
-    for (const double K : {8000.0, 10000.0, 12000.0}) {
-      const auto ratio = limit_ratio_at(scene, K);
-      ASSERT_TRUE(ratio) << K;
-      // The value of `edge` has six digits. At the same equilibrium, both limits have a relative error of 1e-7.
-      EXPECT_NEAR(K / *ratio, *linear, 1e-5 * *linear) << current << " " << K;
-    }
-  }
-}
-
 TEST_F(LinearLimitOfCommands, IsBeyondTheMarginOfWhatTuneRecommends) {
   for (const char* law : {"static_coupling", "shaped_stiffness"}) {
     const std::string scene = folder_ / "scene.json";
