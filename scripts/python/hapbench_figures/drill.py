@@ -105,7 +105,9 @@ def trajectory(results):
         tilt, np.abs(x) - inside, np.abs(x) + inside, color=style.RED, alpha=0.13, lw=0
     )
     height.set(title="height over the bottom", xlabel="tilt α [rad]", ylabel="height [mm]")
-    distance.set(title="distance to the axis of the hole", xlabel="tilt α [rad]", ylabel="distance [mm]")
+    distance.set(
+        title="distance to the axis of the hole", xlabel="tilt α [rad]", ylabel="distance [mm]"
+    )
     section.set_title("section")
     for ax in (height, distance):
         ax.set_xlim(scene.PUBLISHED["J1.tilt"]["at_least"], scene.PUBLISHED["J1.tilt"]["at_most"])

@@ -127,7 +127,7 @@ TEST(PlyPoints, AreRefusedIfANumberDoesNotFitItsType) {
        {std::pair("300 0 0 0 0 1\n",
                   "\"300\", but the header declares this property as uchar; allowed: an integer from 0 to 255"),
         {"0 0.01 0 0 0 1\n", "\"0.01\", but the header declares this property as int"}}) {
-    const auto error = test::input_error_of([&] { read(header("ascii", "1", integers) + row); });
+    const auto error = test::input_error_of([&, bytes = header("ascii", "1", integers) + row] { read(bytes); });
     ASSERT_TRUE(error) << row;
     EXPECT_NE(std::string(error->what()).find(problem), std::string::npos) << error->what();
   }

@@ -79,11 +79,11 @@ TEST(LinearContact, OfAProxyAboveAPointHasTheLimitOfASpring) {
 
 /// Writes a mesh of the top of a sphere with a radius of 10 mm, whose top is at z = 10 mm.
 void write_dome(const std::filesystem::path& file) {
-  constexpr int kCells = 30;  // number of cells along each axis
+  constexpr int kHalf = 15, kCells = 2 * kHalf;  // number of cells along each axis
   std::string text;
   for (int i = 0; i <= kCells; ++i)
     for (int j = 0; j <= kCells; ++j) {
-      const double x = 2e-4 * (i - kCells / 2), y = 2e-4 * (j - kCells / 2);
+      const double x = 2e-4 * (i - kHalf), y = 2e-4 * (j - kHalf);
       text += fmt::format("v {} {} {}\n", x, y, std::sqrt(1e-4 - x * x - y * y));
     }
   const auto vertex = [](int i, int j) { return i * (kCells + 1) + j + 1; };
