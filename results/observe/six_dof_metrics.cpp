@@ -59,12 +59,11 @@ void SixDofMetrics::report(Section& s) const {
   s.metric("ghost_displacement_rms_m", "m",
            "root mean square of the distance between the handles' force points of the 3-DOF and of the 6-DOF device",
            displacement_.rms());
-  s.metric(
-      "unresisted_turn_max_rad", "rad",
-      "largest angle between the handles of the 3-DOF and of the 6-DOF device: only the 6-DOF device "
-      "renders a torque against the turn. With the grip at the force point it is the norm of handle_turn_x_rad, handle_turn_y_rad and "
-      "handle_turn_z_rad of six_dof.csv",
-      turn_.max());
+  s.metric("unresisted_turn_max_rad", "rad",
+           "largest angle between the handles of the 3-DOF and of the 6-DOF device: only the 6-DOF device "
+           "renders a torque against the turn. With the grip at the force point it is the norm of handle_turn_x_rad, "
+           "handle_turn_y_rad and handle_turn_z_rad of six_dof.csv",
+           turn_.max());
   s.metric("work_J", "J",
            "work of the law's force on the handle, by the trapezoidal rule over the steps in equilibrium; for a closed "
            "path, the energy that is created in one cycle",

@@ -477,8 +477,8 @@ void add_sweep(CommandLine& line) {
       "sweep, a command without --resume is rejected with exit status 2, and the rows stay: use --resume or another "
       "--out.\n\n"
       "Failed runs: if a run diverges, passes through the surface or leaves it permanently, its metrics and recorders "
-      "end at this moment (hapbench describe \"early end\"). Its row has the outcome, such as went_through, the time ended_at_s and empty "
-      "metrics. Failed runs alone do not change the exit status.\n\n"
+      "end at this moment (hapbench describe \"early end\"). Its row has the outcome, such as went_through, "
+      "the time ended_at_s and empty metrics. Failed runs alone do not change the exit status.\n\n"
       "Exit status: 0 success, 1 a run could not be computed, 2 bad input, 3 a run does not meet the field expect, 130 "
       "stopped by Ctrl-C, after the current runs are finished. If --set or --vary changes a run, this run does not "
       "cause status 3, unless one of them sets expect.",

@@ -153,8 +153,8 @@ std::string other_values(const Json& claims) {
     }
     if (claim.contains("sampled_verdict"))
       notes += fmt::format(
-          "\n*(fewer targets)*: the cases of {} were run with fewer targets than the ledger. With these targets and the "
-          "recorded assumptions, the verdict is *{}*. The entries are the values that change this verdict.\n",
+          "\n*(fewer targets)*: the cases of {} were run with fewer targets than the ledger. With these targets and "
+          "the recorded assumptions, the verdict is *{}*. The entries are the values that change this verdict.\n",
           link_to(claim), text_at(claim, "sampled_verdict"));
   }
   if (cells.empty()) return "";
@@ -333,9 +333,8 @@ std::string ledger_markdown(const Json& ledger) {
       "original algorithm, *shaping* is stiffness shaping, the algorithm that the thesis proposes. A *stiffness ratio* "
       "is the combined stiffness of all contacts in the direction of one contact, divided by the stiffness K of one "
       "contact. *Raw points* are the colliding points before the reduction. In task 1, the drill is pressed "
-      "on a flat surface and dragged. In task 2, it rotates to and fro in a hole. In task 3, it moves along the wall of "
-      "a hole, around the axis. The [glossary](../../scenarios/GLOSSARY.md) has the "
-      "other terms.\n\n"
+      "on a flat surface and dragged. In task 2, it rotates to and fro in a hole. In task 3, it moves along the wall "
+      "of a hole, around the axis. The [glossary](../../scenarios/GLOSSARY.md) has the other terms.\n\n"
       "## 1. What the abstract claims\n\n" +
       abstract_table(ledger) + "\nVerdicts:\n\n";
   for (const VerdictText& verdict : kVerdicts)

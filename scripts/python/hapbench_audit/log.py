@@ -248,8 +248,8 @@ def log_of(recording, options, wanted):
 
 def scale_of(quantity, recording, column, read):
     """Returns the factor from the unit of a column to m/s (velocity) or N (measured). The unit follows the name of the
-    column, such as "vx [mm/s]" or vx_mm_per_s. A measured force without a unit has the unit of the force. Adds a note to
-    `read` about a unit that is not known."""
+    column, such as "vx [mm/s]" or vx_mm_per_s. A measured force without a unit has the unit of the force. Adds a
+    note to `read` about a unit that is not known."""
     if quantity == "contacts":
         return 1.0
     name = recording.names[column]

@@ -66,8 +66,8 @@ def read_log(options):
     time = scales["time"] * recording.clock(found["time"], fractions, unit, scales["time"])[1]
     if repeated := repeats_most(time):
         fail(
-            f"column {recording.title(found['time'])}: {repeated} of {len(time)} rows repeat the time of the row before; "
-            f"allowed: increasing times; {remedy_of_repeated_times(recording, found['time'], found.values())}",
+            f"column {recording.title(found['time'])}: {repeated} of {len(time)} rows repeat the time of the row before"
+            f"; allowed: increasing times; {remedy_of_repeated_times(recording, found['time'], found.values())}",
             recording.file,
         )
     clock = [found["time"]] if fractions is None else [found["time"], fractions]

@@ -288,8 +288,8 @@ def _refuse_repeated_times(recording, columns, rows):
     if repeated:
         used = {part["column"] - 1 for parts in columns.used().values() for part in parts}
         fail(
-            f"column {recording.title(columns.time[0])}: {repeated} of {len(rows.time)} rows repeat the time of the row "
-            f"before; allowed: increasing times; "
+            f"column {recording.title(columns.time[0])}: {repeated} of {len(rows.time)} rows repeat the time of the "
+            f"row before; allowed: increasing times; "
             f"{remedy_of_repeated_times(recording, columns.time[0], used)} (for rows at a known rate: --set "
             "sample_rate_Hz=... instead of --columns time=...)",
             recording.file,

@@ -12,8 +12,8 @@ _FRACTIONS = {
     1e-9: "ns nsecs? nanos nanosecs? nanoseconds?",
 }
 _UNIT_IN_BRACKETS = re.compile(r"\s*[\[({<][^\[\](){}<>]*[\])}>]\s*$")
-# Smallest fraction of all rows that repeat the time of the row before. The fractions of a second are then likely to be in
-# a column that is not read.
+# Smallest fraction of all rows that repeat the time of the row before. The fractions of a second are then likely to be
+# in a column that is not read.
 MOST = 0.5
 
 
@@ -76,8 +76,8 @@ def repeats_most(times):
 
 
 def remedy_of_repeated_times(recording, time, used):
-    """Returns the likely cause of times that most rows repeat, and a remedy, for a message. `time`: column of the times.
-    `used`: columns with another meaning. A column of fractions has whole numbers that increase while the time is
+    """Returns the likely cause of times that most rows repeat, and a remedy, for a message. `time`: column of the
+    times. `used`: columns with another meaning. A column of fractions has whole numbers that increase while the time is
     constant, and that decrease when the time increases."""
     times = recording.column(time)
     for column in range(len(recording.names)):
