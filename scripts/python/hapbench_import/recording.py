@@ -104,10 +104,10 @@ class Recording:
 
     def clock(self, column, fractions=None, unit=0.0, scale=1.0):
         """Returns (origin, numbers minus the origin) for a column of times. `fractions`: column of fractions of a
-        second that are added to the times, in `unit` [s], or None. The origin is the first time if `fractions` is given,
-        or if the times are integers that are too large for a double, such as nanoseconds since 1970. Otherwise the origin is
-        0. Times of day, with or without a date (ISO 8601), are converted to seconds since the first time of day.
-        `scale`: seconds per unit of the times; must be 1 for times of day."""
+        second that are added to the times, in `unit` [s], or None. The origin is the first time if `fractions` is
+        given, or if the times are integers that are too large for a double, such as nanoseconds since 1970. Otherwise
+        the origin is 0. Times of day, with or without a date (ISO 8601), are converted to seconds since the first time
+        of day. `scale`: seconds per unit of the times; must be 1 for times of day."""
         values = self.column(column)
         if fractions is not None:
             finite = values[np.isfinite(values)]
