@@ -22,7 +22,7 @@
 namespace hapbench {
 namespace {
 
-/// Smallest number of steps in the last quarter from which drift and vibration frequency are computed.
+/// Smallest number of steps in the last quarter from which the drift is computed.
 constexpr std::uint64_t kMinQuarterSteps = 10;
 /// Number of time steps after a change of the measured position in which the output of the velocity filter is
 /// evaluated. A filter that has not reached its peak within this number passes almost nothing.
@@ -239,16 +239,19 @@ bool noise_explains_vibration(const DiagnosedRun& run, const Number& force) {
   return force && measured && *force > 0.0 && *force >= kShare * *measured;
 }
 
+/// Returns true if the energy that the motors of the device gave was observed.
+static bool observes_motors(const DiagnosedRun& run) {
+  return run.tool != nullptr && run.observations.created_by_motors;
+}
+
 Number created_energy(const DiagnosedRun& run) {
   const Number rendered = run.metric("passivity.net_created_J");
-  const bool is_observed = run.tool != nullptr && run.observations.created_by_motors;
-  return run.if_completed(rendered && is_observed ? run.observations.created_by_motors : rendered);
+  return run.if_completed(rendered && observes_motors(run) ? run.observations.created_by_motors : rendered);
 }
 
 std::string created_by(const DiagnosedRun& run) {
-  const bool is_observed = run.tool != nullptr && run.observations.created_by_motors;
-  return is_observed ? " by the force of the motors, with the delay and the limits of the device"
-                     : " by the rendered force";
+  return observes_motors(run) ? " by the force of the motors, with the delay and the limits of the device"
+                              : " by the rendered force";
 }
 
 bool stiffer_hand_helps(const DiagnosedRun& run) {

@@ -1,5 +1,5 @@
 """Finds faults of a log of a haptic loop that do not prevent a picture. `hapbench run --replay` rejects most of these
-logs. The rules are those of scenarios/renderer/loop_log.cpp and open_renderer.cpp."""
+logs. scenarios/renderer/loop_log.cpp and open_renderer.cpp check the same rules."""
 import math
 import re
 from itertools import zip_longest
