@@ -76,7 +76,7 @@ def early_end(bench):
 def rules_of_the_diagnosis(bench):
     """Checks that a test in C++ tests each rule of the diagnosis, on a scene with the fault and on a scene without
     it."""
-    text = (SOURCE / "tests/scenarios/run/outcome_test.cpp").read_text(encoding="utf-8")
+    text = (SOURCE / "tests/scenarios/run/diagnosis_test.cpp").read_text(encoding="utf-8")
     table = re.search(r"std::vector<Pair> pairs\(\) {(.*?)\n}", text, re.S)[1]
     test = re.search(
         r"TEST\(Diagnosis, EachRuleFindsItsFaultAndIsSilentWithout\) {(.*?)\n}", text, re.S
