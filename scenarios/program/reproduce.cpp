@@ -85,12 +85,15 @@ std::vector<fs::path> run_folders(const ReproduceOptions& options, const std::ve
   return folders;
 }
 
-/// Locks the ledger and the files next to it. Locks nothing if no ledger is written or its folder does not exist.
-std::optional<FolderLock> locked_ledger(const fs::path& ledger, ProgramContext& context) {
-  const fs::path folder = ledger.has_parent_path() ? ledger.parent_path() : ".";
+/// Creates the folder of the file that an option names, and locks the file and the files next to it. Throws InputError,
+/// with the option's name, if the file cannot be written.
+FolderLock locked_file(const fs::path& file, const char* option, ProgramContext& context) {
   std::error_code ignored;
-  if (ledger.empty() || !fs::is_directory(folder, ignored)) return std::nullopt;
-  return locked_results(context, folder, ledger.filename().string(), "reproduce", "--ledger");
+  // The other files of a ledger have the same name with another extension.
+  if (file.extension() != ".json" || fs::is_directory(file, ignored))
+    fail_in_option(option, fmt::format("got \"{}\"; allowed: a file name that ends in .json", file.string()));
+  return locked_results(context, file.has_parent_path() ? file.parent_path() : ".", file.filename().string(),
+                        "reproduce", option);
 }
 
 /// Runs the scenario and writes its results to a subdirectory of `directory`. Does nothing if this command has already
@@ -175,7 +178,7 @@ int reproduce_otherwise(const ReproduceOptions& options, const std::vector<Claim
   if (options.sensitivity.empty()) {
     report_assumption_sets(claims, options.assumptions, scratch, options, report, context);
   } else {
-    const auto lock = locked_ledger(options.sensitivity, context);
+    const FolderLock lock = locked_file(options.sensitivity, "--sensitivity", context);
     record_sensitivity(claims, all_claims(), options.sensitivity, scratch, options, report, context);
   }
   return report.finish();
@@ -197,7 +200,8 @@ int reproduce(const ReproduceOptions& options, ProgramContext& context) {
   // With --only and without --ledger, no ledger is written: it would replace the ledger of all claims.
   const fs::path ledger =
       options.ledger.empty() && options.only.empty() ? options.folder() / "claims.json" : fs::path(options.ledger);
-  const std::optional<FolderLock> ledger_lock = locked_ledger(ledger, context);
+  std::optional<FolderLock> ledger_lock;
+  if (!ledger.empty()) ledger_lock.emplace(locked_file(ledger, "--ledger", context));
   require_unlocked(run_folders(options, runs), kRunFiles);
   // Without --only, make all runs first, in parallel. With --only, judge() makes the runs that the claims need.
   if (options.only.empty())

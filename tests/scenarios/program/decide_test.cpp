@@ -319,6 +319,25 @@ TEST(Ledger, IsNotWrittenOfSingleClaimsUnlessItIsSaidWhere) {
   EXPECT_EQ(Json::parse(test::read_file(ledger))["claims"][0]["id"], "B3");
 }
 
+TEST(Ledger, ChecksTheFileBeforeTheRuns) {
+  const test::TemporaryDirectory directory;
+  const std::string out = (directory / "out").string();
+  std::filesystem::create_directories(directory / "folder.json");
+  // The ledger writes claims.md beside its JSON file, so a name that ends in .md would be written twice.
+  for (const char* option : {"--ledger", "--sensitivity"})
+    for (const char* name : {"claims.md", "claims", "folder.json"}) {
+      const test::ProgramRun run =
+          hapbench({"reproduce", "--only", "B3", "--out", out, option, (directory / name).string()});
+      EXPECT_EQ(run.status, 2) << option << " " << name;
+      EXPECT_NE(run.err.find(std::string(option) + ": got"), std::string::npos) << run.err;
+      EXPECT_FALSE(std::filesystem::exists(directory / "out/thesis")) << "no run was made";
+    }
+  // A missing folder of the ledger is created.
+  const std::string ledger = (directory / "new/folder/claims.json").string();
+  ASSERT_EQ(hapbench({"reproduce", "--only", "B3", "--out", out, "--ledger", ledger}).status, 0);
+  EXPECT_EQ(Json::parse(test::read_file(ledger))["claims"][0]["id"], "B3");
+}
+
 using Verdicts = std::map<std::string, std::string>;
 
 /// Returns the ledger's verdicts by claim. Omits claims about times and claims that take long to judge.
