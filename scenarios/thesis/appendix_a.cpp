@@ -135,7 +135,7 @@ Finding judge_springs_unlimited(const Measured& measured, const PublishedNumbers
           "100 pairs have 200 dampers of 88.5 N s/m, in sum 17 700 N s/m; this is 22 times the stability limit of A.3, "
           "2 M / Δt = 800 N s/m for M = 0.2 kg, so the plain sum must diverge",
           "numbers of pairs with which the path is smooth: " + text,
-          fmt::format("{} of {} algorithms are smooth with 100 pairs", smooth, std::size(kAlgorithms))};
+          fmt::format("{} of {} algorithms are smooth with 100 pairs of springs", smooth, std::size(kAlgorithms))};
 }
 
 // Number of pairs of springs with which the motion by the plain sum of forces (algorithm `summation`) is smooth without

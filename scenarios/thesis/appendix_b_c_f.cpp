@@ -401,11 +401,11 @@ Finding judge_quick_penetration(const Measured& measured, const PublishedNumbers
   const auto less =
       std::ranges::count_if(measured, [](const MeasuredCase& m) { return m["tandpasta"] < m["summation"]; });
   const auto all = static_cast<std::ptrdiff_t>(measured.size());
-  return {decide(less == all, less > 0),
-          fmt::format(
-              "under {} of {} hands, the drill sinks in less with tandpasta than with the plain sum; n contacts have a "
-              "stiffness of up to n K, so the drill hardly sinks in with either law",
-              less, all)};
+  return {
+      decide(less == all, less > 0),
+      fmt::format("for {} of {} hands, the drill sinks in less deep with tandpasta than with the plain sum; n contacts "
+                  "have a stiffness of up to n K, so the drill hardly sinks in with either law",
+                  less, all)};
 }
 
 }  // namespace

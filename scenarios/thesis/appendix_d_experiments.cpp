@@ -75,9 +75,10 @@ double half_a_digit(double printed) {
 
 /// Comparison of a measure with the published values.
 struct Compared {
-  bool agrees = false;  ///< true if significance and direction of the difference are as published
-  bool near = false;    ///< true if both means are near the published means; always true for the force
-  double t = 0.0;       ///< paired t statistic of original minus shaped
+  bool significant = false;  ///< true if the algorithms differ significantly
+  bool agrees = false;       ///< true if significance and direction of the difference are as published
+  bool near = false;         ///< true if both means are near the published means; always true for the force
+  double t = 0.0;            ///< paired t statistic of original minus shaped
   /// Larger of two differences [standard errors of the difference]: measured against published mean with the original
   /// algorithm, and measured against published mean with stiffness shaping.
   double farthest = 0.0;
@@ -96,8 +97,8 @@ Compared compare(const MeasuredCase& m, const PublishedNumbers& published, const
   };
   Compared c;
   c.t = paired_t(original, shaped);
-  const bool significant = std::abs(c.t) > critical_t(original.empty() ? 0 : original.size() - 1);
-  c.agrees = published_difference ? significant && c.t * (of_original.mean - of_shaped.mean) > 0.0 : !significant;
+  c.significant = std::abs(c.t) > critical_t(original.empty() ? 0 : original.size() - 1);
+  c.agrees = published_difference ? c.significant && c.t * (of_original.mean - of_shaped.mean) > 0.0 : !c.significant;
   c.farthest = std::max(difference(original, of_original), difference(shaped, of_shaped));
   c.near = m.name == kModelForce || c.farthest <= kStandardErrors;
   return c;
@@ -120,7 +121,11 @@ Finding judge_experiment(const Measured& measured, const PublishedNumbers& publi
     if (m.name != kModelForce) consistent = consistent && c.agrees && (published_difference || !is_rate || c.near);
     const std::vector<double>&a = m.all("original"), &b = m.all("shaped");
     if (!c.agrees) {
-      append_item(deviating, m.name + " (direction or significance)", ", ");
+      append_item(deviating,
+                  m.name + (!published_difference ? " (a significant difference, but none is published)"
+                            : c.significant       ? " (the opposite direction)"
+                                                  : " (no significant difference)"),
+                  ", ");
     } else if (!c.near) {
       append_item(
           deviating,
@@ -135,8 +140,9 @@ Finding judge_experiment(const Measured& measured, const PublishedNumbers& publi
   return {in_simulation(consistent),
           (deviating.empty() ? std::string("every measure agrees with the thesis in direction and significance")
                              : "measures that differ from the published result: " + deviating) +
-              fmt::format("; farthest from its published value is the {}, by {:.2g} standard errors of the difference; "
-                          "the mean force is nearly an input, because subjects regulate the force that the gauge shows",
+              fmt::format("; the {} has the largest distance from its published value, {:.2g} standard errors of the "
+                          "difference; the mean force is nearly an input, because subjects regulate the force that the "
+                          "gauge shows",
                           farthest, largest),
           text, number};
 }
@@ -256,9 +262,10 @@ Finding judge_pilots(const Measured& measured, const PublishedNumbers& published
       fmt::format("offset: {}; height: {}; stiffness shaping removes fewer targets than the original algorithm at: {}",
                   offset.text(), height.text(), worse.empty() ? "no position" : worse),
       "",
-      fmt::format("success rate of the original algorithm {:.2f} beyond the published positions, {:.2f} at the easiest "
-                  "position",
-                  beyond, easiest)};
+      fmt::format(
+          "success rate with the original algorithm: {:.2f} for targets beyond the published positions, {:.2f} for "
+          "the easiest target",
+          beyond, easiest)};
 }
 
 }  // namespace

@@ -33,30 +33,25 @@ enum class Verdict {
 struct VerdictText {
   std::string_view name;
   const char* meaning;
-  const char* mark;  ///< symbol in claims.md
 };
 /// The texts of all verdicts, in the order of Verdict.
 inline constexpr VerdictText kVerdicts[] = {
     {"replicated",
      "our implementation, written by other authors from the text of the thesis alone, meets the claim's rule with the "
-     "published numbers (as in the ACM badge \"Results Replicated\", version 1.1)",
-     "✓"},
-    {"qualitatively replicated", "the direction or the mechanism is as published; the numbers are not", "≈"},
-    {"not replicated", "neither the numbers nor the direction are as published, in this model of device and hand", "✗"},
-    {"contradicted", "an exact result contradicts the claim", "⊘"},
-    {"not testable", "no simulation can test the claim, because it is about people or about the trainer's hardware",
-     "–"},
+     "published numbers (as in the ACM badge \"Results Replicated\", version 1.1)"},
+    {"qualitatively replicated", "the direction or the mechanism is as published; the numbers are not"},
+    {"not replicated", "neither the numbers nor the direction are as published, in this model of device and hand"},
+    {"contradicted", "an exact result contradicts the claim"},
+    {"not testable", "no simulation can test the claim, because it is about people or about the trainer's hardware"},
     {"consistent in simulation",
      "simulated subjects show the published differences between the algorithms; they replicate no experiment with "
-     "people",
-     "✓"},
-    {"not consistent in simulation", "simulated subjects do not show the published differences", "✗"},
+     "people"},
+    {"not consistent in simulation", "simulated subjects do not show the published differences"},
     {"not judged",
      "an input is calibrated to a published number, but the calibration misses this number, so the run predicts "
-     "nothing; or the run has nothing to measure, such as no contact",
-     "?"},
-    {"holds", "a finding of this project that the measurement shows", "✓"},
-    {"does not hold", "a finding of this project that the measurement does not show", "✗"}};
+     "nothing; or the run has nothing to measure, such as no contact"},
+    {"holds", "a finding of this project that the measurement shows"},
+    {"does not hold", "a finding of this project that the measurement does not show"}};
 inline constexpr std::string_view verdict_name(Verdict verdict) {
   return kVerdicts[static_cast<std::size_t>(verdict)].name;
 }

@@ -61,7 +61,8 @@ std::string decided_by(const Json& claim, std::size_t max_names) {
   if (deciders.empty()) return text_at(claim, "robustness");
   const std::size_t count = deciders.size();
   if (count > max_names) deciders.resize(max_names);
-  return fmt::format("{} `{}`{}", count == 1 ? kSensitiveVerdict : std::string(kSeveralVerdict) + ":",
+  const char* fewer = claim.contains("sampled_verdict") ? " (with fewer targets)" : "";
+  return fmt::format("{}{}{} `{}`{}", count == 1 ? kSensitiveVerdict : kSeveralVerdict, fewer, count == 1 ? "" : ":",
                      fmt::join(deciders, "`, `"),
                      count > max_names ? fmt::format(" and {} more", count - max_names) : "");
 }
@@ -153,16 +154,21 @@ std::string other_values(const Json& claims) {
     }
     if (claim.contains("sampled_verdict"))
       notes += fmt::format(
-          "\n*(fewer targets)*: the cases of {} were run with fewer targets than the ledger. With these targets and "
-          "the recorded assumptions, the verdict is *{}*. The entries are the values that change this verdict.\n",
-          link_to(claim), text_at(claim, "sampled_verdict"));
+          "\n*(fewer targets)*: the verdict of the ledger on {} is *{}*. To save time, the other values were tried "
+          "with fewer targets. With these targets and the recorded assumptions, the verdict is *{}*. The entries are the "
+          "values that change this verdict; they do not show what decides the verdict of the ledger.\n",
+          link_to(claim), text_at(claim, "verdict"), text_at(claim, "sampled_verdict"));
   }
   if (cells.empty()) return "";
   std::string text =
       "\n### What other assumptions would change\n\nEach row has an assumption. Each entry of a row has another "
       "value of the assumption, a claim whose verdict changes with this value, the changed verdict, and the number "
-      "measured with this value. [Sensitivity](../../scenarios/thesis/README.md#sensitivity) states the meaning of "
-      "each assumption. For example, `local.average` false means that the local average is off.\n" +
+      "measured with this value. A rule can use more numbers than the printed number: for example, the rule of F4 "
+      "compares three hands, and the rules of D1 to D4 use times and speeds, too. A verdict can therefore change "
+      "although the printed number does not. "
+      "[Sensitivity](../../scenarios/thesis/README.md#sensitivity) states the meaning of "
+      "each assumption and its recorded value. For example, `local.average` is `true` on record, and `false` means "
+      "that the local average is off.\n" +
       notes + "\n| assumption | other value: claim with its verdict |\n|---|---|\n";
   for (const auto& [assumption, cell] : cells) text += fmt::format("| `{}` | {} |\n", assumption, cell);
   return text;
@@ -213,9 +219,9 @@ std::string revisions(const Json& claims) {
   std::string text;
   if (!rows.empty())
     text +=
-        "\n### Rules that were changed after their verdicts were known\n\nThe column *rule before* quotes the earlier "
-        "rule in its earlier wording.\n\n| id | rule before | verdict before | verdict now | "
-        "reason |\n|---|---|---|---|---|\n" +
+        "\n### Rules that were changed after their verdicts were known\n\nThe column *rule before* has the conditions "
+        "of the earlier rule. The link in the first column leads to the present rule.\n\n"
+        "| id | rule before | verdict before | verdict now | reason |\n|---|---|---|---|---|\n" +
         rows;
   if (!added.empty())
     text += fmt::format("\nThe rules of {} were committed before these claims were measured.\n", added);
@@ -268,6 +274,7 @@ std::string headline_of(const Json& claims) {
     }
     ++all;
     ++verdicts[verdict_of(claim)];
+    if (verdict_of(claim) == Verdict::not_testable) continue;  // no assumption can change this verdict
     const std::size_t deciders = claim.at("deciders").size();
     ++sure[deciders == 0 ? text_at(claim, "robustness") : deciders == 1 ? kSensitiveVerdict : kSeveralVerdict];
   }
@@ -275,8 +282,9 @@ std::string headline_of(const Json& claims) {
   for (const auto& [verdict, count] : verdicts)
     append_item(counts, fmt::format("{} {}", count, verdict_name(verdict)), ", ");
   std::string text = fmt::format(
-      "{} claims of the thesis: {}. Of these verdicts, {} are exact (no assumption enters), {} are robust (no single "
-      "assumption changes them), {} are sensitive to one assumption, {} depend on several assumptions",
+      "{} claims of the thesis: {}. Of the verdicts on testable claims, {} are exact (no assumption enters), {} are "
+      "robust (no single assumption changes them), {} are sensitive to one assumption, {} depend on several "
+      "assumptions",
       all, counts, sure[kExactVerdict], sure[kRobustVerdict], sure[kSensitiveVerdict], sure[kSeveralVerdict]);
   const std::size_t others = sure[kNotSampledVerdict];
   if (others > 0) text += fmt::format(", {} were not sampled (no other values were tried)", others);
@@ -337,8 +345,7 @@ std::string ledger_markdown(const Json& ledger) {
       "of a hole, around the axis. The [glossary](../../scenarios/GLOSSARY.md) has the other terms.\n\n"
       "## 1. What the abstract claims\n\n" +
       abstract_table(ledger) + "\nVerdicts:\n\n";
-  for (const VerdictText& verdict : kVerdicts)
-    text += fmt::format("- {} *{}*: {}.\n", verdict.mark, verdict.name, verdict.meaning);
+  for (const VerdictText& verdict : kVerdicts) text += fmt::format("- *{}*: {}.\n", verdict.name, verdict.meaning);
   text +=
       "\nDecided by: the thesis leaves some values open, so hapbench assumes them. Each assumption was set to each of "
       "its plausible values, one at a time, and calibrated hands were calibrated again. `hapbench describe NAME` "
@@ -347,9 +354,11 @@ std::string ledger_markdown(const Json& ledger) {
       "- *robust*: no other value of a single assumption changes the verdict.\n"
       "- *sensitive to* an assumption: only this assumption changes the verdict.\n"
       "- *depends on several*: each of the named assumptions changes the verdict alone.\n"
+      "- *with fewer targets*: [a note below](#what-other-assumptions-would-change) states what was tried.\n"
       "- *not sampled*: no other values were tried.\n";
   const std::string failing = failures(claims);
-  text += "\n## 2. Claims that failed, and what other assumptions would change\n\n" + failing + other_values(claims);
+  text += "\n## 2. Claims that failed, and what other assumptions would change\n\n" +
+          (failing.empty() ? "" : "Part 4 has the claims about computing time.\n\n" + failing) + other_values(claims);
   text += "\n## 3. All claims, by chapter\n" + chapters(claims);
   text += "\n## 4. Computing times, claims that are not testable, changed rules and findings of this project\n";
   text += table_of(claims, "Computing time, on one machine (medians)",
@@ -377,7 +386,7 @@ std::string claim_pages(const Json& ledger) {
       "- **Cases**: the numbers of all runs of the claim. `signed_distance` and `binary` are the two densities of the "
       "block from which its surface points are computed.\n"
       "- **Rule**: the conditions of the verdict. After *qualitatively* follows the weaker condition, of the verdict "
-      "*qualitatively replicated*. **Rule before** quotes an earlier rule in its earlier wording.\n"
+      "*qualitatively replicated*. **Rule before** has the conditions of an earlier rule.\n"
       "- **Sensitivity**: assumptions with another value, each with the verdict and the number that this value gives. "
       "Cases without a verdict (*not judged*, *not measured*) are listed but decide nothing.\n";
   for (const Json& claim : ledger.at("claims")) {

@@ -74,7 +74,7 @@ Json printed_names() {
   for (const Diagnosed& rule : diagnosis_rules())
     add(rule.rule, "rule of the diagnosis",
         fmt::format("applies above {:g}{}: {}", rule.threshold, rule.unit == "1" ? "" : " " + rule.unit, rule.number));
-  for (const auto& [name, meaning, mark] : kVerdicts) add(name, "verdict on a claim", meaning);
+  for (const auto& [name, meaning] : kVerdicts) add(name, "verdict on a claim", meaning);
   return all;
 }
 

@@ -223,7 +223,8 @@ def pairs(_old=""):
     verdict (third group). The row has the number of pairs in the second group, and lists the pairs of the other groups.
     """
     lines = [
-        "| claim | verdict | pairs | recorded verdict | verdict of one assumption alone (count) | another verdict |",
+        "| claim | recorded verdict | number of pairs | pairs with the recorded verdict | number of pairs with the "
+        "verdict of one assumption alone | pairs with a third verdict |",
         "|---|---|---|---|---|---|",
     ]
     for claim in read("pairs.json")["claims"]:

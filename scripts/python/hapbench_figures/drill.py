@@ -79,8 +79,8 @@ def trajectory(results):
     drawn, errors = samples(results), []
     for rows, name, series in zip(drawn, ("below 2 N", "from 2 N on"), style.SERIES):
         errors.append(
-            f"{name} {np.mean(rows['height_m'] - rows['ideal_height_m']):.2f}, "
-            f"{np.abs(rows['lateral_m'] - rows['ideal_lateral_m']).max():.2f} and "
+            f"{name}: {np.mean(rows['height_m'] - rows['ideal_height_m']):.2f} mm, "
+            f"{np.abs(rows['lateral_m'] - rows['ideal_lateral_m']).max():.2f} mm and "
             f"{rows['interpenetration_m'].max():.2f} mm"
         )
         pick = slice(None, None, max(1, -(-len(rows["tilt_rad"]) // MARKS)))
