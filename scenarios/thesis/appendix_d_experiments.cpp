@@ -122,7 +122,7 @@ Finding judge_experiment(const Measured& measured, const PublishedNumbers& publi
     const std::vector<double>&a = m.all("original"), &b = m.all("shaped");
     if (!c.agrees) {
       append_item(deviating,
-                  m.name + (!published_difference ? " (a significant difference, but none is published)"
+                  m.name + (!published_difference ? " (here a significant difference, in the thesis none)"
                             : c.significant       ? " (the opposite direction)"
                                                   : " (no significant difference)"),
                   ", ");
@@ -140,10 +140,11 @@ Finding judge_experiment(const Measured& measured, const PublishedNumbers& publi
   return {in_simulation(consistent),
           (deviating.empty() ? std::string("every measure agrees with the thesis in direction and significance")
                              : "measures that differ from the published result: " + deviating) +
-              fmt::format("; the {} has the largest distance from its published value, {:.2g} standard errors of the "
-                          "difference; the mean force is nearly an input, because subjects regulate the force that the "
-                          "gauge shows",
-                          farthest, largest),
+              fmt::format(
+                  ". Of all measures, the {} is farthest from its published value, by {:.2g} standard errors of the "
+                  "difference. The mean force is nearly an input, because subjects regulate the force that the "
+                  "gauge shows",
+                  farthest, largest),
           text, number};
 }
 

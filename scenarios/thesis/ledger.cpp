@@ -117,7 +117,9 @@ std::string abstract_table(const Json& ledger) {
         }
     if (claims.empty()) continue;         // a run with --only may not have judged the claim
     constexpr std::size_t kMaxNames = 2;  // the page of the claim names all assumptions
-    const auto deciders = [](const Json& claim) { return decided_by(claim, kMaxNames); };
+    const auto deciders = [](const Json& claim) {
+      return claim.contains("sampled_verdict") ? "not tried with all targets" : decided_by(claim, kMaxNames);
+    };
     const auto member = [](const char* key) { return [key](const Json& claim) { return text_at(claim, key); }; };
     text += fmt::format("| {} | {} | {} | {} | {} | {} | `hapbench reproduce --only {}` ({:.0f} s) |\n",
                         text_at(sentence, "sentence"), joined(claims, member("published_short")), joined(claims, ours),
@@ -155,8 +157,8 @@ std::string other_values(const Json& claims) {
     if (claim.contains("sampled_verdict"))
       notes += fmt::format(
           "\n*(fewer targets)*: the verdict of the ledger on {} is *{}*. To save time, the other values were tried "
-          "with fewer targets. With these targets and the recorded assumptions, the verdict is *{}*. The entries are the "
-          "values that change this verdict; they do not show what decides the verdict of the ledger.\n",
+          "with fewer targets. With these targets and the recorded assumptions, the verdict is *{}*. The entries are "
+          "the values that change this verdict; they do not show what decides the verdict of the ledger.\n",
           link_to(claim), text_at(claim, "verdict"), text_at(claim, "sampled_verdict"));
   }
   if (cells.empty()) return "";
@@ -340,7 +342,9 @@ std::string ledger_markdown(const Json& ledger) {
       "the claim in [claim_pages.md](claim_pages.md), which has the rule of the verdict. *Original* is the "
       "original algorithm, *shaping* is stiffness shaping, the algorithm that the thesis proposes. A *stiffness ratio* "
       "is the combined stiffness of all contacts in the direction of one contact, divided by the stiffness K of one "
-      "contact. *Raw points* are the colliding points before the reduction. In task 1, the drill is pressed "
+      "contact. *Raw points* are the colliding points before the reduction. *Density* is the density field of the "
+      "block from which its surface points are computed: `signed_distance` or `binary`. *Tandpasta* is a law of "
+      "appendix F, which weakens springs that oppose each other. In task 1, the drill is pressed "
       "on a flat surface and dragged. In task 2, it rotates to and fro in a hole. In task 3, it moves along the wall "
       "of a hole, around the axis. The [glossary](../../scenarios/GLOSSARY.md) has the other terms.\n\n"
       "## 1. What the abstract claims\n\n" +
@@ -354,7 +358,8 @@ std::string ledger_markdown(const Json& ledger) {
       "- *robust*: no other value of a single assumption changes the verdict.\n"
       "- *sensitive to* an assumption: only this assumption changes the verdict.\n"
       "- *depends on several*: each of the named assumptions changes the verdict alone.\n"
-      "- *with fewer targets*: [a note below](#what-other-assumptions-would-change) states what was tried.\n"
+      "- *with fewer targets*, *not tried with all targets*: [a note below](#what-other-assumptions-would-change) "
+      "states what was tried.\n"
       "- *not sampled*: no other values were tried.\n";
   const std::string failing = failures(claims);
   text += "\n## 2. Claims that failed, and what other assumptions would change\n\n" +
