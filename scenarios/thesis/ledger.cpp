@@ -54,6 +54,12 @@ std::string link_to(const Json& claim) {
   return fmt::format("[{}](claim_pages.md#{})", id, lower_case(id));
 }
 
+/// Returns true if the other values of the assumptions were tried with fewer targets than the ledger, and if the
+/// recorded assumptions then give another verdict than in the ledger.
+bool has_fewer_targets(const Json& claim) {
+  return claim.contains("sampled_verdict");
+}
+
 /// Returns the robustness of a claim as Markdown with the names of assumptions in code style, such as "sensitive to
 /// `local.average`". Names the first `max_names` assumptions and counts the others.
 std::string decided_by(const Json& claim, std::size_t max_names) {
@@ -61,7 +67,7 @@ std::string decided_by(const Json& claim, std::size_t max_names) {
   if (deciders.empty()) return text_at(claim, "robustness");
   const std::size_t count = deciders.size();
   if (count > max_names) deciders.resize(max_names);
-  const char* fewer = claim.contains("sampled_verdict") ? " (with fewer targets)" : "";
+  const char* fewer = has_fewer_targets(claim) ? " (with fewer targets)" : "";
   return fmt::format("{}{}{} `{}`{}", count == 1 ? kSensitiveVerdict : kSeveralVerdict, fewer, count == 1 ? "" : ":",
                      fmt::join(deciders, "`, `"),
                      count > max_names ? fmt::format(" and {} more", count - max_names) : "");
@@ -118,7 +124,7 @@ std::string abstract_table(const Json& ledger) {
     if (claims.empty()) continue;         // a run with --only may not have judged the claim
     constexpr std::size_t kMaxNames = 2;  // the page of the claim names all assumptions
     const auto deciders = [](const Json& claim) {
-      return claim.contains("sampled_verdict") ? "not tried with all targets" : decided_by(claim, kMaxNames);
+      return has_fewer_targets(claim) ? "not tried with all targets" : decided_by(claim, kMaxNames);
     };
     const auto member = [](const char* key) { return [key](const Json& claim) { return text_at(claim, key); }; };
     text += fmt::format("| {} | {} | {} | {} | {} | {} | `hapbench reproduce --only {}` ({:.0f} s) |\n",
@@ -151,10 +157,10 @@ std::string other_values(const Json& claims) {
       if (!was_judged(text_at(one, "verdict"))) continue;
       append_item(cells[text_at(one, "assumption")],
                   fmt::format("{}: {} *{}*{}, {}", text_at(one, "value"), link_to(claim), text_at(one, "verdict"),
-                              claim.contains("sampled_verdict") ? " (fewer targets)" : "", text_at(one, "number")),
+                              has_fewer_targets(claim) ? " (fewer targets)" : "", text_at(one, "number")),
                   "<br>");
     }
-    if (claim.contains("sampled_verdict"))
+    if (has_fewer_targets(claim))
       notes += fmt::format(
           "\n*(fewer targets)*: the verdict of the ledger on {} is *{}*. To save time, the other values were tried "
           "with fewer targets. With these targets and the recorded assumptions, the verdict is *{}*. The entries are "
@@ -179,7 +185,7 @@ std::string other_values(const Json& claims) {
 /// Returns a note with the verdict that a claim has in the record of sensitivity under the recorded assumptions. Empty
 /// if the ledger has the same verdict.
 std::string sampled_text(const Json& claim) {
-  return claim.contains("sampled_verdict")
+  return has_fewer_targets(claim)
              ? fmt::format("with fewer targets, the recorded assumptions give: {}; ", text_at(claim, "sampled_verdict"))
              : "";
 }
