@@ -128,7 +128,7 @@ Finding judge_loop_load(const MeasuredCase& m, const PublishedNumbers& p) {
 
 MeasuredValues measure_proxy_cost(const Evidence& e) {
   // Run both laws in turn, so that a change of the machine's speed affects both.
-  constexpr int kRuns = 3;
+  constexpr int kRuns = 11;
   std::map<std::string, std::vector<double>> shares;
   for (int i = 0; i < kRuns; ++i) {
     for (const std::string law : {"proxy", kProposedLaw}) {
