@@ -160,7 +160,7 @@ void record_sensitivity(const std::vector<Claim>& claims, const std::vector<Clai
   const fs::path reference = installed_folder("results/reference");
   const Assumptions assumptions(reference / "assumptions.json");
   const PublishedNumbers published(reference / "published.json");
-  const JudgingInputs inputs{assumptions, published, true};
+  const JudgingInputs inputs{assumptions, published};
   SensitivityRecord record(file);
   record.keep_only(all);
   // Judge the claims under the recorded assumptions.
@@ -173,7 +173,7 @@ void record_sensitivity(const std::vector<Claim>& claims, const std::vector<Clai
   std::vector<std::string> reach;
   for (std::size_t c = 0; c < judged.size(); ++c) {
     scenarios.push_back(on_record[c].scenarios);
-    reach.push_back(assumptions.reach(scenarios[c], judged[c].rule));
+    reach.push_back(assumptions.reach(scenarios[c], judged[c].rule_texts()));
     record.begin(judged[c].id, reach[c], on_record[c], case_count(assumptions, judged[c], scenarios[c]));
   }
   // Judge the cases that the record lacks, and write the record after each case.
@@ -198,6 +198,7 @@ void record_sensitivity(const std::vector<Claim>& claims, const std::vector<Clai
   });
   std::error_code ignored;
   fs::remove_all(scratch, ignored);
+  record.sort_cases(assumptions);
   report.files().write(file, record.text());
   // Report the robustness of each verdict.
   std::vector<DecidedClaim> decided;

@@ -138,7 +138,7 @@ std::vector<JudgedClaim> judge(const std::vector<Claim>& claims, const Published
     for (const std::string& scenario : used)
       if (const auto run = run_of(scenario); run != runs.end()) seconds += run->seconds.value_or(0.0);
     const std::vector<std::string> scenarios(used.begin(), used.end());
-    judged.push_back({claim, std::move(finding), scenarios, assumptions.reach(scenarios, claim.rule), seconds});
+    judged.push_back({claim, std::move(finding), scenarios, assumptions.reach(scenarios, claim.rule_texts()), seconds});
   }
   return judged;
 }

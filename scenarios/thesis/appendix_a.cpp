@@ -41,6 +41,12 @@ Finding judge_peg_motion(const Measured& measured, const PublishedNumbers& p) {
               measured.at(2)["velocity_variation"] / measured.at(3)["velocity_variation"])};
 }
 
+/// The earlier rule of A1 ignored that the run with stiffness shaping may diverge.
+Verdict judge_peg_motion_before(const Measured& measured, const PublishedNumbers& p) {
+  const MeasuredCase &original = measured.at(0), shaped = until_divergence(measured.at(1));
+  return decide(vibrates_much_more(original, shaped, p), vibrates_more(original, shaped));
+}
+
 /// The algorithms of the thesis, except the normal projection, which equals stiffness shaping on springs.
 constexpr const char* kAlgorithms[] = {"original_averaging", "summation",        "mean",
                                        "virtual_coupling",   "shaped_stiffness", "tandpasta"};
@@ -108,17 +114,34 @@ bool is_smooth(const MeasuredCase& m, const PublishedNumbers& p) {
   return m["arrives"] == 1.0 && m["swings"] <= threshold(p, "smooth_swings");
 }
 
-Finding judge_springs_unlimited(const Measured& measured, const PublishedNumbers& p) {
-  // all_smooth: true if the motion is smooth with all algorithms, for each depth definition and number of pairs.
-  // smooth_with: the numbers of pairs with a smooth motion, for each depth definition and algorithm.
+/// Returns for each depth definition (true: signed) and number of pairs whether the motion is smooth with all
+/// algorithms.
+std::map<std::pair<bool, double>, bool> smooth_with_all(const Measured& measured, const PublishedNumbers& p) {
   std::map<std::pair<bool, double>, bool> all_smooth;
+  for (const MeasuredCase& m : measured) {
+    const auto all = all_smooth.try_emplace({m["signed"] == 1.0, m["pairs"]}, true).first;
+    all->second = all->second && is_smooth(m, p);
+  }
+  return all_smooth;
+}
+
+/// The earlier rule of A2: with fewer pairs, the claim counted as qualitatively replicated.
+Verdict judge_springs_unlimited_before(const Measured& measured, const PublishedNumbers& p) {
+  bool published = false, fewer = false;
+  for (const auto& [run, smooth] : smooth_with_all(measured, p)) {
+    bool& found = run.second == static_cast<double>(kPairs) ? published : fewer;
+    found = found || smooth;
+  }
+  return decide(published, fewer);
+}
+
+Finding judge_springs_unlimited(const Measured& measured, const PublishedNumbers& p) {
+  const std::map<std::pair<bool, double>, bool> all_smooth = smooth_with_all(measured, p);
+  // The numbers of pairs with a smooth motion, for each depth definition and algorithm.
   std::map<std::pair<bool, std::string>, std::string> smooth_with;
   for (const MeasuredCase& m : measured) {
-    const bool smooth = is_smooth(m, p), is_signed = m["signed"] == 1.0;
-    const auto all = all_smooth.try_emplace({is_signed, m["pairs"]}, true).first;
-    all->second = all->second && smooth;
-    std::string& pairs = smooth_with[{is_signed, m.name}];
-    if (smooth) append_item(pairs, plain(m["pairs"]), ", ");
+    std::string& pairs = smooth_with[{m["signed"] == 1.0, m.name}];
+    if (is_smooth(m, p)) append_item(pairs, plain(m["pairs"]), ", ");
   }
   std::string text;
   for (const auto& [run, pairs] : smooth_with)
@@ -292,15 +315,20 @@ Finding judge_energy(const MeasuredCase& m, const PublishedNumbers&) {
               mass ? "is" : "is not", kept ? "is" : "is not", m["bound"])};
 }
 
+/// The earlier rule of A6 judged one of the three energies.
+Verdict judge_energy_before(const Measured& measured, const PublishedNumbers&) {
+  return measured.front()["naive"] <= 1.0 + kSameEnergy ? Verdict::replicated : Verdict::contradicted;
+}
+
 }  // namespace
 
 std::vector<ClaimRule> appendix_a() {
-  return {{"A1", measure_peg_motion, judge_peg_motion},
-          {"A2", measure_springs_unlimited, judge_springs_unlimited},
+  return {{"A1", measure_peg_motion, judge_peg_motion, {judge_peg_motion_before}},
+          {"A2", measure_springs_unlimited, judge_springs_unlimited, {judge_springs_unlimited_before}},
           {"A3", measure_springs_limited, judge_springs_limited},
           {"A4", measure_stability_limits, judge_stability_limits},
           single_case<measure_damping_at_limit, judge_damping_at_limit>("A5"),
-          single_case<measure_energy, judge_energy>("A6")};
+          single_case<measure_energy, judge_energy>("A6", {judge_energy_before})};
 }
 
 }  // namespace hapbench

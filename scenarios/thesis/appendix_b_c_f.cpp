@@ -67,19 +67,28 @@ Measured measure_groove(const Evidence& e) {
   return measured;
 }
 
+/// Returns the number of angles at which the oscillation with the original algorithm is under-damped in a scene.
+double under_damped_angles(const Measured& measured, const PublishedNumbers& p, const char* scene) {
+  return static_cast<double>(std::ranges::count_if(measured, [&](const MeasuredCase& m) {
+    return m[fmt::format("{}_original_averaging", scene)] <= threshold(p, "under_damped") * m["given"];
+  }));
+}
+
+/// The earlier rule of B2 judged the damping with friction only.
+Verdict judge_groove_with_friction(const Measured& measured, const PublishedNumbers& p) {
+  const double with = under_damped_angles(measured, p, "groove_friction");
+  return decide(with > threshold(p, "most") * static_cast<double>(measured.size()), with > 0.0);
+}
+
 Finding judge_groove(const Measured& measured, const PublishedNumbers& p) {
-  const auto under_damped = [&](const char* scene) {
-    return std::count_if(measured.begin(), measured.end(), [&](const MeasuredCase& m) {
-      return m[fmt::format("{}_original_averaging", scene)] <= threshold(p, "under_damped") * m["given"];
-    });
-  };
-  const auto with = under_damped("groove_friction"), without = under_damped("groove_swing");
-  const double majority = threshold(p, "most") * static_cast<double>(measured.size());
+  const double with = under_damped_angles(measured, p, "groove_friction"),
+               without = under_damped_angles(measured, p, "groove_swing"),
+               majority = threshold(p, "most") * static_cast<double>(measured.size());
   return {
-      decide(static_cast<double>(with) > majority, static_cast<double>(without) > majority),
+      decide(with > majority, without > majority),
       fmt::format("true of the normal damping, which acts only along the merged direction; the friction of Table B.1 "
                   "{} the missing damping across this direction",
-                  static_cast<double>(with) > majority ? "does not hide" : "hides"),
+                  with > majority ? "does not hide" : "hides"),
       "",
       fmt::format("under-damped at {} of {} angles without friction, at {} with friction", without, measured.size(),
                   with)};
@@ -220,6 +229,13 @@ Finding judge_density(const Measured& measured, const PublishedNumbers& p) {
           measured.front()["updates"],
           all <= small ? "decouple the force from the density" : "do not decouple the force from the density",
           limit <= small ? "decouple it" : "do not", reduced <= small ? "decouples" : "does not decouple")};
+}
+
+/// The earlier rule of P1 asked first for the force without the reduction.
+Verdict judge_density_before(const Measured& measured, const PublishedNumbers& p) {
+  const double all = measured.front()["x40"], reduced = measured.front()["x40_reduced"], limit = measured.back()["x40"],
+               small = threshold(p, "negligible");
+  return decide(all <= small, std::min(reduced, limit) <= small);
 }
 
 // ---- T6: relative change of the spring force in task 2 by the reduction: the rms of the force difference with and
@@ -412,9 +428,9 @@ Finding judge_quick_penetration(const Measured& measured, const PublishedNumbers
 
 std::vector<ClaimRule> appendix_b_c_f() {
   return {single_case<measure_flipped_gradient, judge_flipped_gradient>("B1"),
-          {"B2", measure_groove, judge_groove},
+          {"B2", measure_groove, judge_groove, {judge_groove_with_friction}},
           single_case<measure_added_points, judge_added_points>("B3"),
-          {"P1", measure_density, judge_density},
+          {"P1", measure_density, judge_density, {judge_density_before}},
           single_case<measure_information, judge_information>("T6"),
           {"F4", measure_quick_penetration, judge_quick_penetration},
           {"C6", measure_relative_damping, judge_relative_damping},

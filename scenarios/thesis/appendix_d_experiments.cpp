@@ -18,12 +18,13 @@ struct MeasuredColumn {
   const char* name;       ///< name of the measure
   const char* column;     ///< column of targets.csv
   const char* published;  ///< part of the id of the published number
+  const char* unit;       ///< with a leading space; empty for a fraction
 };
 constexpr const char *kSuccessRate = "success rate", *kModelForce = "model force";
-constexpr MeasuredColumn kMeasures[] = {{kSuccessRate, "removed", "success"},
-                                        {"completion time", "time_s", "time"},
-                                        {kModelForce, "model_force_N", "force"},
-                                        {"speed", "speed_m_per_s", "speed"}};
+constexpr MeasuredColumn kMeasures[] = {{kSuccessRate, "removed", "success", ""},
+                                        {"completion time", "time_s", "time", " s"},
+                                        {kModelForce, "model_force_N", "force", " N"},
+                                        {"speed", "speed_m_per_s", "speed", " m/s"}};
 
 /// Largest difference between a measured and a published mean that counts as near [standard errors of the difference].
 /// Half a unit of the last published digit is allowed in addition. Does not apply to the force, which subjects
@@ -104,8 +105,31 @@ Compared compare(const MeasuredCase& m, const PublishedNumbers& published, const
   return c;
 }
 
-/// Judges an experiment by all its measures except the force, which the subjects regulate, so that it is an input.
-/// `id`: D1 to D4. `published_difference`: true if the thesis reports a significant difference between the algorithms.
+/// Returns true if a measure is as the rule of D1 to D4 requires.
+bool is_consistent(const MeasuredCase& m, const Compared& c, bool published_difference) {
+  if (m.name == kModelForce) return true;  // subjects regulate the force, so it is an input
+  // If the thesis reports no difference, the success rates must also be near the published rates: two rates of 0 do not
+  // differ either.
+  const bool near = published_difference || m.name != kSuccessRate || c.near;
+  return c.agrees && near;
+}
+
+/// Returns the means of a measure with both algorithms, and how they differ from the published result; empty if they do
+/// not differ.
+std::string deviation_text(const MeasuredCase& m, const Compared& c, bool published_difference) {
+  if (c.agrees && c.near) return "";
+  if (m.all("original").empty()) return fmt::format("{}: no subject has a value with both algorithms", m.name);
+  const char* how = c.agrees                ? "far from the published values"
+                    : !published_difference ? "here a significant difference, in the thesis none"
+                    : c.significant         ? "the opposite direction"
+                                            : "no significant difference";
+  return fmt::format("{} {:.2g} against {:.2g}{} ({})", m.name, mean_of(m.all("original")), mean_of(m.all("shaped")),
+                     std::ranges::find(kMeasures, m.name, &MeasuredColumn::name)->unit, how);
+}
+
+/// Judges an experiment by all its measures except the force. `id`: D1 to D4. `published_difference`: true if the
+/// thesis reports a significant difference between the algorithms. The number of the finding has the success rates, and
+/// each other measure that is not consistent.
 Finding judge_experiment(const Measured& measured, const PublishedNumbers& published, const std::string& id,
                          bool published_difference) {
   bool consistent = true;
@@ -115,25 +139,16 @@ Finding judge_experiment(const Measured& measured, const PublishedNumbers& publi
     const Compared c = compare(m, published, id, published_difference);
     if (c.farthest > largest) farthest = m.name;
     largest = std::max(largest, c.farthest);
-    // If the thesis reports no difference, the success rates must also be near the published rates: two rates of 0 do
-    // not differ either.
-    const bool is_rate = m.name == kSuccessRate;
-    if (m.name != kModelForce) consistent = consistent && c.agrees && (published_difference || !is_rate || c.near);
+    const bool as_published = is_consistent(m, c, published_difference);
+    consistent = consistent && as_published;
+    const std::string deviation = deviation_text(m, c, published_difference);
+    if (!deviation.empty()) append_item(deviating, deviation);
     const std::vector<double>&a = m.all("original"), &b = m.all("shaped");
-    if (!c.agrees) {
-      append_item(deviating,
-                  m.name + (!published_difference ? " (here a significant difference, in the thesis none)"
-                            : c.significant       ? " (the opposite direction)"
-                                                  : " (no significant difference)"),
-                  ", ");
-    } else if (!c.near) {
-      append_item(
-          deviating,
-          fmt::format("{} {:.2g} against {:.2g} (far from the published values)", m.name, mean_of(a), mean_of(b)),
-          ", ");
-    }
-    if (is_rate)
-      number = fmt::format("success rate {:.2f} (original) against {:.2f} (shaping)", mean_of(a), mean_of(b));
+    if (m.name == kSuccessRate)
+      append_item(number,
+                  fmt::format("success rate {:.2f} (original) against {:.2f} (shaping)", mean_of(a), mean_of(b)));
+    else if (!as_published)
+      append_item(number, deviation);
     append_item(text, fmt::format("{} {:.2g} ± {:.1g} vs {:.2g} ± {:.1g} (t = {:.3g})", m.name, mean_of(a),
                                   standard_error(a), mean_of(b), standard_error(b), c.t));
   }
@@ -148,6 +163,26 @@ Finding judge_experiment(const Measured& measured, const PublishedNumbers& publi
           text, number};
 }
 
+/// The earlier rule of D1 to D4 also compared the numbers with the published numbers, and two means that would be
+/// printed with the same digits counted as equal. `id`, `published_difference`: see judge_experiment().
+Verdict judge_experiment_before(const Measured& measured, const PublishedNumbers& published, const std::string& id,
+                                bool published_difference) {
+  bool all = true, success = false;
+  for (const MeasuredCase& m : measured) {
+    const Compared c = compare(m, published, id, published_difference);
+    const auto* column = std::ranges::find(kMeasures, m.name, &MeasuredColumn::name);
+    const auto half = [&](const char* law) {
+      return half_a_digit(published[fmt::format("{}.{}.{}", id, column->published, law)].mean);
+    };
+    const double difference = std::abs(mean_of(m.all("original")) - mean_of(m.all("shaped")));
+    const bool equal = difference <= half("original_averaging") + half(kProposedLaw);
+    const bool agrees = c.agrees || (!published_difference && equal);
+    all = all && agrees && c.near;
+    if (m.name == kSuccessRate) success = agrees && (published_difference || c.near);
+  }
+  return decide(all, success);
+}
+
 constexpr const char *kVertical = "vertical_peg_in_hole", *kRotational = "rotational_peg_in_hole";
 
 // ---- D7: the effect of the wall on the success rate with each algorithm. One case for each target: centre and side.
@@ -159,9 +194,15 @@ Measured measure_wall(const Evidence& e) {
   return measured;
 }
 
-Finding judge_wall(const Measured& measured, const PublishedNumbers& published) {
-  bool direction = true, near = true;
-  std::string text;
+/// How the success rates change from the central to the side target.
+struct EffectOfWall {
+  bool direction = true;  ///< true if both changes have the published direction
+  bool near = true;       ///< true if both changes equal the published changes within kStandardErrors
+  std::string text = {};  ///< the success rates
+};
+
+EffectOfWall effect_of_wall(const Measured& measured, const PublishedNumbers& published) {
+  EffectOfWall effect;
   for (const auto& [name, law] : {std::pair("original", "original_averaging"), std::pair("shaped", kProposedLaw)}) {
     const std::vector<double>&centre = measured.at(0).all(name), &side = measured.at(1).all(name);
     const PublishedNumber at_side = published[std::string("D1.success.") + law],
@@ -169,16 +210,27 @@ Finding judge_wall(const Measured& measured, const PublishedNumbers& published) 
     const double change = mean_of(side) - mean_of(centre), expected = at_side.mean - at_centre.mean;
     const double error = math::hypot(math::hypot(at_side.spread, at_centre.spread),
                                      math::hypot(standard_error(side), standard_error(centre)));
-    direction = direction && change * expected > 0.0;
-    near = near && std::abs(change - expected) <= kStandardErrors * error;
-    append_item(text, fmt::format("{} {:.2f} → {:.2f}", law, mean_of(centre), mean_of(side)));
+    effect.direction = effect.direction && change * expected > 0.0;
+    effect.near = effect.near && std::abs(change - expected) <= kStandardErrors * error;
+    append_item(effect.text, fmt::format("{} {:.2f} → {:.2f}", law, mean_of(centre), mean_of(side)));
   }
-  return {in_simulation(direction),
+  return effect;
+}
+
+/// The earlier rule of D7 also compared the changes with the published changes.
+Verdict judge_wall_before(const Measured& measured, const PublishedNumbers& published) {
+  const EffectOfWall effect = effect_of_wall(measured, published);
+  return decide(effect.direction && effect.near, effect.direction);
+}
+
+Finding judge_wall(const Measured& measured, const PublishedNumbers& published) {
+  const EffectOfWall effect = effect_of_wall(measured, published);
+  return {in_simulation(effect.direction),
           fmt::format("at the side target, success {}; the changes are {} the published changes",
-                      direction ? "rises with stiffness shaping and falls with the original algorithm"
-                                : "does not change in the published directions",
-                      near ? "near" : "not near"),
-          text, "success rate, centre → side: " + text};
+                      effect.direction ? "rises with stiffness shaping and falls with the original algorithm"
+                                       : "does not change in the published directions",
+                      effect.near ? "near" : "not near"),
+          effect.text, "success rate, centre → side: " + effect.text};
 }
 
 // ---- D6: success rates at the target positions of the pilot experiments. One case for each position, with the mean
@@ -191,13 +243,12 @@ constexpr double kOffsets[] = {0.4e-3,  0.46e-3, 0.52e-3,
 constexpr double kHeights[] = {2e-3, 2.5e-3, 3e-3, 3.5e-3, 4e-3, 4.5e-3};  ///< height above the hole's bottom [m]
 constexpr double kHoleDepth = 5e-3;                                        ///< [m]
 
-/// Returns the mean success rate of the subjects at one position [m]. Each subject has four targets, or one target in a
-/// reduced measurement. Each position has a separate run, because a subject who loses the drill misses all remaining
-/// targets.
+/// Returns the mean success rate of the subjects at one position [m]. Each subject has four targets. Each position has
+/// a separate run, because a subject who loses the drill misses all remaining targets.
 double success_rate(const Evidence& e, const std::string& scenario, const Vec3& position) {
   const Result run =
       e.run(scenario, {fmt::format("hand.task.places_m=[[{},{},{}]]", position.x(), position.y(), position.z()),
-                       fmt::format("hand.task.targets_per_place={}", e.reduced ? 1 : 4), "hand.trials=1"});
+                       "hand.task.targets_per_place=4", "hand.trials=1"});
   return position_metrics(run.targets).at(0).success_rate.mean;
 }
 
@@ -209,14 +260,8 @@ Measured measure_pilots(const Evidence& e) {
                          {"original", {success_rate(e, task + "_original_averaging", position)}},
                          {"shaped", {success_rate(e, task + "_shaped_stiffness", position)}}}});
   };
-  // A reduced measurement has the easiest position and one position beyond the published position.
-  const auto is_measured = [&e](double value, double easiest, double hard) {
-    return !e.reduced || value == easiest || value == hard;
-  };
-  for (const double offset : kOffsets)
-    if (is_measured(offset, 0.4e-3, 0.58e-3)) add("offset", kVertical, offset, {offset, 0.0, -kHoleDepth});
-  for (const double height : kHeights)
-    if (is_measured(height, 4.5e-3, 2.5e-3)) add("height", kRotational, height, {0.0, 0.0, height - kHoleDepth});
+  for (const double offset : kOffsets) add("offset", kVertical, offset, {offset, 0.0, -kHoleDepth});
+  for (const double height : kHeights) add("height", kRotational, height, {0.0, 0.0, height - kHoleDepth});
   return measured;
 }
 
@@ -237,26 +282,48 @@ struct PilotResult {
   }
 };
 
-Finding judge_pilots(const Measured& measured, const PublishedNumbers& published) {
+/// Results of the pilot experiments.
+struct Pilots {
   PilotResult offset, height;
+};
+
+/// Returns true if a position of the offset or height experiment is beyond the published position.
+bool is_beyond(const MeasuredCase& m, const PublishedNumbers& published) {
+  return m.name == "offset" ? m["value"] > published["D6.offset"].at_most
+                            : m["value"] < published["D6.height"].at_least;
+}
+
+Pilots pilot_results(const Measured& measured, const PublishedNumbers& published) {
+  Pilots pilots;
+  for (const MeasuredCase& m : measured) {
+    PilotResult& pilot = m.name == "offset" ? pilots.offset : pilots.height;
+    const bool hardly_any = m["original"] <= kHardlyAnyTarget;
+    pilot.easy = pilot.easy || m["original"] >= kMajorityOfTargets;
+    pilot.beyond = pilot.beyond || (is_beyond(m, published) && !hardly_any);
+    pilot.somewhere = pilot.somewhere || (hardly_any && m["shaped"] >= kMajorityOfTargets);
+  }
+  return pilots;
+}
+
+/// The earlier rule of D6 accepted another position than the published one as qualitatively replicated.
+Verdict judge_pilots_before(const Measured& measured, const PublishedNumbers& published) {
+  const auto [offset, height] = pilot_results(measured, published);
+  return decide(offset.as_published() && height.as_published(), offset.somewhere || height.somewhere);
+}
+
+Finding judge_pilots(const Measured& measured, const PublishedNumbers& published) {
+  const auto [offset, height] = pilot_results(measured, published);
   // Largest success rate of the original algorithm: beyond the published positions, and at any position.
   double beyond = 0.0, easiest = 0.0;
   std::string worse;  // positions at which stiffness shaping removes fewer targets than the original algorithm
   for (const MeasuredCase& m : measured) {
-    const bool hardly_any = m["original"] <= kHardlyAnyTarget, is_offset = m.name == "offset";
-    PilotResult& pilot = is_offset ? offset : height;
-    const bool hard =
-        is_offset ? m["value"] > published["D6.offset"].at_most : m["value"] < published["D6.height"].at_least;
     if (m["shaped"] < m["original"])
       append_item(
           worse,
           fmt::format("{} {:.2f} mm: {:.2f} against {:.2f}", m.name, 1e3 * m["value"], m["original"], m["shaped"]),
           ", ");
     easiest = std::max(easiest, m["original"]);
-    if (hard) beyond = std::max(beyond, m["original"]);
-    pilot.easy = pilot.easy || m["original"] >= kMajorityOfTargets;
-    pilot.beyond = pilot.beyond || (hard && !hardly_any);
-    pilot.somewhere = pilot.somewhere || (hardly_any && m["shaped"] >= kMajorityOfTargets);
+    if (is_beyond(m, published)) beyond = std::max(beyond, m["original"]);
   }
   return {
       in_simulation(offset.as_published() && height.as_published()),
@@ -272,16 +339,24 @@ Finding judge_pilots(const Measured& measured, const PublishedNumbers& published
 }  // namespace
 
 std::vector<ClaimRule> appendix_d_experiments() {
-  return {{"D1", [](const Evidence& e) { return measure(e, kVertical, 1.0); },
-           [](const Measured& m, const PublishedNumbers& p) { return judge_experiment(m, p, "D1", true); }},
-          {"D2", [](const Evidence& e) { return measure(e, kVertical, 0.0); },
-           [](const Measured& m, const PublishedNumbers& p) { return judge_experiment(m, p, "D2", false); }},
-          {"D3", [](const Evidence& e) { return measure(e, kRotational, 0.0); },
-           [](const Measured& m, const PublishedNumbers& p) { return judge_experiment(m, p, "D3", true); }},
-          {"D4", [](const Evidence& e) { return measure(e, kRotational, 1.0); },
-           [](const Measured& m, const PublishedNumbers& p) { return judge_experiment(m, p, "D4", true); }},
-          {"D6", measure_pilots, judge_pilots},
-          {"D7", measure_wall, judge_wall}};
+  return {{"D1",
+           [](const Evidence& e) { return measure(e, kVertical, 1.0); },
+           [](const Measured& m, const PublishedNumbers& p) { return judge_experiment(m, p, "D1", true); },
+           {[](const Measured& m, const PublishedNumbers& p) { return judge_experiment_before(m, p, "D1", true); }}},
+          {"D2",
+           [](const Evidence& e) { return measure(e, kVertical, 0.0); },
+           [](const Measured& m, const PublishedNumbers& p) { return judge_experiment(m, p, "D2", false); },
+           {[](const Measured& m, const PublishedNumbers& p) { return judge_experiment_before(m, p, "D2", false); }}},
+          {"D3",
+           [](const Evidence& e) { return measure(e, kRotational, 0.0); },
+           [](const Measured& m, const PublishedNumbers& p) { return judge_experiment(m, p, "D3", true); },
+           {[](const Measured& m, const PublishedNumbers& p) { return judge_experiment_before(m, p, "D3", true); }}},
+          {"D4",
+           [](const Evidence& e) { return measure(e, kRotational, 1.0); },
+           [](const Measured& m, const PublishedNumbers& p) { return judge_experiment(m, p, "D4", true); },
+           {[](const Measured& m, const PublishedNumbers& p) { return judge_experiment_before(m, p, "D4", true); }}},
+          {"D6", measure_pilots, judge_pilots, {judge_pilots_before}},
+          {"D7", measure_wall, judge_wall, {judge_wall_before}}};
 }
 
 }  // namespace hapbench

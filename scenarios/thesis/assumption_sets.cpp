@@ -164,13 +164,7 @@ std::vector<SetFinding> judge_set(const JudgingInputs& inputs, const CalibratedS
                     {},
                     {},
                     [&used](const std::string& scenario) { used.insert(scenario); }};
-  evidence.reduced = inputs.reduced;
-  evidence.overrides = [&](const Scenario& scenario) {
-    std::vector<std::string> overrides = inputs.assumptions.overrides(scenario, values);
-    if (inputs.reduced && std::holds_alternative<TrackingHandFields>(scenario.hand))
-      overrides.insert(overrides.end(), std::begin(kReducedSubjects), std::end(kReducedSubjects));
-    return overrides;
-  };
+  evidence.overrides = [&](const Scenario& scenario) { return inputs.assumptions.overrides(scenario, values); };
   // Run each scenario when its results are first needed.
   evidence.provide = [&](const std::string& scenario) {
     used.insert(scenario);
@@ -187,10 +181,12 @@ std::vector<SetFinding> judge_set(const JudgingInputs& inputs, const CalibratedS
     try {
       const Finding finding = measurements.finding(claim, evidence);
       judged = {std::string(verdict_name(finding.verdict)), finding.number, finding.why, {}};
+      if (finding.earlier) judged.earlier = verdict_name(*finding.earlier);
     } catch (const IoError&) {
       throw;  // an error such as a full disk says nothing about the claim
     } catch (const std::exception& error) {
       judged = {kNotMeasured, "", error.what(), {}};
+      if (claim.earlier.judge != nullptr) judged.earlier = kNotMeasured;
     }
     judged.scenarios.assign(used.begin(), used.end());
     for (const std::size_t missed : calibrated.missed) {

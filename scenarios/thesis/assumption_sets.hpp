@@ -46,14 +46,10 @@ struct CalibratedSet {
 /// input. Throws InputError if a scenario of a calibration cannot run.
 CalibratedSet calibrated(AssumptionSet set, const Assumptions& assumptions);
 
-/// Overrides that reduce the experiments of appendix D: 4 of 15 targets at each position, for each of the six subjects.
-inline constexpr const char* kReducedSubjects[] = {"hand.trials=1", "hand.task.targets_per_place=4"};
-
 /// Inputs with which the claims are judged.
 struct JudgingInputs {
   const Assumptions& assumptions;
   const PublishedNumbers& published;  ///< without the values of assumptions
-  bool reduced = false;               ///< true: experiments with subjects use the overrides kReducedSubjects
 };
 
 /// The verdict on a claim under an assumption set.
@@ -62,6 +58,9 @@ struct SetFinding {
   std::string number;                  ///< Finding::number; empty if the claim was not measured
   std::string why;                     ///< Finding::why, or why the claim was not measured
   std::vector<std::string> scenarios;  ///< names of the scenarios that were used
+  /// Verdict of the earlier rule; empty if the claim has no earlier rule. The earlier rules know no calibration, so it
+  /// is a verdict also if an input could not be calibrated.
+  std::string earlier = {};
 };
 /// Verdict of a claim that could not be measured: a run diverged unexpectedly, or a field refuses the value.
 inline constexpr const char* kNotMeasured = "not measured";

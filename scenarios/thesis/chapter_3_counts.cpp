@@ -133,14 +133,30 @@ Finding judge_reduced_points(const Measured& counts, const PublishedNumbers& pub
   return {inputs == 0 ? Verdict::not_judged : decide(all == counts.size(), means > 0), why};
 }
 
+/// The earlier rule of T2 and T3 did not ask whether the raw counts, which are an input, agree.
+Verdict judge_reduced_points_before(const Measured& counts, const PublishedNumbers& published,
+                                    const std::string& task) {
+  std::size_t all = 0, means = 0;
+  for (const MeasuredCase& c : counts) {
+    const CountsAgree agree = agreement(c, published, task, c["outside_taps"] < published["T3.reduced.bound"].at_most);
+    all += agree.whole ? 1U : 0U;
+    means += agree.mean ? 1U : 0U;
+  }
+  return decide(all == counts.size(), means > 0);
+}
+
 }  // namespace
 
 std::vector<ClaimRule> chapter_3_counts() {
   return {{"T1", [](const Evidence& e) { return measure_counts(e, "task1_flat"); }, judge_flat_reduction},
-          {"T2", [](const Evidence& e) { return measure_counts(e, "task2_rotate"); },
-           [](const Measured& m, const PublishedNumbers& p) { return judge_reduced_points(m, p, "T2"); }},
-          {"T3", [](const Evidence& e) { return measure_counts(e, "task3_spin"); },
-           [](const Measured& m, const PublishedNumbers& p) { return judge_reduced_points(m, p, "T3"); }}};
+          {"T2",
+           [](const Evidence& e) { return measure_counts(e, "task2_rotate"); },
+           [](const Measured& m, const PublishedNumbers& p) { return judge_reduced_points(m, p, "T2"); },
+           {[](const Measured& m, const PublishedNumbers& p) { return judge_reduced_points_before(m, p, "T2"); }}},
+          {"T3",
+           [](const Evidence& e) { return measure_counts(e, "task3_spin"); },
+           [](const Measured& m, const PublishedNumbers& p) { return judge_reduced_points(m, p, "T3"); },
+           {[](const Measured& m, const PublishedNumbers& p) { return judge_reduced_points_before(m, p, "T3"); }}}};
 }
 
 }  // namespace hapbench

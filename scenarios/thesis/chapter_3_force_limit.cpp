@@ -112,10 +112,12 @@ Finding judge_felt_stiffness(const MeasuredCase& m, const PublishedNumbers& p) {
 }
 
 // ---- L2: the steps of task 2 with contact in which the hand's force is at the input limit. Measures the magnitude of
-// the spring force f (the reaction) [N] in these steps. Also measures the fraction of these steps in which |f| does not
-// grow along the velocity v: <v, grad |f|> = -K <f, S v> / |f| <= 0. At the limit the tool is near equilibrium, so that
-// v points in or against the direction of growing |f| by chance. If the tool moves only where the reaction decreases,
-// the reaction does not exceed the limit.
+// the spring force f (the reaction) [N] in these steps.
+// against: fraction of these steps in which |f| does not grow along the velocity v: <v, grad |f|> = -K <f, S v> / |f|
+//   <= 0. At the limit the tool is near equilibrium, so that v points in or against the direction of growing |f| by
+//   chance. If the tool moves only where the reaction decreases, the reaction does not exceed the limit.
+// against_beyond: the same fraction, of the steps in which |f| has reached the limit; NaN without such a step. The
+//   earlier rule judged both fractions.
 
 MeasuredValues measure_saturated_motion(const Evidence& e) {
   // The hand pushes with more than the input limit of 2 N while the drill rotates once back and forth.
@@ -124,20 +126,30 @@ MeasuredValues measure_saturated_motion(const Evidence& e) {
              {R"(hand.force_N={"type":"sine","mean":3.5,"amplitude":1.4,"period_s":1.7})", "time.duration_s=6"});
   const double limit = input_force_limit(loaded.scenario.device).value();
   std::vector<double> reactions;
-  double against = 0.0;
+  double against = 0.0, beyond = 0.0, against_beyond = 0.0;
   for_each_row(checked(loaded), [&](const StepRecord& row) {
     const Vec3& spring = row.force.spring;
     // Skip steps below the limit. The limiter scales the force to the limit, up to rounding.
     if (row.hand.input.norm() < limit * (1.0 - 1e-12) || spring.norm() == 0.0) return;
-    if (row.tool.velocity.dot(-row.force.S * spring) <= 0.0) against += 1.0;
+    const double moves_against = row.tool.velocity.dot(-row.force.S * spring) <= 0.0 ? 1.0 : 0.0;
+    against += moves_against;
+    if (spring.norm() >= limit) {
+      beyond += 1.0;
+      against_beyond += moves_against;
+    }
     reactions.push_back(spring.norm());
   });
   if (reactions.empty()) throw NothingToMeasure("no step with contact reaches the limit of the input force");
   const double rows = static_cast<double>(reactions.size());
   std::ranges::sort(reactions);
   const auto quantile = [&](double share) { return reactions[static_cast<std::size_t>(share * (rows - 1.0))]; };
-  return {{"rows", {rows}},          {"limit", {limit}},       {"median", {quantile(0.5)}},
-          {"p99", {quantile(0.99)}}, {"max", {quantile(1.0)}}, {"against", {against / rows}}};
+  return {{"rows", {rows}},
+          {"limit", {limit}},
+          {"median", {quantile(0.5)}},
+          {"p99", {quantile(0.99)}},
+          {"max", {quantile(1.0)}},
+          {"against", {against / rows}},
+          {"against_beyond", {against_beyond / beyond}}};
 }
 
 Finding judge_saturated_motion(const MeasuredCase& m, const PublishedNumbers& p) {
@@ -145,6 +157,12 @@ Finding judge_saturated_motion(const MeasuredCase& m, const PublishedNumbers& p)
   const bool held = m["p99"] <= bound, median = m["median"] <= bound;
   return {decide(held, median), held ? "the reaction stays near the limit for every force of the hand"
                                      : "the reaction exceeds the limit while the input force is limited"};
+}
+
+/// The earlier rule of L2: the tool does not move to a larger reaction.
+Verdict judge_direction_of_motion(const Measured& measured, const PublishedNumbers& p) {
+  const double nearly_all = threshold(p, "nearly_all");
+  return decide(measured.front()["against"] >= nearly_all, measured.front()["against_beyond"] >= nearly_all);
 }
 
 // ---- L3: a tool shaken in free air. One case for each frequency.
@@ -212,7 +230,7 @@ Finding judge_shaking(const Measured& measured, const PublishedNumbers& publishe
 
 std::vector<ClaimRule> chapter_3_force_limit() {
   return {single_case<measure_force_limit, judge_force_limit>("L1"),
-          single_case<measure_saturated_motion, judge_saturated_motion>("L2"),
+          single_case<measure_saturated_motion, judge_saturated_motion>("L2", {judge_direction_of_motion}),
           {"L3", measure_shaking, judge_shaking},
           single_case<measure_felt_stiffness, judge_felt_stiffness>("L4")};
 }

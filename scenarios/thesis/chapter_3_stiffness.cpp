@@ -171,6 +171,14 @@ Finding judge_three_updates(const Measured& measured, const PublishedNumbers& p)
   return finding;
 }
 
+/// The earlier rules of R1 and R3 combined the range after `updates` updates with the bound of R4, and knew no
+/// averages.
+Verdict judge_range_and_bound(const Measured& measured, const PublishedNumbers& p, double updates) {
+  const double inside = smallest(measured, after("inside", updates));
+  const bool bounded = largest(measured, "any_max") <= p["R1.bound"].at_most;
+  return decide(bounded && inside >= threshold(p, "nearly_all"), inside >= threshold(p, "most"));
+}
+
 /// Returns the measured number `value` times `factor` of each case with a single task, as a list in text form. `format`
 /// is the format of each number.
 std::string of_tasks(const Measured& measured, const char* value, const char* format, double factor = 1.0) {
@@ -432,8 +440,12 @@ Finding judge_cancelling(const MeasuredCase& m, const PublishedNumbers&) {
 }  // namespace
 
 std::vector<ClaimRule> chapter_3_stiffness() {
-  return {{"R1", measure_ratios, judge_first_update},
-          {"R3", measure_ratios, judge_three_updates},
+  return {{"R1", measure_ratios, judge_first_update, {[](const Measured& m, const PublishedNumbers& p) {
+             return judge_range_and_bound(m, p, p["ratios.one_iteration"].mean);
+           }}},
+          {"R3", measure_ratios, judge_three_updates, {[](const Measured& m, const PublishedNumbers& p) {
+             return judge_range_and_bound(m, p, p["R1.iterations"].mean);
+           }}},
           {"R4", measure_ratios, judge_bound_in_tasks},
           {"R6", measure_ratios, judge_relative_damping_of_tasks},
           single_case<measure_convergence, judge_convergence>("R1b"),

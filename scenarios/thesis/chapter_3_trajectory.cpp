@@ -93,6 +93,21 @@ Measured measure_hands(const Evidence& e) {
   return measured;
 }
 
+/// The earlier rule of J1, for hands of constant force, with the scene's setting of the local average (the first half
+/// of the cases). Its best verdict is `qualitatively`, because the hand of the thesis and its forces are not published.
+/// If a measured number is NaN, all comparisons with it are false.
+Verdict judge_constant_hands(const Measured& hands, const PublishedNumbers& published) {
+  const double around = threshold(published, "around");
+  const double depth = around * published["J1.depth"].mean, lateral = around * published["J1.lateral"].mean;
+  const double gentlest = std::abs(hands.front()["height"]);
+  bool as_published = gentlest <= depth;
+  for (const MeasuredCase& m : std::span(hands).first(hands.size() / 2)) {
+    const bool offset = m["force"] <= published["J1.split"].mean || std::abs(m["height"]) > gentlest;
+    as_published = as_published && offset && m["lateral"] <= lateral && m["inside"] <= depth;
+  }
+  return decide(false, as_published);
+}
+
 /// Compares the cases without and with the local average, at each force below 2 N.
 Finding judge_local_average(const Measured& measured, const PublishedNumbers& p) {
   const double around = threshold(p, "around");
@@ -144,7 +159,7 @@ Finding judge_end_of_contact(const MeasuredCase& m, const PublishedNumbers& publ
 }  // namespace
 
 std::vector<ClaimRule> chapter_3_trajectory() {
-  return {single_case<measure_trajectory, judge_trajectory>("J1"),
+  return {single_case<measure_trajectory, judge_trajectory>("J1", {judge_constant_hands, measure_hands}),
           {"C5", measure_hands, judge_local_average},
           {"T2b", measure_hands, judge_hands},
           single_case<measure_end_of_contact, judge_end_of_contact>("J2")};

@@ -35,8 +35,14 @@ constexpr std::uint64_t kStepsBetweenEvaluations = 8;
 /// at some tilts.
 constexpr double kLanded = 0.5;
 
+/// Returns the name of the depth at a tilt.
+std::string at_tilt(double tilt) {
+  return fmt::format("at_{}", tilt);
+}
+
 /// Returns the largest depth of the drill in the block after kLanded, at each tilt [m]. The final depth would not be
-/// enough: a drill that passes through the block has left the block at the end. NaN for a run that diverges.
+/// enough: a drill that passes through the block has left the block at the end. For a run that diverges, see
+/// MeasuredCase::set_diverged().
 MeasuredCase pressed(const Evidence& e, const std::string& name, const std::string& scene,
                      std::vector<std::string> overrides = {}) {
   MeasuredCase m{name, {}};
@@ -46,7 +52,7 @@ MeasuredCase pressed(const Evidence& e, const std::string& name, const std::stri
     const LoadedScenario loaded = e.load(scene, overrides);
     IdealTrajectoryObserver ideal(std::get<BlockEnvironment>(loaded.scenario.environment).block,
                                   make_cylinder(loaded.scenario.tool));
-    double& deepest = m.values[fmt::format("at_{}", tilt)].emplace_back(0.0);
+    double deepest = 0.0;
     const auto rows = static_cast<std::uint64_t>(loaded.scenario.time.steps);
     bool complete = false;
     for_each_row(checked(loaded), [&](const StepRecord& row) {
@@ -56,7 +62,10 @@ MeasuredCase pressed(const Evidence& e, const std::string& name, const std::stri
       if (ideal.error()) deepest = std::max(deepest, ideal.error()->interpenetration);
     });
     // A run that diverges does not reach its last row.
-    if (!complete) deepest = std::nan("");
+    if (complete)
+      m.values[at_tilt(tilt)] = {deepest};
+    else
+      m.set_diverged(at_tilt(tilt), deepest);
   }
   return m;
 }
@@ -64,9 +73,10 @@ MeasuredCase pressed(const Evidence& e, const std::string& name, const std::stri
 /// Returns the largest depth over the tilts [m]; NaN if the run at some tilt diverges.
 double deepest(const MeasuredCase& m) {
   double largest = 0.0;
-  for (const auto& [tilt, depth] : m.values) {
-    if (std::isnan(depth.front())) return depth.front();
-    largest = std::max(largest, depth.front());
+  for (const double tilt : kPressedTilts) {
+    const double depth = m[at_tilt(tilt)];
+    if (std::isnan(depth)) return depth;
+    largest = std::max(largest, depth);
   }
   return largest;
 }
@@ -84,6 +94,18 @@ Finding judge_sinking(const Measured& m, const PublishedNumbers& p) {
           "", fmt::format("largest depth {:.2f} mm, with stiffness shaping {:.2f} mm", 1e3 * law, 1e3 * shaped)};
 }
 
+/// The earlier rule of V1 and V2: the drill sinks in easily, or deeper, at every tilt. It ignored that a run with
+/// stiffness shaping may diverge.
+Verdict judge_sinking_at_every_tilt(const Measured& m, const PublishedNumbers& p) {
+  bool easily = true, more = true;
+  for (const double tilt : kPressedTilts) {
+    const double law = m.at(1).until_divergence(at_tilt(tilt)), shaped = m.at(0).until_divergence(at_tilt(tilt));
+    easily = easily && law >= threshold(p, "easily") * shaped;
+    more = more && law > shaped;
+  }
+  return decide(easily, more);
+}
+
 Measured measure_averaging(const Evidence& e) {
   return {pressed(e, kProposedLaw, "press_towards_rim"),  // with the reduction, as in the thesis
           pressed(e, "mean", "press_towards_rim", {"rendering.algorithm=mean", "rendering.reduction=null"}),
@@ -92,9 +114,10 @@ Measured measure_averaging(const Evidence& e) {
 
 // ---- B1b, B5: a drill turned in the hole as in thesis B.3.1, with the proposed algorithm and with the original
 // algorithm of appendix B.
-// B1b: largest depth [m] of the drill while it is near the hole, with a hand of 1 N; NaN if the run diverges.
+// B1b: largest depth [m] of the drill while it is near the hole, with a hand of 1 N. For a run that diverges, see
+//   MeasuredCase::set_diverged().
 // B5: number of the hand forces kHands with which the drill passes through the surface. For the proposed algorithm, a
-//   run that diverges also counts.
+//   run that diverges also counts; "diverging" is the number of these runs.
 
 constexpr const char* kOriginalLaw = "original_averaging";
 
@@ -113,8 +136,8 @@ Measured measure_original(const Evidence& e) {
   for (const std::string law : {kProposedLaw, kOriginalLaw}) {
     const Result run = turned(e, law, 1.0);
     const auto depth = number_of(run.metrics, "ideal_trajectory.gentle.interpenetration_max_m");
-    const bool diverges = run.end.outcome == Outcome::diverges;
-    measured.push_back({law, {{"depth", {diverges ? std::nan("") : depth.value_or(0.0)}}}});
+    MeasuredCase& m = measured.emplace_back(MeasuredCase{law, {{"depth", {depth.value_or(0.0)}}}});
+    if (run.end.outcome == Outcome::diverges) m.set_diverged("depth", depth.value_or(0.0));
   }
   return measured;
 }
@@ -125,16 +148,26 @@ Finding judge_original(const Measured& m, const PublishedNumbers& p) {
           fmt::format("{:.2g} times as deep as with stiffness shaping", times)};
 }
 
+/// The earlier rule of B1b ignored that the run with stiffness shaping may diverge.
+Verdict judge_original_before(const Measured& m, const PublishedNumbers& p) {
+  const double times = m.at(1).until_divergence("depth") / m.at(0).until_divergence("depth");
+  return decide(times >= threshold(p, "easily"), times > 1.0);
+}
+
 constexpr double kHands[] = {0.5, 1.0, 2.0, 3.5};  ///< [N]
 
 MeasuredValues measure_pop_through(const Evidence& e) {
-  MeasuredValues values = {{"hands", {static_cast<double>(std::size(kHands))}}};
-  for (const std::string law : {kProposedLaw, kOriginalLaw})
-    values[law] = {static_cast<double>(std::ranges::count_if(kHands, [&](double force) {
-      const Outcome outcome = turned(e, law, force).end.outcome;
-      return outcome == Outcome::went_through || (law == kProposedLaw && outcome == Outcome::diverges);
-    }))};
-  return values;
+  double original = 0.0, proposed = 0.0, diverging = 0.0;
+  for (const double force : kHands) {
+    original += turned(e, kOriginalLaw, force).end.outcome == Outcome::went_through ? 1.0 : 0.0;
+    const Outcome outcome = turned(e, kProposedLaw, force).end.outcome;
+    diverging += outcome == Outcome::diverges ? 1.0 : 0.0;
+    proposed += outcome == Outcome::diverges || outcome == Outcome::went_through ? 1.0 : 0.0;
+  }
+  return {{"hands", {static_cast<double>(std::size(kHands))}},
+          {kOriginalLaw, {original}},
+          {kProposedLaw, {proposed}},
+          {"diverging", {diverging}}};
 }
 
 Finding judge_pop_through(const MeasuredCase& m, const PublishedNumbers&) {
@@ -142,6 +175,13 @@ Finding judge_pop_through(const MeasuredCase& m, const PublishedNumbers&) {
   return {decide(original > 0.0 && proposed == 0.0, original > proposed),
           original > 0.0 ? "beyond the median line, flipped gradients pull the drill farther in"
                          : "the drill stays in the hole"};
+}
+
+/// The earlier rule of B5 ignored that a run with the proposed algorithm may diverge.
+Verdict judge_pop_through_before(const Measured& measured, const PublishedNumbers&) {
+  const MeasuredCase& m = measured.front();
+  const double original = m[kOriginalLaw], proposed = m[kProposedLaw] - m["diverging"];
+  return decide(original > 0.0 && proposed == 0.0, original > proposed);
 }
 
 // ---- S1, B4: vibration of two laws, compared with stiffness shaping in the planar peg scene and in task 2. The law of
@@ -184,6 +224,21 @@ Finding judge_highest_depth(const Measured& m, const PublishedNumbers& p) {
               "the averaged direction turns quickly where gradients cancel: the tool {} with the planar peg and {} in "
               "task 2",
               peg ? "vibrates" : "does not vibrate much more", task ? "vibrates" : "does not vibrate much more")};
+}
+
+// The earlier rules of S1 and B4 ignored that the run with stiffness shaping may diverge.
+
+Verdict judge_summation_before(const Measured& m, const PublishedNumbers& p) {
+  const auto unstable = [&](std::size_t i) {
+    return m.at(i)["diverges"] == 1.0 || vibrates_much_more(m.at(i), until_divergence(m.at(i + 1)), p);
+  };
+  return decide(unstable(0) && unstable(2), unstable(0) || unstable(2));
+}
+
+Verdict judge_highest_depth_before(const Measured& m, const PublishedNumbers& p) {
+  const MeasuredCase peg = until_divergence(m.at(1)), task = until_divergence(m.at(3));
+  return decide(vibrates_much_more(m.at(0), peg, p) || vibrates_much_more(m.at(2), task, p),
+                vibrates_more(m.at(0), peg) && vibrates_more(m.at(2), task));
 }
 
 // ---- G1: gradients on both sides of the tool's median line: the inner product of the gradients for two wall points,
@@ -412,18 +467,20 @@ Finding judge_parallel_faces(const MeasuredCase& m, const PublishedNumbers& p) {
 
 std::vector<ClaimRule> chapters_1_and_4() {
   return {
-      {"V1", measure_averaging, judge_sinking},
+      {"V1", measure_averaging, judge_sinking, {judge_sinking_at_every_tilt}},
       {"V2",
        [](const Evidence& e) {
          return Measured{pressed(e, kProposedLaw, "press_towards_rim"),
                          pressed(e, "virtual coupling", "press_coupled")};
        },
-       judge_sinking},
+       judge_sinking,
+       {judge_sinking_at_every_tilt}},
       {"S1",
        [](const Evidence& e) { return vibrations_beside_shaping(e, "summation", "task2_held", {"metrics.from_s=0"}); },
-       judge_summation},
-      {"B1b", measure_original, judge_original},
-      single_case<measure_pop_through, judge_pop_through>("B5"),
+       judge_summation,
+       {judge_summation_before}},
+      {"B1b", measure_original, judge_original, {judge_original_before}},
+      single_case<measure_pop_through, judge_pop_through>("B5", {judge_pop_through_before}),
       single_case<measure_median_line, judge_median_line>("G1"),
       single_case<measure_underestimation, judge_underestimation>("G1b"),
       single_case<measure_depth_cost, judge_depth_cost>("G2"),
@@ -432,7 +489,8 @@ std::vector<ClaimRule> chapters_1_and_4() {
          return vibrations_beside_shaping(e, "highest_depth", "task2_rotate_signed_distance",
                                           {"time.duration_s=6", "record.ideal_trajectory=false"});
        },
-       judge_highest_depth},
+       judge_highest_depth,
+       {judge_highest_depth_before}},
       single_case<measure_one_direction, judge_one_direction>("C8"),
       single_case<measure_over_reduction, judge_over_reduction>("C1"),
       {"C2", [](const Evidence& e) { return measure_turn_into_wall(e, {}); }, judge_turn_into_wall},

@@ -46,11 +46,13 @@ std::vector<Claim> all_claims() {
                                                .number = row.value("number", ""),
                                                .published_short = row.value("published_short", ""),
                                                .added = row.value("added", false)});
-      if (const Json revised = row.value("revised", Json()); !revised.is_null())
-        claim.revised = {text(revised, "rule"), text(revised, "verdict"), text(revised, "reason")};
       if (!claim.why.empty()) continue;  // no simulation can test this claim
       claim.measure = rules.at(claim.id).measure;
       claim.judge = rules.at(claim.id).judge;
+      claim.earlier = rules.at(claim.id).earlier;
+      if (claim.earlier.judge == nullptr) continue;
+      claim.earlier.rule = text(row.at("revised"), "rule");
+      claim.earlier.reason = text(row.at("revised"), "reason");
     }
   } catch (const std::exception& problem) {
     fail_in_file(file, fmt::format("is no file of claims, after {} of them: {}", claims.size(), problem.what()));

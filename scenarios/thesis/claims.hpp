@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "algorithms/registry.hpp"
@@ -24,16 +25,18 @@ struct ClaimRule {
   const char* id = nullptr;
   Measure measure = nullptr;
   Judge judge = nullptr;
+  EarlierRule earlier = {};  ///< without its texts, which are in rules.json
 };
 
 /// Returns the rule of a claim that is measured in a single case.
 template <MeasuredValues (*measure)(const Evidence&), Finding (*judge)(const MeasuredCase&, const PublishedNumbers&)>
-ClaimRule single_case(const char* id) {
+ClaimRule single_case(const char* id, EarlierRule earlier = {}) {
   return {id,
           [](const Evidence& e) {
             return Measured{{"", measure(e)}};
           },
-          [](const Measured& measured, const PublishedNumbers& p) { return judge(measured.at(0), p); }};
+          [](const Measured& measured, const PublishedNumbers& p) { return judge(measured.at(0), p); },
+          std::move(earlier)};
 }
 
 /// Returns all claims, in the order of the ledger. Throws InputError if rules.json lacks a key that a claim needs.

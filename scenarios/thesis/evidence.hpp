@@ -27,8 +27,6 @@ struct Evidence {
   /// Called by scene() with the name of the bundled scenario. Not called for scenarios whose result files are read;
   /// `provide` is called for these scenarios. May be an empty function.
   std::function<void(const std::string& scenario)> used = {};
-  /// True: experiments with subjects have fewer targets (assumption_sets.hpp).
-  bool reduced = false;
 
   // All functions below throw InputError if a scenario cannot be loaded or run, or if a result file is missing or has
   // another format.

@@ -28,9 +28,8 @@ Finding Claim::judged(const Measured& cases, const PublishedNumbers& numbers_of_
   return finding;
 }
 
-Finding Measurements::finding(const Claim& claim, const Evidence& evidence) {
-  if (claim.judge == nullptr) return {Verdict::not_testable, claim.why};
-  auto found = made_.find(claim.measure);
+const Measurements::Made& Measurements::made(Measure measure, const Evidence& evidence) {
+  auto found = made_.find(measure);
   if (found == made_.end()) {
     Made made;
     Evidence noting = evidence;
@@ -40,15 +39,26 @@ Finding Measurements::finding(const Claim& claim, const Evidence& evidence) {
       evidence.provide(scenario);
     };
     try {
-      made.cases = claim.measure(noting);
+      made.cases = measure(noting);
     } catch (const NothingToMeasure& missing) {
       made.nothing = missing.what();
     }
-    found = made_.emplace(claim.measure, std::move(made)).first;
+    found = made_.emplace(measure, std::move(made)).first;
   }
   if (evidence.used) std::ranges::for_each(found->second.scenarios, evidence.used);
-  if (!found->second.nothing.empty()) return {Verdict::not_judged, found->second.nothing};
-  return claim.judged(found->second.cases, evidence.published);
+  return found->second;
+}
+
+Finding Measurements::finding(const Claim& claim, const Evidence& evidence) {
+  if (claim.judge == nullptr) return {Verdict::not_testable, claim.why};
+  const Made& now = made(claim.measure, evidence);
+  Finding finding =
+      now.nothing.empty() ? claim.judged(now.cases, evidence.published) : Finding{Verdict::not_judged, now.nothing};
+  if (claim.earlier.judge == nullptr) return finding;
+  const Made& before = claim.earlier.measure == nullptr ? now : made(claim.earlier.measure, evidence);
+  finding.earlier =
+      before.nothing.empty() ? claim.earlier.judge(before.cases, evidence.published) : Verdict::not_judged;
+  return finding;
 }
 
 }  // namespace hapbench

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <map>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -82,6 +84,20 @@ struct MeasuredCase {
   /// such number.
   double operator[](const std::string& value) const { return all(value).at(0); }
   const std::vector<double>& all(const std::string& value) const { return values.at(value); }
+
+  /// Sets the number `value` of a run that diverged: NaN, so that every comparison with it is false. Without NaN, a run
+  /// that diverges at once would count as smooth and shallow. `until`: the number up to the divergence.
+  void set_diverged(const std::string& value, double until) {
+    values[value] = {std::numeric_limits<double>::quiet_NaN()};
+    values[value + kUntilDivergence] = {until};
+  }
+  /// Returns the number `value`; of a run that diverged, the number up to the divergence. Earlier rules use it.
+  double until_divergence(const std::string& value) const {
+    return (*this)[values.contains(value + kUntilDivergence) ? value + kUntilDivergence : value];
+  }
+
+ private:
+  static constexpr const char* kUntilDivergence = "_until_divergence";
 };
 
 /// All measured numbers that decide a claim. With the published numbers they suffice to judge the claim again.
@@ -90,10 +106,11 @@ using Measured = std::vector<MeasuredCase>;
 /// The result of judging a claim, computed from measured numbers.
 struct Finding {
   Verdict verdict = Verdict::not_testable;
-  std::string why = {};       ///< one sentence: the condition in the rule that led to the verdict
-  std::string measured = {};  ///< the numbers as text; a judge leaves it empty if rules.json has the text
-  std::string number = {};    ///< the number that decides, as a short text
-  Measured cases = {};        ///< the measured numbers
+  std::string why = {};                 ///< one sentence: the condition in the rule that led to the verdict
+  std::string measured = {};            ///< the numbers as text; a judge leaves it empty if rules.json has the text
+  std::string number = {};              ///< the number that decides, as a short text
+  Measured cases = {};                  ///< the measured numbers
+  std::optional<Verdict> earlier = {};  ///< verdict of the claim's earlier rule (Claim::earlier), if it has one
 };
 
 /// Thrown by a measurement whose run has nothing to measure, such as no contact. The claim is not judged then; what()
@@ -106,6 +123,16 @@ struct NothingToMeasure : std::runtime_error {
 using Measure = Measured (*)(const Evidence& evidence);
 /// Decides the verdict on a claim from measured and published numbers.
 using Judge = Finding (*)(const Measured& measured, const PublishedNumbers& published);
+
+/// A rule that was changed after its verdict was known. Its verdict is computed like the verdict of the present rule,
+/// so that the ledger has both, with the recorded assumptions and with other values of them.
+struct EarlierRule {
+  /// Decides the verdict; null if the claim has no earlier rule.
+  Verdict (*judge)(const Measured& measured, const PublishedNumbers& published) = nullptr;
+  Measure measure = nullptr;  ///< null if the earlier rule judges the numbers that Claim::measure measures
+  std::string rule = {};      ///< text of the rule
+  std::string reason = {};    ///< why the rule was changed
+};
 
 /// Appends an item to a list in text form.
 inline void append_item(std::string& list, std::string_view item, std::string_view separator = "; ") {
@@ -132,17 +159,18 @@ struct Claim {
   Judge judge = nullptr;
   bool timing = false;  ///< true: the finding contains run times, which differ between runs
   bool ours = false;    ///< true: a finding of this project, not counted as a claim of the thesis
-  bool costly = false;  ///< true: slow to measure, so its verdicts in the record of sensitivity.hpp use fewer targets
+  bool costly = false;  ///< true: slow to measure, so sensitivity.hpp tries only the ends of the ranges of assumptions
   bool drawn = false;   ///< true: a figure plots the numbers of its cases, so the ledger stores them
 
   std::string number = {};           ///< short text with the measured number that decides; names as in `measured`
   std::string published_short = {};  ///< published number that is compared with `number`; empty: `published`
 
-  /// A rule that was changed after its verdict was known. Empty for other claims.
-  struct Revision {
-    std::string rule = {}, verdict = {}, reason = {};  ///< the earlier rule, its verdict, and why the rule was changed
-  } revised = {};
+  EarlierRule earlier = {};
   bool added = false;  ///< true: the rule was committed before the claim was measured for the first time
+
+  /// Returns the texts of the present and of the earlier rule. Assumptions::reach reads from them the thresholds that
+  /// influence the claim.
+  std::string rule_texts() const { return rule + "\n" + earlier.rule; }
 
   /// Judges the measured numbers and inserts them into the texts.
   Finding judged(const Measured& cases, const PublishedNumbers& numbers_of_thesis) const;
@@ -161,10 +189,10 @@ struct JudgedClaim {
 /// instance is valid for one assumption set.
 class Measurements {
  public:
-  /// Measures a claim and returns the verdict on it. Calls evidence.used with the name of each scenario that the
-  /// measurement needs, also if the measurement was made for an earlier claim. If the run has nothing to measure, the
-  /// verdict is `not_judged`. If the claim has no judge, the verdict is `not_testable` without a measurement. Throws
-  /// InputError if a scenario cannot run.
+  /// Measures a claim and returns the verdict on it, and the verdict of its earlier rule. Calls evidence.used with the
+  /// name of each scenario that the measurements need, also if a measurement was made for another claim before. If the
+  /// run has nothing to measure, the verdict is `not_judged`. If the claim has no judge, the verdict is `not_testable`
+  /// without a measurement. Throws InputError if a scenario cannot run.
   Finding finding(const Claim& claim, const Evidence& evidence);
 
  private:
@@ -173,6 +201,8 @@ class Measurements {
     std::string nothing = {};  ///< why the run has nothing to measure; empty if `cases` holds the numbers
     std::vector<std::string> scenarios = {};  ///< names of the scenarios that the measurement needs
   };
+  /// Returns a measurement, and makes it if it is the first with this function.
+  const Made& made(Measure measure, const Evidence& evidence);
   std::map<Measure, Made> made_;
 };
 

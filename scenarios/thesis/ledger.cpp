@@ -54,12 +54,6 @@ std::string link_to(const Json& claim) {
   return fmt::format("[{}](claim_pages.md#{})", id, lower_case(id));
 }
 
-/// Returns true if the other values of the assumptions were tried with fewer targets than the ledger, and if the
-/// recorded assumptions then give another verdict than in the ledger.
-bool has_fewer_targets(const Json& claim) {
-  return claim.contains("sampled_verdict");
-}
-
 /// Returns the robustness of a claim as Markdown with the names of assumptions in code style, such as "sensitive to
 /// `local.average`". Names the first `max_names` assumptions and counts the others.
 std::string decided_by(const Json& claim, std::size_t max_names) {
@@ -67,8 +61,7 @@ std::string decided_by(const Json& claim, std::size_t max_names) {
   if (deciders.empty()) return text_at(claim, "robustness");
   const std::size_t count = deciders.size();
   if (count > max_names) deciders.resize(max_names);
-  const char* fewer = has_fewer_targets(claim) ? " (with fewer targets)" : "";
-  return fmt::format("{}{}{} `{}`{}", count == 1 ? kSensitiveVerdict : kSeveralVerdict, fewer, count == 1 ? "" : ":",
+  return fmt::format("{}{} `{}`{}", count == 1 ? kSensitiveVerdict : kSeveralVerdict, count == 1 ? "" : ":",
                      fmt::join(deciders, "`, `"),
                      count > max_names ? fmt::format(" and {} more", count - max_names) : "");
 }
@@ -123,9 +116,7 @@ std::string abstract_table(const Json& ledger) {
         }
     if (claims.empty()) continue;         // a run with --only may not have judged the claim
     constexpr std::size_t kMaxNames = 2;  // the page of the claim names all assumptions
-    const auto deciders = [](const Json& claim) {
-      return has_fewer_targets(claim) ? "not tried with all targets" : decided_by(claim, kMaxNames);
-    };
+    const auto deciders = [](const Json& claim) { return decided_by(claim, kMaxNames); };
     const auto member = [](const char* key) { return [key](const Json& claim) { return text_at(claim, key); }; };
     text += fmt::format("| {} | {} | {} | {} | {} | {} | `hapbench reproduce --only {}` ({:.0f} s) |\n",
                         text_at(sentence, "sentence"), joined(claims, member("published_short")), joined(claims, ours),
@@ -147,26 +138,16 @@ std::string failures(const Json& claims) {
 }
 
 /// Returns a table with a row for each assumption: the values, other than the recorded value, with which claims have
-/// another verdict. Adds a note for each claim whose verdict in the record of sensitivity, under the recorded
-/// assumptions, differs from its verdict in the ledger. Empty if no value changes a verdict.
+/// another verdict. Empty if no value changes a verdict.
 std::string other_values(const Json& claims) {
   std::map<std::string, std::string> cells;
-  std::string notes;
-  for (const Json& claim : claims) {
-    for (const Json& one : claim.at("cases_moved")) {
-      if (!was_judged(text_at(one, "verdict"))) continue;
-      append_item(cells[text_at(one, "assumption")],
-                  fmt::format("{}: {} *{}*{}, {}", text_at(one, "value"), link_to(claim), text_at(one, "verdict"),
-                              has_fewer_targets(claim) ? " (fewer targets)" : "", text_at(one, "number")),
-                  "<br>");
-    }
-    if (has_fewer_targets(claim))
-      notes += fmt::format(
-          "\n*(fewer targets)*: the verdict of the ledger on {} is *{}*. To save time, the other values were tried "
-          "with fewer targets. With these targets and the recorded assumptions, the verdict is *{}*. The entries are "
-          "the values that change this verdict; they do not show what decides the verdict of the ledger.\n",
-          link_to(claim), text_at(claim, "verdict"), text_at(claim, "sampled_verdict"));
-  }
+  for (const Json& claim : claims)
+    for (const Json& one : claim.at("cases_moved"))
+      if (was_judged(text_at(one, "verdict")))
+        append_item(cells[text_at(one, "assumption")],
+                    fmt::format("{}: {} *{}*, {}", text_at(one, "value"), link_to(claim), text_at(one, "verdict"),
+                                text_at(one, "number")),
+                    "<br>");
   if (cells.empty()) return "";
   std::string text =
       "\n### What other assumptions would change\n\nEach row has an assumption. Each entry of a row has another "
@@ -176,18 +157,10 @@ std::string other_values(const Json& claims) {
       "although the printed number does not. "
       "[Sensitivity](../../scenarios/thesis/README.md#sensitivity) states the meaning of "
       "each assumption and its recorded value. For example, `local.average` is `true` on record, and `false` means "
-      "that the local average is off.\n" +
-      notes + "\n| assumption | other value: claim with its verdict |\n|---|---|\n";
+      "that the local average is off.\n"
+      "\n| assumption | other value: claim with its verdict |\n|---|---|\n";
   for (const auto& [assumption, cell] : cells) text += fmt::format("| `{}` | {} |\n", assumption, cell);
   return text;
-}
-
-/// Returns a note with the verdict that a claim has in the record of sensitivity under the recorded assumptions. Empty
-/// if the ledger has the same verdict.
-std::string sampled_text(const Json& claim) {
-  return has_fewer_targets(claim)
-             ? fmt::format("with fewer targets, the recorded assumptions give: {}; ", text_at(claim, "sampled_verdict"))
-             : "";
 }
 
 /// Returns a table of claims for each chapter.
@@ -219,8 +192,9 @@ std::string revisions(const Json& claims) {
   for (const Json& claim : claims) {
     if (claim.contains("revised")) {
       const Json& before = claim.at("revised");
-      rows += fmt::format("| {} | {} | {} | {} | {} |\n", link_to(claim), text_at(before, "rule"),
-                          text_at(before, "verdict"), text_at(claim, "verdict"), text_at(before, "reason"));
+      rows += fmt::format("| {} | {} | {} | {} | {} | {} | {} |\n", link_to(claim), text_at(before, "rule"),
+                          text_at(before, "verdict"), decided_by(before), text_at(claim, "verdict"), decided_by(claim),
+                          text_at(before, "reason"));
     }
     if (is(claim, "added")) append_item(added, link_to(claim), ", ");
   }
@@ -228,8 +202,11 @@ std::string revisions(const Json& claims) {
   if (!rows.empty())
     text +=
         "\n### Rules that were changed after their verdicts were known\n\nThe column *rule before* has the conditions "
-        "of the earlier rule. The link in the first column leads to the present rule.\n\n"
-        "| id | rule before | verdict before | verdict now | reason |\n|---|---|---|---|---|\n" +
+        "of the earlier rule. Both rules were applied to the same measurements, with the recorded assumptions and with "
+        "each of their other plausible values. *Decided by* names the assumptions that change the verdict of a rule. "
+        "The link in the first column leads to the present rule.\n\n"
+        "| id | rule before | verdict before | decided by, before | verdict now | decided by, now | reason |\n"
+        "|---|---|---|---|---|---|---|\n" +
         rows;
   if (!added.empty())
     text += fmt::format("\nThe rules of {} were committed before these claims were measured.\n", added);
@@ -246,16 +223,29 @@ Json cases_json(const Measured& cases) {
   return json;
 }
 
+/// Adds to a JSON object that has a verdict the robustness of this verdict and the assumptions that decide it.
+void add_robustness(Json& json, const Robustness& robustness) {
+  json["robustness"] = robustness.text();
+  json["deciders"] = robustness.deciders;
+}
+
+/// Returns the earlier rule of a claim: its text, its verdict with robustness, and why it was changed.
+Json earlier_json(const JudgedClaim& judged, const PublishedNumbers& published, const SensitivityRecord& record) {
+  const EarlierRule& rule = judged.claim.earlier;
+  const Json entry = record.entry(judged.claim.id, judged.reach);
+  Json json = {{"rule", published.fill(rule.rule)},
+               {"verdict", verdict_name(judged.finding.earlier.value())},
+               {"reason", rule.reason}};
+  add_robustness(json, earlier_robustness_of(judged, entry));
+  return json;
+}
+
 /// Adds to the JSON object of a claim the robustness of its verdict, the assumptions that decide the verdict, and from
 /// the record of sensitivity the number of cases and the cases with another verdict.
 void add_sensitivity(Json& claim, const JudgedClaim& judged, const SensitivityRecord& record) {
   const Json entry = record.entry(judged.claim.id, judged.reach);
   const Robustness robustness = robustness_of(judged, entry);
-  claim["robustness"] = robustness.text();
-  claim["deciders"] = robustness.deciders;
-  // The record of a costly claim uses fewer targets, so its verdict under the recorded assumptions may differ.
-  if (!entry.is_null() && text_at(entry, "verdict") != text_at(claim, "verdict"))
-    claim["sampled_verdict"] = entry.at("verdict");
+  add_robustness(claim, robustness);
   Json moved = Json::array();
   std::size_t tried = 0;
   if (!entry.is_null() && robustness.word != kNotSampledVerdict) {
@@ -327,10 +317,7 @@ Json ledger_json(const std::vector<JudgedClaim>& judged, const PublishedNumbers&
              {"ours", j.claim.ours},
              {"added", j.claim.added}});
     add_sensitivity(claim, j, record);
-    if (!j.claim.revised.rule.empty())
-      claim["revised"] = {{"rule", published.fill(j.claim.revised.rule)},
-                          {"verdict", j.claim.revised.verdict},
-                          {"reason", j.claim.revised.reason}};
+    if (j.finding.earlier) claim["revised"] = earlier_json(j, published, record);
     if (j.claim.drawn) claim["cases"] = cases_json(j.finding.cases);
   }
   Json abstract = Json::array();
@@ -364,8 +351,6 @@ std::string ledger_markdown(const Json& ledger) {
       "- *robust*: no other value of a single assumption changes the verdict.\n"
       "- *sensitive to* an assumption: only this assumption changes the verdict.\n"
       "- *depends on several*: each of the named assumptions changes the verdict alone.\n"
-      "- *with fewer targets*, *not tried with all targets*: [a note below](#what-other-assumptions-would-change) "
-      "states what was tried.\n"
       "- *not sampled*: no other values were tried.\n";
   const std::string failing = failures(claims);
   text += "\n## 2. Claims that failed, and what other assumptions would change\n\n" +
@@ -414,8 +399,8 @@ std::string claim_pages(const Json& ledger) {
     item("Rule", text_at(claim, "rule"));
     if (claim.contains("revised")) {
       const Json& before = claim.at("revised");
-      item("Rule before", fmt::format("{} ({}). Changed because {}", text_at(before, "rule"),
-                                      text_at(before, "verdict"), text_at(before, "reason")));
+      item("Rule before", fmt::format("{}. Verdict: {}; {}. Changed because {}", text_at(before, "rule"),
+                                      text_at(before, "verdict"), decided_by(before), text_at(before, "reason")));
     }
     item("Decided by", decided_by(claim));
     std::string moved;
@@ -424,8 +409,8 @@ std::string claim_pages(const Json& ledger) {
                                      text_at(one, "verdict"), text_at(one, "number").empty() ? "" : ", ",
                                      text_at(one, "number")));
     if (const auto tried = claim.at("cases_tried").get<std::size_t>(); tried > 0)
-      item("Sensitivity", fmt::format("{}{} other values tried; {}", sampled_text(claim), tried,
-                                      moved.empty() ? "none changes the verdict" : moved));
+      item("Sensitivity",
+           fmt::format("{} other values tried; {}", tried, moved.empty() ? "none changes the verdict" : moved));
     item("Figure", text_at(claim, "figure"));
     if (!claim.at("scenarios").empty())
       item("Scenarios", fmt::format("`{}`", fmt::join(claim.at("scenarios").get<std::vector<std::string>>(), "`, `")));

@@ -82,8 +82,14 @@ MeasuredCase vibration(const std::string& name, const Result& run) {
 MeasuredCase reference_vibration(const std::string& name, const Result& run) {
   MeasuredCase m = vibration(name, run);
   if (run.end.outcome == Outcome::diverges)
-    for (auto& [value, numbers] : m.values) numbers = {std::nan("")};
+    for (const auto& [value, numbers] : MeasuredValues(m.values)) m.set_diverged(value, numbers.front());
   return m;
+}
+
+MeasuredCase until_divergence(MeasuredCase reference) {
+  for (const char* value : {"velocity_variation", "vibration_power", "force_reversals"})
+    reference.values[value] = {reference.until_divergence(value)};
+  return reference;
 }
 
 bool vibrates_more(const MeasuredCase& a, const MeasuredCase& b) {

@@ -97,9 +97,8 @@ double seconds_with(const std::vector<ContactBuffer>& sets, int repetitions, Wor
 /// Returns the vibration measures of a run: total variation of the velocity [m/s], power of the velocity above 30 Hz
 /// [m^2/s^2], and number of force reversals.
 MeasuredCase vibration(const std::string& name, const Result& run);
-/// Returns vibration() of a run with which other runs are compared. If this run diverges, the values are NaN, so that
-/// every comparison with them is false. Without NaN, a run that diverges at once would count as smooth, because its
-/// variation is small.
+/// Returns vibration() of a run with which other runs are compared. If this run diverges, its numbers are those of
+/// MeasuredCase::set_diverged().
 MeasuredCase reference_vibration(const std::string& name, const Result& run);
 
 /// Returns true if `a` has a larger velocity variation and a larger vibration power than `b`.
@@ -110,6 +109,9 @@ bool vibrates_more(const MeasuredCase& a, const MeasuredCase& b);
 ///   - vibrates_more() is true, and `a` has at least f times as many force reversals as `b`. If `b` has no force
 ///     reversals, `a` has at least f force reversals.
 bool vibrates_much_more(const MeasuredCase& a, const MeasuredCase& b, const PublishedNumbers& p);
+
+/// Returns a reference_vibration() with the numbers that it has if its divergence is ignored, as earlier rules did.
+MeasuredCase until_divergence(MeasuredCase reference);
 
 /// Returns the damping ratio zeta of an oscillation about zero, from positions `x` [m], one for each time step. With
 /// the geometric mean q of the ratios of the magnitudes of successive extremes, zeta = -ln q / sqrt(pi^2 + ln^2 q), or

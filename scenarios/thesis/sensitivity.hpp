@@ -24,7 +24,8 @@ inline std::string text_at(const Json& json, const char* key) {
 /// The record of the verdicts, in memory and as a file.
 ///
 /// For each claim the file has the hash of the assumptions that can change it (Assumptions::reach), the verdict and the
-/// number under the recorded assumptions, and a list of cases: assumption, value, verdict and number.
+/// number under the recorded assumptions, and a list of cases: assumption, value, verdict and number. If the claim has
+/// an earlier rule, the claim and each of its cases also have the verdict of this rule.
 class SensitivityRecord {
  public:
   /// Creates an empty record.
@@ -36,13 +37,16 @@ class SensitivityRecord {
   /// (Assumptions::reach).
   Json entry(const std::string& claim, const std::string& reach) const;
   /// Begins the entry of a claim. `recorded` is the verdict under the recorded assumptions, and `complete` the number
-  /// of cases of a complete entry. If the record has an entry of the claim with the same hash, verdict and number, the
+  /// of cases of a complete entry. If the record has an entry of the claim with the same hash, verdicts and number, the
   /// new entry keeps the cases of the old entry. Otherwise the new entry has no cases.
   void begin(const std::string& claim, const std::string& reach, const SetFinding& recorded, std::size_t complete);
   /// Returns true if the entry of the claim has this case. Precondition: begin().
   bool has(const std::string& claim, const std::string& assumption, const std::string& value) const;
   /// Adds a case. Precondition: begin().
   void add(const std::string& claim, const std::string& assumption, const std::string& value, const SetFinding& found);
+  /// Sorts the cases of each claim by assumption and value, in the order of `assumptions`. The record is then the same
+  /// for any order in which the cases were judged.
+  void sort_cases(const Assumptions& assumptions);
   /// Removes entries of claims that are not in the list.
   void keep_only(const std::vector<Claim>& claims);
   /// Returns the content of the file.
@@ -75,6 +79,9 @@ inline constexpr const char* kNotSampledVerdict = "not sampled";  ///< the recor
 ///   - Assumptions can change the claim, and the record has no entry.
 ///   - The entry lacks cases, and its cases show fewer than two assumptions that change the verdict.
 Robustness robustness_of(const JudgedClaim& judged, const Json& entry);
+/// Returns the robustness of the verdict of a claim's earlier rule, in the same way. Precondition: the claim has an
+/// earlier rule.
+Robustness earlier_robustness_of(const JudgedClaim& judged, const Json& entry);
 
 /// Returns the number of cases in the complete entry of a claim. `scenarios`: names of the scenarios that the claim
 /// uses.

@@ -94,23 +94,21 @@ IndexEntry recorded_claim(const Json& claim, const Layout& layout) {
     const auto tried = named.at("cases_tried").get<std::size_t>();
     if (tried > 0) {
       const std::vector<std::string> moved = moved_cases(named);
-      named["sensitivity"] = fmt::format(
-          "{}{} other values of assumptions tried; {}",
-          named.contains("sampled_verdict") ? fmt::format("with fewer targets, the recorded assumptions give: {}; ",
-                                                          named.at("sampled_verdict").get<std::string>())
-                                            : "",
-          tried, moved.empty() ? "none changes the verdict" : fmt::format("{}", fmt::join(moved, "; ")));
+      named["sensitivity"] =
+          fmt::format("{} other values of assumptions tried; {}", tried,
+                      moved.empty() ? "none changes the verdict" : fmt::format("{}", fmt::join(moved, "; ")));
     }
     if (named.contains("revised")) {
       const Json before = named.at("revised");
       named["rule before"] =
-          fmt::format("{} ({}); changed because {}", before.at("rule").get<std::string>(),
-                      before.at("verdict").get<std::string>(), before.at("reason").get<std::string>());
+          fmt::format("{}; verdict: {}; {}; changed because {}", before.at("rule").get<std::string>(),
+                      before.at("verdict").get<std::string>(), before.at("robustness").get<std::string>(),
+                      before.at("reason").get<std::string>());
     }
     // Rename the member "measured" to "cases", and omit members that only programs need.
     named["cases"] = named.at("measured");
     for (const char* member : {"measured", "ours", "timing", "added", "deciders", "cases_tried", "cases_moved",
-                               "revised", "published_short", "sampled_verdict"})
+                               "revised", "published_short"})
       named.erase(member);
     return named;
   };

@@ -246,7 +246,7 @@ TEST(Ledger, HasFourPartsWithANumberInEveryRow) {
   std::size_t judged = 0, revised = 0;
   for (const Claim& claim : all_claims()) {
     judged += claim.judge != nullptr ? 1U : 0U;
-    revised += claim.revised.rule.empty() ? 0U : 1U;
+    revised += claim.earlier.rule.empty() ? 0U : 1U;
   }
   EXPECT_EQ(rows, judged + revised);
 }

@@ -11,6 +11,7 @@
 #include "scenarios/thesis/measurements.hpp"
 #include "tests/results/files.hpp"
 #include "tests/scenarios/support/scenarios.hpp"
+#include "tests/scenarios/thesis/judged_cases.hpp"
 
 namespace hapbench::claims_test {
 namespace {
@@ -97,65 +98,7 @@ TEST(PublishedNumbers, FillTextsThatNameThem) {
   EXPECT_THROW(numbers.fill("<C>"), InputError);
 }
 
-const Claim& claim(std::string_view id) {
-  static const std::vector<Claim> claims = all_claims();
-  for (const Claim& c : claims) {
-    if (c.id == id) return c;
-  }
-  throw std::out_of_range(std::string(id));
-}
-
-const PublishedNumbers& published() {
-  static const std::filesystem::path reference = HAPBENCH_SCENARIOS "/../../results/reference";
-  static const Assumptions assumptions(reference / "assumptions.json");
-  static const PublishedNumbers numbers =
-      assumptions.with_numbers(PublishedNumbers(reference / "published.json"), assumptions.recorded_values());
-  return numbers;
-}
-
-/// Sets "name=number,number…" in a case: "1.name=…" in the case with this index; without an index, in all cases that
-/// have the name.
-void set(Measured& measured, std::string_view text) {
-  const bool indexed = text.size() > 1 && text[1] == '.';
-  const std::size_t equals = text.find('=');
-  const std::string name(text.substr(indexed ? 2 : 0, equals - (indexed ? 2 : 0)));
-  std::vector<double> numbers;
-  for (const std::string_view number : parts_of(text.substr(equals + 1), ','))
-    numbers.push_back(std::stod(std::string(number)));
-  for (std::size_t i = 0; i < measured.size(); ++i) {
-    const bool meant = indexed ? static_cast<std::size_t>(text[0] - '0') == i : measured[i].values.contains(name);
-    if (meant) measured[i].values[name] = numbers;
-  }
-}
-
-/// Returns cases from a text "CASE: name=number … | name=number …". A case inherits the name and the numbers of the
-/// case before it unless its text sets them.
-Measured cases_in(std::string_view text) {
-  Measured measured;
-  for (std::string_view part : parts_of(text, '|')) {
-    MeasuredCase next = measured.empty() ? MeasuredCase() : measured.back();
-    if (const std::size_t colon = part.find(':'); colon != part.npos) {
-      const std::size_t begin = part.find_first_not_of(' ');
-      next.name = part.substr(begin, colon - begin);
-      part.remove_prefix(colon + 1);
-    }
-    measured.push_back(next);
-    const std::string index = std::to_string(measured.size() - 1) + ".";
-    for (const std::string_view word : words_of(part)) set(measured, index + std::string(word));
-  }
-  return measured;
-}
-
-struct Judged {
-  std::string_view change;  ///< change of the rule's cases
-  Verdict verdict;
-};
-struct Rule {
-  std::string_view ids;  ///< claims that have the rule
-  std::string_view measured;
-  std::vector<Judged> judged;
-};
-
+using namespace judged_cases;
 using enum Verdict;
 
 /// Tests measured numbers on both sides of every threshold.
@@ -163,7 +106,7 @@ TEST(Claims, AreJudgedByTheirThresholds) {
   const std::string_view
       counts = "raw_mean=41 raw_deviation=19 reduced_mean=6.9 reduced_deviation=1.8 reduced_max=25 outside_taps=14|",
       costs = "points=1000 matrix=1.3e-3 reduced=5e-6 tensor=2e-6",
-      depths = "at_0.35=1e-4 at_1=1e-4 | at_0.35=2e-4 at_1=2e-4",
+      depths = "at_0.35=1e-4 at_0.68=7e-5 at_1=1e-4 | at_0.35=2e-4 at_0.68=8e-5 at_1=2e-4",
       ratios =
           "inside_1=1 inside_2=1 inside_3=1 min_1=0.9 max_1=1.1 min_2=0.9 max_2=1.1 min_3=0.9 max_3=1.1 any_max=1.4 "
           "damped_1=1 damped_2=1 damped_3=0.96 | | | | average signed_distance: | average binary:",
@@ -440,13 +383,11 @@ TEST(Claims, AreJudgedByTheirThresholds) {
        {{"", replicated}, {"other=0.09", qualitatively}, {"other=0.012", not_replicated}}},
   };
   std::set<std::string> judged;
-  for (const auto& [ids, text, cases] : rules) {
-    for (const std::string_view id : words_of(ids)) {
+  for (const Rule& rule : rules) {
+    for (const std::string_view id : words_of(rule.ids)) {
       judged.emplace(id);
-      for (const auto& [change, verdict] : cases) {
-        Measured measured = cases_in(text);
-        for (const std::string_view word : words_of(change)) set(measured, word);
-        const Finding finding = claim(id).judge(measured, published());
+      for (const auto& [change, verdict] : rule.judged) {
+        const Finding finding = claim(id).judge(changed_cases(rule, change), published());
         EXPECT_EQ(finding.verdict, verdict) << id << ", " << change << ": " << finding.measured << " / " << finding.why;
         EXPECT_FALSE(finding.why.empty()) << id;
       }

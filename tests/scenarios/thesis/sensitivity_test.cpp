@@ -120,6 +120,50 @@ TEST_F(Sensitivity, CasesAreThoseThatCanChangeAClaimAndThatTheRecordLacks) {
     for (const Claim& claim : one.claims)
       text += assumptions.all()[one.assumption].id + " " + one.value + " " + claim.id + "; ";
   EXPECT_EQ(text, "rule.a 2 rule; b y costly; ") << "inputs have no cases, and cheap claims come first";
+  // The order in which cases were judged does not matter.
+  for (const char* value : {"y", "2", "0"})
+    record.add("time", std::string(value) == "y" ? "b" : "rule.a", value, found(Verdict::replicated));
+  record.sort_cases(assumptions);
+  std::string order;
+  const Json sorted = record.entry("time", "reach");
+  for (const Json& one : sorted.at("cases")) order += one.at("value").get<std::string>();
+  EXPECT_EQ(order, "02y");
+}
+
+TEST_F(Sensitivity, CoversTheEarlierRuleOfAClaim) {
+  using enum Verdict;
+  const auto both = [](Verdict now, Verdict before) {
+    SetFinding finding = found(now);
+    finding.earlier = verdict_name(before);
+    return finding;
+  };
+  SensitivityRecord made;
+  made.begin("T9", "reach", both(replicated, contradicted), 3);
+  made.add("T9", "a", "2", both(qualitatively, contradicted));
+  made.add("T9", "b", "2", both(not_judged, not_replicated));
+  made.add("T9", "c", "2", both(replicated, not_judged));
+  JudgedClaim claim = judged("T9", "reach");
+  claim.finding.earlier = contradicted;
+  claim.claim.earlier.reason = "it was wrong";
+  const Json entry = made.entry("T9", "reach");
+  EXPECT_EQ(robustness_of(claim, entry).text(), "sensitive to a");
+  EXPECT_EQ(earlier_robustness_of(claim, entry).text(), "sensitive to b");
+  const Json ledger = ledger_json({claim}, {}, made).at("claims").at(0);
+  EXPECT_EQ(ledger.at("revised").at("robustness"), "sensitive to b");
+  EXPECT_EQ(ledger.at("revised").at("verdict"), "contradicted");
+  EXPECT_EQ(ledger.at("cases_moved").size(), 2u) << "cases whose verdict by the present rule differs";
+  // A file keeps both verdicts. With another verdict of the earlier rule, the cases must be computed again.
+  test::write_plainly(directory_ / "record.json", made.text());
+  SensitivityRecord read(directory_ / "record.json");
+  EXPECT_EQ(read.text(), made.text());
+  read.begin("T9", "reach", both(replicated, contradicted), 3);
+  EXPECT_TRUE(read.has("T9", "a", "2"));
+  read.begin("T9", "reach", both(replicated, not_replicated), 3);
+  EXPECT_FALSE(read.has("T9", "a", "2"));
+  // A record that was made without earlier rules covers the present rule only.
+  const Json old = record({{"a", qualitatively}}).entry("T9", "reach");
+  EXPECT_EQ(robustness_of(claim, old).text(), "sensitive to a");
+  EXPECT_EQ(earlier_robustness_of(claim, old).text(), "not sampled");
 }
 
 TEST_F(Sensitivity, GoesIntoTheLedgerWhileItIsAboutTheSameAssumptions) {
