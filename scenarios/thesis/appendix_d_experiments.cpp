@@ -123,8 +123,8 @@ std::string deviation_text(const MeasuredCase& m, const Compared& c, bool publis
                     : !published_difference ? "here a significant difference, in the thesis none"
                     : c.significant         ? "the opposite direction"
                                             : "no significant difference";
-  return fmt::format("{} {:.2g} against {:.2g}{} ({})", m.name, mean_of(m.all("original")), mean_of(m.all("shaped")),
-                     std::ranges::find(kMeasures, m.name, &MeasuredColumn::name)->unit, how);
+  return fmt::format("{} {:.2g} (original) against {:.2g}{} (shaping), {}", m.name, mean_of(m.all("original")),
+                     mean_of(m.all("shaped")), std::ranges::find(kMeasures, m.name, &MeasuredColumn::name)->unit, how);
 }
 
 /// Judges an experiment by all its measures except the force. `id`: D1 to D4. `published_difference`: true if the
@@ -152,15 +152,14 @@ Finding judge_experiment(const Measured& measured, const PublishedNumbers& publi
     append_item(text, fmt::format("{} {:.2g} ± {:.1g} vs {:.2g} ± {:.1g} (t = {:.3g})", m.name, mean_of(a),
                                   standard_error(a), mean_of(b), standard_error(b), c.t));
   }
-  return {in_simulation(consistent),
-          (deviating.empty() ? std::string("every measure agrees with the thesis in direction and significance")
-                             : "measures that differ from the published result: " + deviating) +
-              fmt::format(
-                  ". Of all measures, the {} is farthest from its published value, by {:.2g} standard errors of the "
-                  "difference. The mean force is nearly an input, because subjects regulate the force that the "
-                  "gauge shows",
-                  farthest, largest),
-          text, number};
+  return {
+      in_simulation(consistent),
+      (deviating.empty() ? std::string("every measure agrees with the thesis in direction and significance")
+                         : "measures that differ from the published result: " + deviating) +
+          fmt::format(". The mean that deviates most from its published mean is the {}, by {:.2g} standard errors. The "
+                      "mean force is nearly an input, because subjects regulate the force that the gauge shows",
+                      farthest, largest),
+      text, number};
 }
 
 /// The earlier rule of D1 to D4 also compared the numbers with the published numbers, and two means that would be

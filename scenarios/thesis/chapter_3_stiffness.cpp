@@ -197,13 +197,14 @@ Finding judge_bound_in_tasks(const Measured& measured, const PublishedNumbers& p
 
 Finding judge_relative_damping_of_tasks(const Measured& measured, const PublishedNumbers& p) {
   const double share = smallest(measured, "damped_3"), around = threshold(p, "around");
-  return {
-      decide(share >= threshold(p, "nearly_all"), share >= threshold(p, "most")),
-      "the relative damping of combined contacts is √ρ times the damping ratio of one contact",
-      fmt::format("steps in which √ρ is within a factor {} of 1 for all contacts: {}", plain(around),
-                  of_tasks(measured, "damped_3", "{:.0f} %", 100.0)),
-      fmt::format("relative damping within a factor {} of the damping ratio of one contact in {:.0f} % of the steps",
-                  plain(around), 100.0 * share)};
+  return {decide(share >= threshold(p, "nearly_all"), share >= threshold(p, "most")),
+          "the relative damping of combined contacts is √ρ times the damping ratio of one contact",
+          fmt::format("steps in which √ρ is within a factor {} of 1 for all contacts: {}", plain(around),
+                      of_tasks(measured, "damped_3", "{:.0f} %", 100.0)),
+          fmt::format(
+              "in {:.0f} % of the steps, the damping ratio of combined contacts is within a factor {} of the damping "
+              "ratio of one contact",
+              100.0 * share, plain(around))};
 }
 
 // ---- R1b: the largest stiffness ratio in the recorded steps of tasks 2 and 3: after 160 iterations, and in the exact
