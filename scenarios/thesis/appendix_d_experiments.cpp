@@ -118,7 +118,8 @@ bool is_consistent(const MeasuredCase& m, const Compared& c, bool published_diff
 /// not differ.
 std::string deviation_text(const MeasuredCase& m, const Compared& c, bool published_difference) {
   if (c.agrees && c.near) return "";
-  if (m.all("original").empty()) return fmt::format("{}: no subject has a value with both algorithms", m.name);
+  if (m.all("original").empty())
+    return fmt::format("{}: not compared, because no subject has values for both algorithms", m.name);
   const char* how = c.agrees                ? "far from the published values"
                     : !published_difference ? "here a significant difference, in the thesis none"
                     : c.significant         ? "the opposite direction"

@@ -202,9 +202,9 @@ std::string revisions(const Json& claims) {
   if (!rows.empty())
     text +=
         "\n### Rules that were changed after their verdicts were known\n\nThe column *rule before* has the conditions "
-        "of the earlier rule. Both rules were applied to the same measurements, with the recorded assumptions and with "
-        "each of their other plausible values. *Decided by* names the assumptions that change the verdict of a rule. "
-        "The link in the first column leads to the present rule.\n\n"
+        "of the earlier rule. Both rules are applied to runs of the present program, with the recorded assumptions and "
+        "with each of their other plausible values; the earlier rule of J1 has its own runs. *Decided by* names the "
+        "assumptions that change the verdict of a rule. The link in the first column leads to the present rule.\n\n"
         "| id | rule before | verdict before | decided by, before | verdict now | decided by, now | reason |\n"
         "|---|---|---|---|---|---|---|\n" +
         rows;
@@ -335,8 +335,8 @@ std::string ledger_markdown(const Json& ledger) {
       "the claim in [claim_pages.md](claim_pages.md), which has the rule of the verdict. *Original* is the "
       "original algorithm, *shaping* is stiffness shaping, the algorithm that the thesis proposes. A *stiffness ratio* "
       "is the combined stiffness of all contacts in the direction of one contact, divided by the stiffness K of one "
-      "contact. *Raw points* are the colliding points before the reduction. *Density* is the density field of the "
-      "block from which its surface points are computed: `signed_distance` or `binary`. *Tandpasta* is a law of "
+      "contact. *Raw points* are the colliding points before the reduction. The surface points of the block with the "
+      "hole are computed from a *density* field: `signed_distance` or `binary`. *Tandpasta* is a law of "
       "appendix F, which weakens springs that oppose each other. In task 1, the drill is pressed "
       "on a flat surface and dragged. In task 2, it rotates to and fro in a hole. In task 3, it moves along the wall "
       "of a hole, around the axis. The [glossary](../../scenarios/GLOSSARY.md) has the other terms.\n\n"
@@ -379,8 +379,8 @@ std::string claim_pages(const Json& ledger) {
       "# Claims, one section each\n\n*Reference.* This page has a section for each claim of [the ledger](claims.md). "
       "`hapbench describe ID` prints the section of a claim.\n\n"
       "- **Published** and **Number**: the number of the thesis and the number of hapbench.\n"
-      "- **Cases**: the numbers of all runs of the claim. `signed_distance` and `binary` are the two densities of the "
-      "block from which its surface points are computed.\n"
+      "- **Cases**: the numbers of all runs of the claim. `signed_distance` and `binary` are the two density fields from "
+      "which the surface points of the block are computed.\n"
       "- **Rule**: the conditions of the verdict. After *qualitatively* follows the weaker condition, of the verdict "
       "*qualitatively replicated*. **Rule before** has the conditions of an earlier rule.\n"
       "- **Sensitivity**: assumptions with another value, each with the verdict and the number that this value gives. "
