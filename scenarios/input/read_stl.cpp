@@ -31,12 +31,12 @@ class StlKeywords {
  public:
   StlKeywords(std::string_view text, const fs::path& file) : lines_(LineReader(text), file) {}
 
-  /// Advances to the next keyword. Ignores other tokens in its line: normals and names. Notes tokens after the
-  /// coordinates of a vertex. Returns false at the end of the text.
+  /// Advances to the next keyword. Ignores other tokens in its line: normals, colours and names. Notes text
+  /// other than numbers after the coordinates of a vertex. Returns false at the end of the text.
   bool next() {
     const std::size_t last = word_;
     while (++word_ < lines_.words().size() && !is_next_keyword())
-      if (keyword_ == "vertex" && word_ > last + 3) lines_.note_ignored(word_);
+      if (keyword_ == "vertex" && word_ > last + 3 && !finite_number(lines_.words()[word_])) lines_.note_ignored(word_);
     if (word_ >= lines_.words().size()) {
       word_ = 0;
       if (!lines_.next()) return false;
