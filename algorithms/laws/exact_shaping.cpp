@@ -183,7 +183,8 @@ void refine(const Tensors& tensors, Vec6 w, TensorSums sums) noexcept {
 /// sum c_i a_i and rho_i = <a_i, S>. Returns the number of Newton steps. Precondition: all weights are 1.
 template <class Tensors>
 int solve(const Tensors& tensors) noexcept {
-  // Start at w = identity, where every tensor is active, because a_i . identity is the trace of a_i.
+  // Start at w = identity. A tensor a_i is active if a_i . w > 0. Every tensor is active, because a_i . identity is the
+  // trace of a_i, which is 1.
   Vec6 w = identity6();
   TensorSums sums = evaluate_at(tensors, w);
   int steps = 0;

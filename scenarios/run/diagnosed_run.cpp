@@ -57,7 +57,8 @@ Number surface_limit(const DiagnosedRun& run, const LoadedScenario& loaded) {
                                 *run.observations.last_contact);
 }
 
-/// Returns K divided by the largest stable K of the linear loop in contact. Empty without contact or without a loop.
+/// Returns K divided by the largest stable K of the linear loop in contact. Empty if no limit of the loop is known, for
+/// example because the run has no contact.
 /// Rounded to six digits, so that builds with different rounding errors give the same result. `loaded`: the scenario of
 /// the run, or a variant of it.
 Number ratio_to_stability_limit(const DiagnosedRun& run, const LoadedScenario& loaded) {

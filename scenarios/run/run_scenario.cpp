@@ -260,7 +260,7 @@ class Run {
   RunLength length_;
   std::shared_ptr<const ReferenceForce> reference_;
   std::shared_ptr<const ToolShape> tool_;
-  std::optional<MetricsObserver> metrics_;  ///< created with the parts of the first trial, like `sampling_`
+  std::optional<MetricsObserver> metrics_;  ///< created when the first trial begins, like `sampling_`
   std::optional<SamplingSpread> sampling_;
   SectionObservers sections_;
   std::optional<DiagnosisObserver> diagnosis_;  ///< empty unless requested

@@ -47,7 +47,7 @@ class NeighbourListQuery final : public ContactQuery {
         normal_skin_(kSkinPerHalfWidth * tool.half_width()),
         capacity_(max_points_in(shell, tool.cover(margin_of(normal_skin_, largest_scale(shell, tool))))),
         grid_(shell),
-        // A contiguous range of n points meets at most n / 8 + 2 packs.
+        // A contiguous range of n points overlaps with at most n / 8 + 2 SIMD packs of eight points.
         marks_(shell.size() / simd::lanes + 2 * grid_.columns()),
         list_(simd::padded(capacity_) + simd::lanes) {
     runs_.reserve(grid_.columns());

@@ -203,7 +203,7 @@ std::string notes_text(const LimitTable& table, const Layout& layout) {
   std::string text;
   for (const auto& [holds, note] : notes)
     if (holds) text += layout.wrapped(note, 0);
-  // Give the reasons of rows without a limit to quote.
+  // State why a row has no limit to quote.
   if (table.is_grid()) text += missing_quotes_text(table, layout);
   // Add a note on each distinct delay of a device.
   std::vector<std::string> delays = {""};

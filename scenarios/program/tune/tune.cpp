@@ -55,7 +55,7 @@ void tune_laws(const std::vector<std::string>& algorithms, bool quiet, Tuning& t
   tuning.ranking = ranking_of(tuning.laws);
 }
 
-/// Returns what the diagnosis reports for a run of the law's choice.
+/// Returns what the diagnosis reports for a run with the setting and the stiffness that were chosen for a law.
 std::vector<Diagnosed> findings_at(const Tuning& tuning, const TunedLaw& law) {
   const CheckedScenario choice = checked(load_scenario(tuning.question.scenario, law.overrides));
   return *run_scenario(choice, std::nullopt, false, nullptr, /*diagnose=*/true).diagnosis;
