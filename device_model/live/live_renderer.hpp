@@ -52,7 +52,8 @@ class LiveRenderer {
   double period() const { return loop_.dt(); }
   /// Returns the state of the tool after the last call; not meaningful if its status was STALE or FAULT.
   const ToolState& tool() const noexcept { return tool_; }
-  /// Returns the depth of the deepest contact in the last call that rendered [m]; 0 without contact.
+  /// Returns the depth of the deepest contact in the last call that rendered [m]. 0 if that call had no contact, and
+  /// after a restart until the next call that renders.
   double deepest_contact() const noexcept { return loop_.force().depth_max; }
 
  private:

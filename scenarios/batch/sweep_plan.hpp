@@ -15,7 +15,7 @@ namespace hapbench {
 struct SweepPlan {
   Cases cases;
   RunLength length = RunLength::full;      ///< whether runs end at a failure
-  std::vector<std::string> warnings = {};  ///< warnings of the checked runs, without duplicates
+  std::vector<std::string> warnings = {};  ///< warnings of the file of points and of the checked runs, each once
   std::vector<std::string> metrics = {};   ///< metrics that at least one checked run has
   std::vector<std::string> bounded = {};   ///< metrics that have an error bound (tolerance)
   /// Everything that determines the rows: scenes, overrides, points, hashes of the files that the scenarios

@@ -57,10 +57,10 @@ Number surface_limit(const DiagnosedRun& run, const LoadedScenario& loaded) {
                                 *run.observations.last_contact);
 }
 
-/// Returns K divided by the largest stable K of the linear loop in contact. Empty if no limit of the loop is known, for
-/// example because the run has no contact.
-/// Rounded to six digits, so that builds with different rounding errors give the same result. `loaded`: the scenario of
-/// the run, or a variant of it.
+/// Returns K divided by the largest stable K of the linear loop in contact, rounded to six digits, so that builds with
+/// different rounding errors give the same result. Returns 0 if the largest stable K is above 2 K, because the search
+/// ends there. Empty if no limit of the loop is known, for example because the run has no contact. `loaded`: the
+/// scenario of the run, or a variant of it.
 Number ratio_to_stability_limit(const DiagnosedRun& run, const LoadedScenario& loaded) {
   const double K = loaded.scenario.rendering.stiffness;
   if (!(K > 0.0) || !run.is_free()) return std::nullopt;

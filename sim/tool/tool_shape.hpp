@@ -114,8 +114,9 @@ class ToolShape {
   /// This function and the following functions may overwrite the whole last pack of the contacts, including its
   /// padding.
   virtual void shortest_depths(const ToolPose& pose, ContactBuffer& contacts) const noexcept = 0;
-  /// Writes the unit vector from each contact to the closest point of the surface as its gradient. Writes the
-  /// contact's negative normal if the closest point is not unique, for example on the axis of a cylinder.
+  /// Writes the unit vector from each contact to the closest point of the surface as its gradient. If there are several
+  /// closest points, the shape selects one. Writes the contact's negative normal if the direction is undefined, for
+  /// example on the axis of a cylinder.
   virtual void shortest_gradients(const ToolPose& pose, ContactBuffer& contacts) const noexcept = 0;
   /// Writes the exit distance [m] of each contact i to exits[i]: the ray that starts at the contact in the direction of
   /// its gradient leaves the body at this distance. The distance is finite and >= 0, also for points on the surface.
