@@ -66,8 +66,8 @@ bool scene_limit_is_near(Trials& trials, const TuneTrial& choice, TunedLaw& law)
 bool fails_in_longer_run(Trials& trials, const TuneTrial& choice) {
   const Scenario scenario = trials.load(choice.setting, choice.stiffness).scenario;
   const double duration = scenario.time.step * static_cast<double>(scenario.time.steps);
-  // A run of twice the duration verifies the choice. Skip it if a script that is not periodic still moves the tool after
-  // the end of the scene, because the tool would reach other positions than in the scene.
+  // A run of twice the duration verifies the choice. Skip it if a script that is not periodic still moves the tool
+  // after the end of the scene, because the tool would reach other positions than in the scene.
   if (script_moves_until(scenario) > duration && script_period(scenario) == 0.0) return false;
   const auto twice = [&](std::size_t) { return fmt::format("time.steps={}", 2 * scenario.time.steps); };
   const auto failing = trials.first_failing(choice, trials.variant_count(), twice);
