@@ -1,5 +1,5 @@
-"""Checks that `run` does not condemn what `tune` recommends: for random bundled scenes, with the device of the scene and
-with two devices of the library, without bounds and with two bounds. As a script:
+"""Checks that `run` does not condemn what `tune` recommends: for random bundled scenes, with the device of the scene
+and with two devices of the library, without bounds and with two bounds. As a script:
 
     tests/scripts/recommendations.py PROGRAM [--cases N] [--seed S] [--log FILE]
 
