@@ -20,9 +20,9 @@ bool turns(const RenderingConfig& config);
 ///
 /// S = U^T (U U^T + K/k V V^T)^-1 U with the rows u_i of U and r_i x u_i of V, for the points that hold the proxy. r_i
 /// is the vector from the force point to point i. S satisfies 0 <= S <= I. Apart from a term from the curvature of the
-/// tool, the derivative of the force with respect to p is -K S. Points inside the proxy leave it at 40 half widths per
-/// second, as with the translating proxy. If the walls leave no room for the tool, a pass takes the least-squares
-/// compromise, and S is I.
+/// tool, the derivative of the force with respect to p is -K S. If points are inside the proxy, the proxy moves out at
+/// 40 times the half width of the tool per second, as the translating proxy does. If there is no room for the tool
+/// between the walls, the proxy takes the pose with the smallest sum of squared penetrations, and S is I.
 std::unique_ptr<ForceAlgorithm> make_turning_proxy(const RenderingConfig& config, double force_point);
 
 /// Name of the parameter k in rendering.parameters.proxy.

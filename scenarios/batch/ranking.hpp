@@ -92,8 +92,8 @@ struct Ranking {
   bool seeds_matter(std::size_t scenario) const;
   /// Returns true if a metric compares the force of an algorithm with a reference force from the same constraints.
   bool shares_reference(std::size_t scenario, std::size_t algorithm, std::size_t metric) const;
-  /// Returns true if the means of different algorithms in a scenario are over different seeds, because at every seed
-  /// an algorithm failed that succeeded at another seed.
+  /// Returns true if the means of the algorithms in a scenario are over different seeds, because no seed is common to
+  /// all algorithms that succeeded at some seed.
   bool lacks_common_seeds(std::size_t scenario) const;
   /// Returns the number of seeds for which an algorithm failed in a scenario.
   std::size_t failures(std::size_t scenario, std::size_t algorithm) const;

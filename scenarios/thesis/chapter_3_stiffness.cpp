@@ -132,8 +132,8 @@ double smallest_after_one_update(int parallel) {
 }
 
 /// Judges the range of the stiffness ratios after `updates` updates of the weights. If `averaged`, judges the averages
-/// of the smallest and of the largest ratio over all tasks, which are the cases after the first kTaskCases. Otherwise
-/// judges the fraction of the steps whose ratios are all in the published range.
+/// of the smallest and of the largest ratio over all tasks; the cases after the first kTaskCases have these averages.
+/// Otherwise judges the fraction of the steps whose ratios are all in the published range.
 Finding judge_range(const Measured& measured, const PublishedNumbers& p, double updates, bool averaged) {
   const PublishedNumber& once = p["R1.once"];
   const double inside = smallest(measured, after("inside", updates));

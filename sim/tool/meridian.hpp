@@ -56,7 +56,8 @@ struct Meridian {
   std::vector<ProfilePoint> profile;
   Tip tip;
   std::vector<Line> lines;  ///< segments of the profile, then of the tip's disc, then of the shank's disc
-  /// Section of the body with s <= 0, divided into convex regions at the profile's corners that turn inwards.
+  /// The half s <= 0 of the body's meridian cross-section, divided into convex regions at the concave corners of the
+  /// profile.
   std::vector<Part> parts;
   /// Upper and lower lines of all parts.
   std::vector<Height> heights;

@@ -19,7 +19,8 @@ struct LevelResult {
   std::string setting;           ///< the field and its value, as text
   std::string outcome;           ///< name of the run's outcome
   std::optional<double> result;  ///< value of the metric; empty if the run diverged or lacks the metric
-  /// Contact counts by name. If they differ between levels, contacts switched on or off.
+  /// Contact counts by name. If they differ between two levels of refinement, contacts have begun or ended at other
+  /// times, so that the results of the levels may differ by a jump.
   std::vector<std::pair<std::string, double>> contacts = {};
   std::uint64_t state_hash = 0;  ///< equal for bitwise equal runs
   double spread = 0.0;           ///< Metric::sampling_spread of the metric

@@ -149,7 +149,8 @@ Columns<LimitRow> limit_value_columns(const LimitTable* table) {
 }
 
 /// Returns the columns that describe the search for the limit, such as tolerances, undecided runs and verification
-/// samples. `grid` adds numbers of the run at the limit, for comparing cases.
+/// samples. With `grid`, also returns columns with quantities that were measured in the run at the limit, to compare
+/// the cells of a grid.
 Columns<LimitRow> search_columns(bool devices, bool grid) {
   using Row = LimitRow;
   const auto may_fail = [](const Row& r) {
