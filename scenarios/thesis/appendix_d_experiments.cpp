@@ -26,6 +26,11 @@ constexpr MeasuredColumn kMeasures[] = {{kSuccessRate, "removed", "success", ""}
                                         {kModelForce, "model_force_N", "force", " N"},
                                         {"speed", "speed_m_per_s", "speed", " m/s"}};
 
+/// Returns the names of the quantity that a case measures.
+const MeasuredColumn& column_of(const MeasuredCase& m) {
+  return *std::ranges::find(kMeasures, m.name, &MeasuredColumn::name);
+}
+
 /// Largest difference between a measured and a published mean that counts as near [standard errors of the difference].
 /// Half a unit of the last published digit is allowed in addition. Does not apply to the force, which subjects
 /// regulate.
@@ -88,10 +93,10 @@ struct Compared {
 /// Compares a measure with the published values. `id`, `published_difference`: see judge_experiment().
 Compared compare(const MeasuredCase& m, const PublishedNumbers& published, const std::string& id,
                  bool published_difference) {
-  const auto* column = std::ranges::find(kMeasures, m.name, &MeasuredColumn::name);
+  const MeasuredColumn& column = column_of(m);
   const std::vector<double>&original = m.all("original"), &shaped = m.all("shaped");
-  const PublishedNumber& of_original = published[id + "." + column->published + ".original_averaging"];
-  const PublishedNumber& of_shaped = published[id + "." + column->published + ".shaped_stiffness"];
+  const PublishedNumber& of_original = published[id + "." + column.published + ".original_averaging"];
+  const PublishedNumber& of_shaped = published[id + "." + column.published + ".shaped_stiffness"];
   const auto difference = [](const std::vector<double>& ours, const PublishedNumber& p) {
     const double beyond = std::max(std::abs(mean_of(ours) - p.mean) - half_a_digit(p.mean), 0.0);
     return beyond == 0.0 ? 0.0 : beyond / math::hypot(p.spread, standard_error(ours));
@@ -125,7 +130,7 @@ std::string deviation_text(const MeasuredCase& m, const Compared& c, bool publis
                     : c.significant         ? "the opposite direction"
                                             : "no significant difference";
   return fmt::format("{} {:.2g} (original) against {:.2g}{} (shaping), {}", m.name, mean_of(m.all("original")),
-                     mean_of(m.all("shaped")), std::ranges::find(kMeasures, m.name, &MeasuredColumn::name)->unit, how);
+                     mean_of(m.all("shaped")), column_of(m).unit, how);
 }
 
 /// Judges an experiment by all its measures except the force. `id`: D1 to D4. `published_difference`: true if the
@@ -170,9 +175,9 @@ Verdict judge_experiment_before(const Measured& measured, const PublishedNumbers
   bool all = true, success = false;
   for (const MeasuredCase& m : measured) {
     const Compared c = compare(m, published, id, published_difference);
-    const auto* column = std::ranges::find(kMeasures, m.name, &MeasuredColumn::name);
+    const MeasuredColumn& column = column_of(m);
     const auto half = [&](const char* law) {
-      return half_a_digit(published[fmt::format("{}.{}.{}", id, column->published, law)].mean);
+      return half_a_digit(published[fmt::format("{}.{}.{}", id, column.published, law)].mean);
     };
     const double difference = std::abs(mean_of(m.all("original")) - mean_of(m.all("shaped")));
     const bool equal = difference <= half("original_averaging") + half(kProposedLaw);
@@ -336,25 +341,39 @@ Finding judge_pilots(const Measured& measured, const PublishedNumbers& published
           beyond, easiest)};
 }
 
+/// An experiment of appendix D.
+struct Experiment {
+  const char* id;
+  const char* task;
+  double position;            ///< index of the target's position
+  bool published_difference;  ///< true if the thesis reports a significant difference between the algorithms
+};
+constexpr Experiment kExperiments[] = {{"D1", kVertical, 1.0, true},
+                                       {"D2", kVertical, 0.0, false},
+                                       {"D3", kRotational, 0.0, true},
+                                       {"D4", kRotational, 1.0, true}};
+
+/// Returns the rule of kExperiments[i].
+template <std::size_t i>
+ClaimRule experiment() {
+  static constexpr Experiment kOf = kExperiments[i];
+  return {kOf.id,
+          [](const Evidence& e) { return measure(e, kOf.task, kOf.position); },
+          [](const Measured& m, const PublishedNumbers& p) {
+            return judge_experiment(m, p, kOf.id, kOf.published_difference);
+          },
+          {[](const Measured& m, const PublishedNumbers& p) {
+            return judge_experiment_before(m, p, kOf.id, kOf.published_difference);
+          }}};
+}
+
 }  // namespace
 
 std::vector<ClaimRule> appendix_d_experiments() {
-  return {{"D1",
-           [](const Evidence& e) { return measure(e, kVertical, 1.0); },
-           [](const Measured& m, const PublishedNumbers& p) { return judge_experiment(m, p, "D1", true); },
-           {[](const Measured& m, const PublishedNumbers& p) { return judge_experiment_before(m, p, "D1", true); }}},
-          {"D2",
-           [](const Evidence& e) { return measure(e, kVertical, 0.0); },
-           [](const Measured& m, const PublishedNumbers& p) { return judge_experiment(m, p, "D2", false); },
-           {[](const Measured& m, const PublishedNumbers& p) { return judge_experiment_before(m, p, "D2", false); }}},
-          {"D3",
-           [](const Evidence& e) { return measure(e, kRotational, 0.0); },
-           [](const Measured& m, const PublishedNumbers& p) { return judge_experiment(m, p, "D3", true); },
-           {[](const Measured& m, const PublishedNumbers& p) { return judge_experiment_before(m, p, "D3", true); }}},
-          {"D4",
-           [](const Evidence& e) { return measure(e, kRotational, 1.0); },
-           [](const Measured& m, const PublishedNumbers& p) { return judge_experiment(m, p, "D4", true); },
-           {[](const Measured& m, const PublishedNumbers& p) { return judge_experiment_before(m, p, "D4", true); }}},
+  return {experiment<0>(),
+          experiment<1>(),
+          experiment<2>(),
+          experiment<3>(),
           {"D6", measure_pilots, judge_pilots, {judge_pilots_before}},
           {"D7", measure_wall, judge_wall, {judge_wall_before}}};
 }

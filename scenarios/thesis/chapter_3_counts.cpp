@@ -116,33 +116,40 @@ std::string agreement_text(const CountsAgree& agree, bool bounded, double bound)
                                                               : fmt::format("but some steps keep {} or more", bound));
 }
 
-/// Judges the number of points after the reduction. The raw counts are an input: a density whose raw counts differ from
-/// the published raw counts predicts nothing.
-Finding judge_reduced_points(const Measured& counts, const PublishedNumbers& published, const std::string& task) {
+/// Numbers of densities whose counts agree with a publication, as far as the members of CountsAgree with these names.
+struct AgreeingDensities {
+  std::size_t raw = 0, mean = 0, whole = 0;
+  std::string text = {};  ///< agreement_text() of each density
+};
+
+AgreeingDensities agreeing_densities(const Measured& counts, const PublishedNumbers& published,
+                                     const std::string& task) {
   const double bound = published["T3.reduced.bound"].at_most;
-  std::size_t inputs = 0, all = 0, means = 0;
-  std::string why;
+  AgreeingDensities densities;
   for (const MeasuredCase& c : counts) {
     const bool bounded = c["outside_taps"] < bound;
     const CountsAgree agree = agreement(c, published, task, bounded);
-    inputs += agree.raw ? 1U : 0U;
-    all += agree.whole ? 1U : 0U;
-    means += agree.mean ? 1U : 0U;
-    append_item(why, fmt::format("density {}: {}", c.name, agreement_text(agree, bounded, bound)));
+    densities.raw += agree.raw ? 1U : 0U;
+    densities.mean += agree.mean ? 1U : 0U;
+    densities.whole += agree.whole ? 1U : 0U;
+    append_item(densities.text, fmt::format("density {}: {}", c.name, agreement_text(agree, bounded, bound)));
   }
-  return {inputs == 0 ? Verdict::not_judged : decide(all == counts.size(), means > 0), why};
+  return densities;
 }
 
 /// The earlier rule of T2 and T3 did not ask whether the raw counts, which are an input, agree.
 Verdict judge_reduced_points_before(const Measured& counts, const PublishedNumbers& published,
                                     const std::string& task) {
-  std::size_t all = 0, means = 0;
-  for (const MeasuredCase& c : counts) {
-    const CountsAgree agree = agreement(c, published, task, c["outside_taps"] < published["T3.reduced.bound"].at_most);
-    all += agree.whole ? 1U : 0U;
-    means += agree.mean ? 1U : 0U;
-  }
-  return decide(all == counts.size(), means > 0);
+  const AgreeingDensities densities = agreeing_densities(counts, published, task);
+  return decide(densities.whole == counts.size(), densities.mean > 0);
+}
+
+/// Judges the number of points after the reduction. The raw counts are an input: a density whose raw counts differ from
+/// the published raw counts predicts nothing.
+Finding judge_reduced_points(const Measured& counts, const PublishedNumbers& published, const std::string& task) {
+  const AgreeingDensities densities = agreeing_densities(counts, published, task);
+  return {densities.raw == 0 ? Verdict::not_judged : decide(densities.whole == counts.size(), densities.mean > 0),
+          densities.text};
 }
 
 }  // namespace

@@ -97,8 +97,8 @@ double seconds_with(const std::vector<ContactBuffer>& sets, int repetitions, Wor
 /// Returns the vibration measures of a run: total variation of the velocity [m/s], power of the velocity above 30 Hz
 /// [m^2/s^2], and number of force reversals.
 MeasuredCase vibration(const std::string& name, const Result& run);
-/// Returns vibration() of a run with which other runs are compared. If this run diverges, its numbers are those of
-/// MeasuredCase::set_diverged().
+/// Returns vibration() of a run with which other runs are compared. If this run diverges, each number is
+/// NaN, and the number up to the divergence is stored beside it (MeasuredCase::set_diverged).
 MeasuredCase reference_vibration(const std::string& name, const Result& run);
 
 /// Returns true if `a` has a larger velocity variation and a larger vibration power than `b`.
