@@ -100,10 +100,10 @@ IndexEntry recorded_claim(const Json& claim, const Layout& layout) {
     }
     if (named.contains("revised")) {
       const Json before = named.at("revised");
-      named["rule before"] =
-          fmt::format("{}; verdict: {}; {}; changed because {}", before.at("rule").get<std::string>(),
-                      before.at("verdict").get<std::string>(), before.at("robustness").get<std::string>(),
-                      before.at("reason").get<std::string>());
+      named["earlier rule"] = before.at("rule");
+      named["its verdict"] =
+          fmt::format("{}; {}", before.at("verdict").get<std::string>(), before.at("robustness").get<std::string>());
+      named["why changed"] = before.at("reason");
     }
     // Rename the member "measured" to "cases", and omit members that only programs need.
     named["cases"] = named.at("measured");
