@@ -199,7 +199,7 @@ Finding judge_springs_limited(const Measured& runs, const PublishedNumbers& p) {
                       fluctuate.empty() ? "no other algorithm is smooth without the limits and fluctuates with them"
                                         : "smooth without the limits, but fluctuating with the limits: " + fluctuate),
           "number of swings, first without the limits, then with them: " + text,
-          fmt::format("proposed algorithm: {}; algorithms that fluctuate only with the limits: {}", swings,
+          fmt::format("proposed algorithm: {}; smooth without the limits, but fluctuating with them: {}", swings,
                       fluctuate.empty() ? "none" : fluctuate)};
 }
 

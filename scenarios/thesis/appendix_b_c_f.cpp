@@ -90,8 +90,9 @@ Finding judge_groove(const Measured& measured, const PublishedNumbers& p) {
                   "{} the missing damping across this direction",
                   with > majority ? "does not hide" : "hides"),
       "",
-      fmt::format("under-damped at {} of {} angles without friction, at {} with the assumed friction", without,
-                  measured.size(), with)};
+      fmt::format("under-damped at {} of {} angles without friction, at {} of {} with the friction of "
+                  "groove.friction",
+                  without, measured.size(), with, measured.size())};
 }
 
 // ---- B3: the merged depth before and after adding two points, in units of the depth of each point. With n = kPoints,

@@ -132,7 +132,7 @@ AgreeingDensities agreeing_densities(const Measured& counts, const PublishedNumb
     densities.raw += agree.raw ? 1U : 0U;
     densities.mean += agree.mean ? 1U : 0U;
     densities.whole += agree.whole ? 1U : 0U;
-    append_item(densities.text, fmt::format("density {}: {}", c.name, agreement_text(agree, bounded, bound)));
+    append_item(densities.text, fmt::format("density field {}: {}", c.name, agreement_text(agree, bounded, bound)));
   }
   return densities;
 }

@@ -234,10 +234,11 @@ MeasuredValues measure_convergence(const Evidence& e) {
 
 Finding judge_convergence(const MeasuredCase& m, const PublishedNumbers& p) {
   const bool one = std::abs(m["limit_max"] - 1.0) <= threshold(p, "converged");
-  return {one ? Verdict::replicated : Verdict::contradicted,
-          one ? "the exact limit is 1 at every contact of these runs"
-              : "the iteration converges to the projection of the identity onto the cone of contact tensors; in this "
-                "limit, the ratio of a contact with weight 0 is above 1"};
+  return {
+      one ? Verdict::replicated : Verdict::contradicted,
+      one ? "the exact limit is 1 at every contact of these runs"
+          : "no weight can be negative; the iteration converges to the stiffness tensor nearest to the identity that "
+            "such weights can form, and in this limit, the ratio of a contact with weight 0 is above 1"};
 }
 
 // ---- R2: the largest stiffness in any direction, in units of K, over contact sets found by a random search. One case

@@ -130,7 +130,7 @@ std::string failures(const Json& claims) {
   std::string text;
   for (const Json& claim : claims) {
     if (is(claim, "ours") || is(claim, "timing") || !failed(claim)) continue;
-    text += fmt::format("- {}, {} ({}): *{}*, {}; {}. Why: {}.\n", link_to(claim), text_at(claim, "claim"),
+    text += fmt::format("- {}, {} ({}): *{}*; measured: {}; {}. Why: {}.\n", link_to(claim), text_at(claim, "claim"),
                         text_at(claim, "place"), text_at(claim, "verdict"), ours(claim), decided_by(claim),
                         text_at(claim, "why"));
   }
@@ -145,7 +145,7 @@ std::string other_values(const Json& claims) {
     for (const Json& one : claim.at("cases_moved"))
       if (was_judged(text_at(one, "verdict")))
         append_item(cells[text_at(one, "assumption")],
-                    fmt::format("{}: {} *{}*, {}", text_at(one, "value"), link_to(claim), text_at(one, "verdict"),
+                    fmt::format("`{}`: {} *{}*, {}", text_at(one, "value"), link_to(claim), text_at(one, "verdict"),
                                 text_at(one, "number")),
                     "<br>");
   if (cells.empty()) return "";
