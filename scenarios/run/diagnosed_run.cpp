@@ -179,6 +179,29 @@ bool is_stable_at_some_stiffness(const DiagnosedRun& run, const std::function<vo
   return ratio && !is_unstable_at_any_stiffness(*ratio) && unstable_without_wall(changed.scenario).empty();
 }
 
+bool is_below_limit(const DiagnosedRun& run, const std::function<void(Scenario&)>& change) {
+  LoadedScenario changed = run.loaded;
+  change(changed.scenario);
+  const Number ratio = ratio_to_stability_limit(run, changed);
+  return ratio && *ratio <= kMaxLimitRatio && unstable_without_wall(changed.scenario).empty();
+}
+
+Number scripted_vibration(const DiagnosedRun& run) {
+  // Relative difference of frequencies that count as equal: the resolution of a few periods in the last quarter.
+  constexpr double kSameFrequency = 0.03;
+  const auto frequency = oscillation_frequency(run.observations.last_forces, run.scenario().time.step);
+  if (!frequency || *frequency <= kVibrationCutoff) return std::nullopt;
+  for (const double period : script_periods(run.scenario()))
+    for (const double harmonic : {1.0, 2.0, 3.0})
+      if (std::abs(*frequency * period / harmonic - 1.0) <= kSameFrequency) return frequency;
+  return std::nullopt;
+}
+
+bool left_surface_long_ago(const DiagnosedRun& run) {
+  const Number last = run.metric("last_contact_s");
+  return last && *last < 0.5 * run.result.duration;
+}
+
 Number coarseness(const DiagnosedRun& run) {
   // kSufficientContacts: number of contacts in a step that gives a smooth force. kMinSpacings: shortest path in contact
   // for which coarseness() has a value, in units of the point spacing.
@@ -189,7 +212,9 @@ Number coarseness(const DiagnosedRun& run) {
   if (!distance || !contacts || has_external_contacts(run.scenario()) ||
       run.observations.path_in_contact < kMinSpacings * distance->metres)
     return std::nullopt;
-  return run.if_completed(std::sqrt(kSufficientContacts / *contacts));
+  const double factor = kSufficientContacts / *contacts;
+  const bool is_outline = std::holds_alternative<Hole2d>(run.scenario().environment);
+  return run.if_completed(is_outline ? factor : std::sqrt(factor));
 }
 
 Number encoder_force(const DiagnosedRun& run) {

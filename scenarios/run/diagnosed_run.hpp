@@ -104,9 +104,16 @@ Number unstable_alone(const DiagnosedRun& run);
 Number unstable_loop(const DiagnosedRun& run);
 /// Returns true if the linear loop with a contact is stable at some stiffness of at least K / 10000 after `change`.
 bool is_stable_at_some_stiffness(const DiagnosedRun& run, const std::function<void(Scenario&)>& change);
+/// Returns true if K is at most kMaxLimitRatio times the largest stable K of the linear loop after `change`.
+bool is_below_limit(const DiagnosedRun& run, const std::function<void(Scenario&)>& change);
+/// Returns the frequency [Hz] of the force in the last quarter, if it is the frequency of a periodic script of hand or
+/// tool, or twice or three times this frequency; otherwise an empty value.
+Number scripted_vibration(const DiagnosedRun& run);
+/// Returns true if the tool had no contact in the second half of the run.
+bool left_surface_long_ago(const DiagnosedRun& run);
 /// Returns the point spacing divided by the spacing at which four points would be in contact. The number of contacts is
-/// proportional to 1 / spacing^2. Empty if the path of the tip along the surface is shorter than ten spacings, or if
-/// the contacts come from a recording or a module.
+/// proportional to 1 / spacing^2 on a surface, and to 1 / spacing on the outline of a planar hole. Empty if the path of
+/// the tip along the surface is shorter than ten spacings, or if the contacts come from a recording or a module.
 Number coarseness(const DiagnosedRun& run);
 /// Returns the largest damping force that one encoder increment causes, divided by the mean force in contact. Empty in
 /// three cases: the device is no impedance device, the damping is Hunt-Crossley damping, or no vibration, force step or

@@ -12,6 +12,7 @@
 #include "algorithms/registry.hpp"
 #include "algorithms/stages/damping_and_limits.hpp"
 #include "scenarios/run/scene_distances.hpp"
+#include "scenarios/run/scene_loop.hpp"
 
 namespace hapbench {
 namespace {
@@ -48,10 +49,10 @@ std::string damping_field(const RenderingConfig& rendering) {
   return rendering.damping ? parameter::kDamping.field : damping_ratio_field();
 }
 
-/// A change of a scenario, and its words in an advice.
+/// A change of a scenario, and its words in an advice. A change that has a size multiplies or divides by `factor`.
 struct LoopChange {
   std::string remedy;
-  std::function<void(Scenario&)> change;
+  std::function<void(Scenario&, double factor)> change;
 };
 
 bool has_damping(const RenderingConfig& rendering) {
@@ -68,24 +69,88 @@ void scale_damping(RenderingConfig& rendering, double factor, double if_zero) {
   rendering.damping_ratio = if_zero;
 }
 
-/// Returns the changes that can make a loop stable whose stiffness is not the cause.
-std::vector<LoopChange> loop_changes(const Scenario& scenario) {
-  const std::string damping = damping_field(scenario.rendering);
-  std::vector<LoopChange> changes = {{"a shorter time.step_s", [](Scenario& s) { s.time.step *= 0.1; }}};
-  if (has_damping(scenario.rendering))
-    changes.push_back({"a smaller " + damping, [](Scenario& s) { scale_damping(s.rendering, 0.1, 0.0); }});
-  changes.push_back({"a larger " + damping, [](Scenario& s) { scale_damping(s.rendering, 10.0, 0.7); }});
+/// Divides the time step. A delay in seconds stays the same; a delay in samples becomes shorter.
+void shorten_step(Scenario& scenario, double factor) {
+  scenario.time.step /= factor;
+  auto* device = std::get_if<ImpedanceDeviceConfig>(&scenario.device);
+  if (device != nullptr && device->delay) device->delay_samples = *device->delay / scenario.time.step;
+}
+
+void remove_filters(Scenario& scenario, double) {
+  auto& device = std::get<ImpedanceDeviceConfig>(scenario.device);
+  device.velocity_filter = DifferenceFilter{};
+  device.position_filter.reset();
+}
+
+/// Returns the changes of time step and device that can make a loop stable.
+std::vector<LoopChange> device_changes(const Scenario& scenario) {
+  std::vector<LoopChange> changes = {{"a shorter time.step_s", shorten_step}};
+  if (!device_acts_on_tool(scenario)) return changes;
   if (const auto* device = std::get_if<ImpedanceDeviceConfig>(&scenario.device)) {
-    const auto no_delay = [](Scenario& s) { std::get<ImpedanceDeviceConfig>(s.device).delay_samples = 0.0; };
+    const auto no_delay = [](Scenario& s, double) { std::get<ImpedanceDeviceConfig>(s.device).delay_samples = 0.0; };
+    if (device->position_filter || !std::holds_alternative<DifferenceFilter>(device->velocity_filter))
+      changes.push_back({"a filter with a higher cutoff", remove_filters});
     if (device->delay_samples > 0.0) changes.push_back({"a shorter delay of the device", no_delay});
   }
-  if (std::holds_alternative<AdmittanceDeviceConfig>(scenario.device)) {
-    changes.push_back({"a softer servo (device.servo.stiffness_N_per_m)",
-                       [](Scenario& s) { std::get<AdmittanceDeviceConfig>(s.device).servo.stiffness *= 0.1; }});
-    changes.push_back({"a shorter delay of device.servo",
-                       [](Scenario& s) { std::get<AdmittanceDeviceConfig>(s.device).servo.delay = 0; }});
+  if (const auto* device = std::get_if<AdmittanceDeviceConfig>(&scenario.device)) {
+    changes.push_back({"a softer servo (device.servo.stiffness_N_per_m)", [](Scenario& s, double factor) {
+                         std::get<AdmittanceDeviceConfig>(s.device).servo.stiffness /= factor;
+                       }});
+    if (device->servo.delay > 0)
+      changes.push_back({"a shorter delay of device.servo",
+                         [](Scenario& s, double) { std::get<AdmittanceDeviceConfig>(s.device).servo.delay = 0; }});
   }
   return changes;
+}
+
+/// Returns the changes of the damping of the contacts that can make a loop stable.
+std::vector<LoopChange> damping_changes(const Scenario& scenario) {
+  const std::string damping = damping_field(scenario.rendering);
+  std::vector<LoopChange> changes;
+  if (has_damping(scenario.rendering))
+    changes.push_back(
+        {"a smaller " + damping, [](Scenario& s, double factor) { scale_damping(s.rendering, 1.0 / factor, 0.0); }});
+  changes.push_back(
+      {"a larger " + damping, [](Scenario& s, double factor) { scale_damping(s.rendering, factor, 0.7); }});
+  return changes;
+}
+
+/// Multiplies stiffness and damping of the hand.
+void scale_hand(HandFields& hand, double stiffness, double damping) {
+  const auto scale_spring = [=](ImpedanceHandFields& spring) {
+    spring.stiffness *= stiffness;
+    spring.damping *= damping;
+  };
+  if (auto* spring = std::get_if<ImpedanceHandFields>(&hand)) scale_spring(*spring);
+  if (auto* passive = std::get_if<MassSpringDamperHandFields>(&hand)) scale_spring(passive->spring);
+  if (auto* drag = std::get_if<DragHandFields>(&hand)) drag->drag.normal_damping *= damping;
+  if (auto* tracking = std::get_if<TrackingHandFields>(&hand)) {
+    for (Subject& subject : tracking->subjects) {
+      subject.stiffness *= stiffness;
+      subject.damping *= damping;
+    }
+  }
+}
+
+/// Returns the changes of the hand that can make a loop stable.
+std::vector<LoopChange> hand_changes() {
+  return {{"a hand with more damping", [](Scenario& s, double factor) { scale_hand(s.hand, 1.0, factor); }},
+          {"a hand with less damping", [](Scenario& s, double factor) { scale_hand(s.hand, 1.0, 1.0 / factor); }},
+          {"a softer hand", [](Scenario& s, double factor) { scale_hand(s.hand, 1.0 / factor, 1.0); }}};
+}
+
+/// Returns the remedies of those changes after which the loop is stable, with at least one of several factors.
+/// `is_stable`: returns true if the loop is stable after a change of the scenario.
+std::vector<std::string> effective(const std::vector<LoopChange>& changes,
+                                   const std::function<bool(const std::function<void(Scenario&)>&)>& is_stable) {
+  std::vector<std::string> remedies;
+  for (const auto& [remedy, change] : changes)
+    for (const double factor : {10.0, 3.0}) {
+      if (!is_stable([&change = change, factor](Scenario& s) { change(s, factor); })) continue;
+      remedies.push_back(remedy);
+      break;
+    }
+  return remedies;
 }
 
 bool is_beyond(const Number& number, double threshold) {
@@ -109,6 +174,9 @@ std::optional<std::string> against_instability(const DiagnosedRun& run) {
 /// Returns the remedies for measured causes of a rough force.
 std::vector<std::string> against_measured_causes(const DiagnosedRun& run) {
   std::vector<std::string> remedies;
+  if (const auto frequency = scripted_vibration(run))
+    remedies.push_back(
+        fmt::format("a slower script: hand or tool move by a script of {:.3g} Hz, and so does the force", *frequency));
   if (is_too_stiff(run)) remedies.emplace_back("a smaller K");
   if (is_beyond(unstable_loop(run), 0.5)) remedies.push_back(against_unstable_loop(run));
   if (is_beyond(encoder_force(run), kMaxEncoderForce)) remedies.push_back(against_encoder(run));
@@ -163,6 +231,11 @@ std::string against_divergence(const DiagnosedRun& run) {
   if (is_beyond(unstable_loop(run), 0.5)) remedies.push_back(against_unstable_loop(run));
   if (is_beyond(damping_share(run), 1.0)) remedies.push_back("a smaller " + damping_field(run.scenario().rendering));
   if (is_beyond(run.metric("explicit_friction_rows_beyond"), 0.0)) remedies.push_back(against_friction(run));
+  if (remedies.empty() && !is_too_stiff(run) && left_surface_long_ago(run))
+    return fmt::format(
+        "a hand whose path ends on the surface: the last contact was at {:.4g} s, and the tool moved on "
+        "until it was beyond its bounds",
+        *run.metric("last_contact_s"));
   if (is_too_stiff(run) || remedies.empty()) remedies.emplace_back("a shorter time.step_s or a smaller K");
   return either(remedies) + (run.is_free() ? "; \"hapbench tune\" finds K and zeta" : "");
 }
@@ -215,24 +288,28 @@ std::string against_long_steps(const DiagnosedRun& run) {
 }
 
 std::string against_unstable_stiffness(const DiagnosedRun& run) {
-  std::vector<std::string> remedies = {"a smaller K", "a shorter time.step_s"};
-  if (const auto* device = run.impedance()) {
-    const bool has_filter =
-        device->position_filter || !std::holds_alternative<DifferenceFilter>(device->velocity_filter);
-    if (has_filter) remedies.emplace_back("a filter with a higher cutoff");
-    if (device->delay_samples > 0.0) remedies.emplace_back("a shorter delay of the device");
-  }
+  std::vector<std::string> remedies =
+      effective(device_changes(run.scenario()), [&](const auto& change) { return is_below_limit(run, change); });
+  remedies.insert(remedies.begin(), "a smaller K");
   return either(remedies) + "; \"hapbench tune\" finds a stable setting";
 }
 
-std::string against_unstable_servo(const DiagnosedRun&) {
-  return "a shorter delay, a softer servo (device.servo.stiffness_N_per_m) or a hand with more damping; no K helps";
+std::string against_unstable_servo(const DiagnosedRun& run) {
+  std::vector<LoopChange> changes = device_changes(run.scenario());
+  for (LoopChange& change : hand_changes()) changes.push_back(std::move(change));
+  const std::vector<std::string> remedies = effective(changes, [&](const auto& change) {
+    Scenario changed = run.scenario();
+    change(changed);
+    return unstable_without_wall(changed).empty();
+  });
+  return (remedies.empty() ? "another device or hand" : either(remedies)) + "; no K helps";
 }
 
 std::string against_unstable_loop(const DiagnosedRun& run) {
-  std::vector<std::string> remedies;
-  for (const auto& [remedy, change] : loop_changes(run.scenario()))
-    if (is_stable_at_some_stiffness(run, change)) remedies.push_back(remedy);
+  std::vector<LoopChange> changes = device_changes(run.scenario());
+  for (LoopChange& change : damping_changes(run.scenario())) changes.push_back(std::move(change));
+  const std::vector<std::string> remedies =
+      effective(changes, [&](const auto& change) { return is_stable_at_some_stiffness(run, change); });
   if (remedies.empty())
     return "another device or hand: no stiffness is stable with a tenth of the time step, or with a tenth or ten times "
            "the damping";

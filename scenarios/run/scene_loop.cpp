@@ -189,18 +189,25 @@ DeviceLoop device_loop(const Scenario& scenario, double lambda) {
   return result;
 }
 
+bool device_acts_on_tool(const Scenario& scenario) {
+  const bool hand_reacts = !std::holds_alternative<NoHandFields>(scenario.hand) &&
+                           !std::holds_alternative<ForceHandFields>(scenario.hand) &&
+                           !std::holds_alternative<PushHandFields>(scenario.hand);
+  return has_device(scenario) && (hand_reacts || !std::holds_alternative<AdmittanceDeviceConfig>(scenario.device));
+}
+
 bool has_linear_loop(const Scenario& scenario) {
-  return !has_device(scenario) || (delay_of(scenario) <= kMaxLoopDelay && unmodelled_fields(scenario).empty());
+  return !device_acts_on_tool(scenario) || (delay_of(scenario) <= kMaxLoopDelay && unmodelled_fields(scenario).empty());
 }
 
 Eigen::MatrixXd contact_step_matrix(const Scenario& scenario, double lambda) {
-  if (!has_device(scenario)) return step_matrix_with_hand(scenario, lambda);
+  if (!device_acts_on_tool(scenario)) return step_matrix_with_hand(scenario, lambda);
   if (!has_linear_loop(scenario)) return {};
   return device_loop(scenario, lambda).state_matrix();
 }
 
 static std::vector<Eigen::MatrixXd> loop_with(const Scenario& scenario, const LinearContact& contact) {
-  if (!has_device(scenario)) return contact_loop(tool_on_spring(scenario, 1.0), contact);
+  if (!device_acts_on_tool(scenario)) return contact_loop(tool_on_spring(scenario, 1.0), contact);
   return std::visit([&contact](const auto& loop) { return contact_loop(loop, contact); },
                     device_loop(scenario, 1.0).loop);
 }
@@ -232,8 +239,11 @@ std::string unstable_without_wall(const Scenario& scenario) {
   alone.rendering.stiffness = 0.0;
   alone.rendering.damping = 0.0;
   if (is_stable_loop({contact_step_matrix(alone, 1.0)})) return "";
+  if (!device_acts_on_tool(scenario)) return "the hand";
+  const bool has_servo = std::holds_alternative<AdmittanceDeviceConfig>(scenario.device);
   alone.hand = NoHandFields{};
-  return is_stable_loop({contact_step_matrix(alone, 1.0)}) ? "hand and device" : "the device's servo";
+  if (is_stable_loop({device_loop(alone, 1.0).state_matrix()})) return "hand and device";
+  return has_servo ? "the device's servo" : "the device";
 }
 
 /// Calls `add` with the name and the loop of each hand of typical_hands(), if a hand holds an impedance device.

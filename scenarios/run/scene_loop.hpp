@@ -26,6 +26,10 @@ inline bool has_device(const Scenario& scenario) {
   return !std::holds_alternative<IdealDeviceFields>(scenario.device);
 }
 
+/// Returns true if the device is part of the tool's loop. An admittance device is not, if the force of the hand does
+/// not depend on the handle: the servo then moves only the handle, and the tool moves as with an ideal device.
+bool device_acts_on_tool(const Scenario& scenario);
+
 /// Returns the eigenvalues of the stiffness tensor S under the scenario's algorithm, in units of K, in
 /// ascending order. Precondition: has_permanent_springs(scenario).
 Vec3 stiffness_eigenvalues(Scenario scenario);
@@ -55,7 +59,7 @@ inline const char* delay_path(const Scenario& scenario) {
 Eigen::Matrix2d step_matrix_with_hand(const Scenario& scenario, double lambda);
 
 /// Returns true if the linear theory covers the scenario's device: its delay is short enough to compute the loop's
-/// eigenvalues, and unmodelled_fields() is empty. True without a device.
+/// eigenvalues, and unmodelled_fields() is empty. True if the device is no part of the loop.
 bool has_linear_loop(const Scenario& scenario);
 
 /// Returns the matrices of the scenario's loop of hand, device and contact in three dimensions (contact_loop() in
@@ -79,14 +83,15 @@ std::vector<NamedLoop> contact_loops(const Scenario& scenario, const LinearConta
 /// with stiffness lambda K and damping lambda B.
 std::vector<NamedLoop> wall_loops(const Scenario& scenario, double lambda, bool over_hands);
 
-/// Returns the name of the part of the loop that is unstable without contact: "the device's servo" if the device is
-/// unstable also without a hand, otherwise "hand and device". The eigenvalues of the state matrices decide. Empty if
-/// the loop without contact is stable, or if has_linear_loop() is false.
+/// Returns the name of the part of the tool's loop that is unstable without contact: "the device's servo" or "the
+/// device" if the device is unstable also without a hand, otherwise "hand and device", or "the hand" if the device is
+/// no part of the loop. The eigenvalues of the state matrices decide. Empty if the loop without contact is stable, or
+/// if has_linear_loop() is false.
 std::string unstable_without_wall(const Scenario& scenario);
 
 /// Returns the state matrix of one step of the tool in contact with a wall of stiffness lambda K and damping
-/// lambda B. With an ideal device, this is step_matrix_with_hand(); with another device, the matrix of
-/// device_loop(). Empty if has_linear_loop() is false.
+/// lambda B. If device_acts_on_tool(), this is the matrix of device_loop(), otherwise step_matrix_with_hand(). Empty if
+/// has_linear_loop() is false.
 Eigen::MatrixXd contact_step_matrix(const Scenario& scenario, double lambda);
 
 }  // namespace hapbench

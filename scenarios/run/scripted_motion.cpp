@@ -33,12 +33,20 @@ std::span<const Profile> scripts_of(const HandFields& hand) {
   return {};
 }
 
-/// Returns the largest value of `of` over the scripts of hand and orientation.
+/// Returns `of` each script of hand and orientation.
+std::vector<double> each(const Scenario& scenario, double (*of)(const Profile&)) {
+  std::vector<double> results;
+  for (const Profile& script : scripts_of(scenario.hand)) results.push_back(of(script));
+  const auto& orientation = scenario.motion.orientation;
+  if (orientation) results.insert(results.end(), {of(orientation->tilt), of(orientation->azimuth)});
+  return results;
+}
+
+/// Returns the largest value of `of` over the scripts of hand and orientation; 0 without scripts.
 double largest(const Scenario& scenario, double (*of)(const Profile&)) {
   double result = 0.0;
-  for (const Profile& script : scripts_of(scenario.hand)) result = std::max(result, of(script));
-  const auto& orientation = scenario.motion.orientation;
-  return orientation ? std::max({result, of(orientation->tilt), of(orientation->azimuth)}) : result;
+  for (const double value : each(scenario, of)) result = std::max(result, value);
+  return result;
 }
 
 /// Returns the number of periods of a profile in `duration` [s], or its number of waypoints; 0 for other profiles.
@@ -54,6 +62,12 @@ double script_moves_until(const Scenario& scenario) {
   const HandFields& hand = scenario.hand;
   const bool is_led = scripts_of(hand).empty() && !std::holds_alternative<NoHandFields>(hand);
   return is_led || !scenario.motion.orientation ? kAlways : largest(scenario, moves_until);
+}
+
+std::vector<double> script_periods(const Scenario& scenario) {
+  std::vector<double> periods = each(scenario, period_of);
+  std::erase(periods, 0.0);
+  return periods;
 }
 
 double script_period(const Scenario& scenario) {

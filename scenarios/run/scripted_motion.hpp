@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "scenarios/scene/scenario.hpp"
 
@@ -10,7 +11,9 @@ namespace hapbench {
 /// Returns the time until which a script moves the hand or turns the tool [s]; 0 if there is no such script. Infinite
 /// if a script never stops, or if a drag, a simulated subject or a recorded stroke moves the tool.
 double script_moves_until(const Scenario& scenario);
-/// Returns the longest period of the periodic scripts of hand and tool [s]; 0 if no script is periodic.
+/// Returns the periods of the periodic scripts of hand and tool [s]; empty if no script is periodic.
+std::vector<double> script_periods(const Scenario& scenario);
+/// Returns the longest of script_periods() [s]; 0 if no script is periodic.
 double script_period(const Scenario& scenario);
 /// Returns how often the script of the hand's force or of the hand's target may lift the tool off a surface: once for
 /// each period or waypoint of the script. Empty if the number is unknown, because the hand has a tremor or is a
