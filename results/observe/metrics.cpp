@@ -231,12 +231,13 @@ void MetricsObserver::report_contacts(Section& s) const {
 }
 
 void MetricsObserver::report_end(Section& s) const {
-  s.metric("vibration_last_quarter_m_per_s", "m/s",
-           "vibration of the handle: root mean square of its velocity (hvx_m_per_s, hvy_m_per_s, hvz_m_per_s of "
-           "trajectory.csv) after the 30 Hz high-pass, in steady state at the first step, over the last quarter of the "
-           "run; `limit --stable still` compares this value with its threshold; no value at sampling rates of 60 Hz or "
-           "less",
-           last_quarter_.value(), Better::less)
+  s.metric(
+       "vibration_last_quarter_m_per_s", "m/s",
+       "vibration of the handle: root mean square of its velocity (hvx_m_per_s, hvy_m_per_s, hvz_m_per_s of "
+       "trajectory.csv) after the 30 Hz high-pass, in steady state at the first step, over the last quarter of the "
+       "run; `limit --stable still` judges the same velocity, but from the first quarter of the contact time on; no "
+       "value at sampling rates of 60 Hz or less",
+       last_quarter_.value(), Better::less)
       .varies_smoothly();
   const bool any = rows() > 0;
   s.metric("final_position_m.x", "m", "x of the tip's centre at the last step (px_m of trajectory.csv)",

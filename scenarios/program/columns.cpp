@@ -7,13 +7,13 @@
 
 #include "scenarios/input/rounding.hpp"
 #include "scenarios/input/text_lines.hpp"
-#include "scenarios/program/digits.hpp"
 
 namespace hapbench {
 namespace {
 
 std::string printed_cell(const Cell& cell, const Shown& shown, const std::optional<double>& tolerance) {
-  if (const auto* number = std::get_if<double>(&cell)) return deserved(*number, tolerance, shown.digits);
+  if (const auto* number = std::get_if<double>(&cell))
+    return deserved_on_side(*number, tolerance, shown.digits, shown.rounding);
   if (const auto* count = std::get_if<std::uint64_t>(&cell)) return std::to_string(*count);
   if (const auto* yes = std::get_if<bool>(&cell)) return *yes ? "yes" : "no";
   if (const auto* text = std::get_if<std::string>(&cell)) return *text;
@@ -67,6 +67,11 @@ Shown when(bool has_it, Shown where) {
 
 Shown varied(Shown where) {
   where.varied = true;
+  return where;
+}
+
+Shown rounded(Rounding rounding, Shown where) {
+  where.rounding = rounding;
   return where;
 }
 

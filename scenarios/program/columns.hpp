@@ -14,6 +14,7 @@
 
 #include "results/io/table_writer.hpp"
 #include "scenarios/input/json_file.hpp"
+#include "scenarios/program/digits.hpp"
 #include "scenarios/program/layout.hpp"
 #include "scenarios/program/table.hpp"
 
@@ -30,6 +31,7 @@ struct Shown {
   /// True for the column of a varied field, that is, of a field to which the command gives several values. Its numbers
   /// are printed with enough digits to distinguish the rows.
   bool varied = false;
+  Rounding rounding = Rounding::nearest;  ///< of numbers in the printed table
 };
 inline const Shown kOnlyJson = {.csv = false}, kOnlyCsv = {.json = false};
 /// Returns `where`, changed so that the column is also printed, under `heading` and with `digits` significant digits.
@@ -40,6 +42,9 @@ Shown under(std::string heading, int digits = 4, Shown where = {});
 Shown only_printed(bool wide = false);
 /// Returns `where` if `has_it` is true. Otherwise returns the outputs of a column that appears nowhere.
 Shown when(bool has_it, Shown where = {});
+
+/// Returns `where` with numbers of the printed table rounded down or up.
+Shown rounded(Rounding rounding, Shown where);
 
 /// Returns `where` with `varied` set to true: the column has the values of a varied field.
 Shown varied(Shown where);

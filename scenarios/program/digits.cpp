@@ -67,6 +67,20 @@ std::string deserved(double value, const std::optional<double>& tolerance, int d
   return to_digit(value, last);
 }
 
+std::string deserved_on_side(double value, const std::optional<double>& tolerance, int digits, Rounding rounding) {
+  if (rounding == Rounding::nearest) return deserved(value, tolerance, digits);
+  if (value == 0.0 || !std::isfinite(value)) return significant(value, digits);
+  const int first = leading_digit(std::abs(value));
+  const bool is_known = tolerance && *tolerance > 0.0 && std::isfinite(*tolerance);
+  const int last = is_known ? std::min(first, leading_digit(*tolerance)) : first - digits + 1;
+  // Without the margin of 1e-12, the rounding error of a number such as 0.3 could move it by a whole unit.
+  const double unit = math::pow(10.0, last), units = value / unit, margin = 1e-12 * std::abs(units);
+  const double rounded = unit * (rounding == Rounding::down ? std::floor(units + margin) : std::ceil(units - margin));
+  if (!is_known) return rounded_text(rounded, digits);
+  if (std::abs(value) < kSmallest || last < kLastDigit) return significant(rounded, first - last + 1);
+  return to_digit(rounded, last);
+}
+
 std::string with_spread(double mean, const std::optional<double>& spread, const std::optional<double>& tolerance,
                         int digits) {
   // A spread below the tolerance is not resolved.

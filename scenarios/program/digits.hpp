@@ -28,6 +28,11 @@ std::string bound_text(double value, double tolerance);
 /// values of at least 1e-4. Returns `digits` significant digits if the tolerance is unknown or not above 0, and
 /// bound_text() if the number is only bounded.
 std::string deserved(double value, const std::optional<double>& tolerance, int digits = 4);
+/// The direction in which a number is rounded for a text.
+enum class Rounding { nearest, down, up };
+/// Returns a number as deserved() does, but rounded down or up, so that the text is on the safe side of a limit. It has
+/// at least one digit, whatever the tolerance.
+std::string deserved_on_side(double value, const std::optional<double>& tolerance, int digits, Rounding rounding);
 /// Returns "MEAN +- SPREAD", both to the second significant digit of the spread. Returns deserved(mean, tolerance,
 /// digits) instead if there is no spread, if the spread is less than the tolerance of the mean, or if the mean is not
 /// larger than its tolerance. `digits`: significant digits if the tolerance is unknown.

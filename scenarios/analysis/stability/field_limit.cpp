@@ -133,6 +133,16 @@ std::size_t verification_samples(const IntervalSearchOptions& search, const Stab
   return values.size();
 }
 
+/// Returns true if every whole number of the interval was run.
+bool all_were_run(const IntervalSearchOptions& search, const StableInterval& interval, const RunCache& runs) {
+  if (!search.whole) return false;
+  const auto [low, high] =
+      std::minmax({search.value_at(interval.first.value_or(*interval.stable)), search.value_at(*interval.stable)});
+  for (double value = low; value <= high; value += 1.0)
+    if (!runs.by_value().contains(value)) return false;
+  return true;
+}
+
 /// Stores in `limit` the interval that was found.
 void add_interval(const LimitQuestion& question, const StableInterval& interval, const RunCache& runs,
                   FieldLimit& limit) {
@@ -141,6 +151,7 @@ void add_interval(const LimitQuestion& question, const StableInterval& interval,
   limit.scattered_at_current = interval.scattered_at_current;
   if (interval.stable) {
     if (question.between) limit.tried_between = verification_samples(search, interval);
+    limit.tried_all = all_were_run(search, interval, runs);
     limit.end.value = search.value_at(*interval.stable);
     limit.settled = runs.of(*limit.end.value).settled;
   }

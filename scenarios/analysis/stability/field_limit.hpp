@@ -79,6 +79,8 @@ struct FieldLimit {
   bool has_effect = true;  ///< false if the handle's motion is bitwise equal in all runs
   /// Number of distinct values between the ends of the interval that were run to verify it; all of them are stable.
   std::size_t tried_between = 0;
+  /// True if the field is whole and all values of the stable interval were run.
+  bool tried_all = false;
   /// True if stable values exist, but no contiguous stable interval is as long as kNearLimit times the limit.
   bool scattered = false;
   bool scattered_at_current = false;      ///< StableInterval::scattered_at_current

@@ -25,6 +25,21 @@ double allowed_end(const LimitQuestion& question, double current, int sign) {
   return current;
 }
 
+/// Returns true if the field allows whole numbers in the range, and no number between them. Used for a field that the
+/// scenario does not give, and whose type is therefore not known from its value.
+bool allows_only_whole_numbers(const LimitQuestion& question, const Range& range) {
+  const auto is_allowed = [&](double value) {
+    try {
+      question.at(value);
+      return true;
+    } catch (const InputError&) {
+      return false;
+    }
+  };
+  const double whole = std::ceil(range.from);
+  return whole + 1.0 <= range.to && is_allowed(whole) && is_allowed(whole + 1.0) && !is_allowed(whole + 0.5);
+}
+
 /// Throws InputError if the tool cannot move freely or the run is too short to classify.
 void check_scene(const LoadedScenario& loaded) {
   const Scenario& scenario = loaded.scenario;
@@ -71,7 +86,8 @@ LimitQuestion limit_question(const ScenarioText& scenario, const std::vector<std
   question.scene = &scenario;
   question.overrides = overrides;
   question.path = path;
-  question.search.whole = current.is_number_integer();
+  question.search.whole =
+      current.is_number_integer() || (current.is_null() && range && allows_only_whole_numbers(question, *range));
   // Both ends of the range must be allowed values.
   const Range searched = range ? *range : default_range(question, current);
   question.at(searched.from);

@@ -43,7 +43,7 @@ bool step_is_stable(const Scenario& scenario) {
   const Vec3 lambdas = stiffness_eigenvalues(scenario);
   return std::all_of(lambdas.begin(), lambdas.end(), [&](double lambda) {
     if (!has_device(scenario) && is_without_hand(scenario)) return tool_on_spring(scenario, lambda).is_stable();
-    if (!has_device(scenario)) return is_stable_loop({step_matrix_with_hand(scenario, lambda)});
+    if (!device_acts_on_tool(scenario)) return is_stable_loop({step_matrix_with_hand(scenario, lambda)});
     return lambda < kNoWall || is_stable_step(device_loop(scenario, lambda).state_matrix());
   });
 }

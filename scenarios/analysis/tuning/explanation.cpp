@@ -15,13 +15,15 @@ namespace {
 
 /// Returns the failure that tune reports if relaxing limits does not help. Variants are judged in the order of their
 /// indices, and a trial keeps only the failure of its first failing variant. Among all trials, finds the highest index
-/// of a failing variant, and returns the most frequent failure with this index. All variants with lower indices are
+/// of a failing variant; of the failures with this index, a loop that is unstable only with another hand comes after
+/// the scene's own run. Returns the most frequent of the failures that come last. All variants with lower indices are
 /// settled with the margin in these trials. Returns a trial with this failure; null if no trial failed.
 const TuneTrial* binding_trial(const Trials& trials) {
   const auto key_of = [](const TuneFailure& f) {
-    return std::tuple(f.variant_index, f.binding == "margin", f.variant, f.verdict);
+    return std::tuple(f.variant_index, !f.family.empty(), f.binding == "margin", f.variant, f.verdict);
   };
-  std::map<std::tuple<std::size_t, bool, std::string, std::string>, std::pair<std::size_t, const TuneTrial*>> counts;
+  using Key = std::tuple<std::size_t, bool, bool, std::string, std::string>;
+  std::map<Key, std::pair<std::size_t, const TuneTrial*>> counts;
   for (const auto& [key, trial] : trials.all()) {
     if (!trial.failure) continue;
     auto& [count, example] = counts[key_of(*trial.failure)];
@@ -29,9 +31,9 @@ const TuneTrial* binding_trial(const Trials& trials) {
     if (example == nullptr || example->failure->unstable_at_K) example = &trial;
   }
   const TuneTrial* binding = nullptr;
-  std::tuple<std::size_t, std::size_t> best{0, 0};  // variant, number of trials
+  std::tuple<std::size_t, bool, std::size_t> best{0, false, 0};  // variant, with another hand, number of trials
   for (const auto& [key, counted] : counts) {
-    const std::tuple rank{std::get<0>(key), counted.first};
+    const std::tuple rank{std::get<0>(key), std::get<1>(key), counted.first};
     if (binding == nullptr || rank > best) {
       best = rank;
       binding = counted.second;

@@ -170,8 +170,10 @@ std::string notes_text(const LimitTable& table, const Layout& layout) {
        "eigenvalues give no limit (column "
        "no_linear_reason of limit.csv)"},
       {true,
-       "first unstable: class of motion (\"hapbench describe stability\") of the first unstable run beyond the "
-       "simulated limit; if no value is stable, of the run at the low end of the range"},
+       fmt::format(
+           "first unstable: class of the first unstable run beyond the simulated limit ({}); if no value is stable, "
+           "of the run at the low end of the range",
+           table.first().question.rule.max_vibration ? "by the criterion above" : "\"hapbench describe stability\"")},
       {std::ranges::any_of(table.rows, is_unbounded_by_force_limit),
        "end of the range: device.force_max_N limits the force, so that an unstable loop vibrates without growing, "
        "which counts as stable here; --stable settled counts it as unstable"},
@@ -237,18 +239,24 @@ std::string rule_text(const StabilityRule& rule, const Scenario& scenario) {
   return text;
 }
 
-std::string limit_answer(const FieldLimit& found) {
+std::string limit_answer(const FieldLimit& found, const LimitQuestion& question) {
   if (!found.end.value) return none_text(found);
+  // A printed limit is on the stable side of the limit. The values of a whole field are exact.
+  const auto shown = [&](double value, const std::optional<double>& tolerance, int digits) {
+    return deserved_on_side(value, question.search.whole ? std::nullopt : tolerance, digits,
+                            question.search.smallest ? Rounding::up : Rounding::down);
+  };
   const QuotedLimit& quoted = found.quoted;
-  std::string text = quoted.value ? fmt::format("quote {}, the {}",
-                                                deserved(*quoted.value, found.quoted_tolerance(), 6), quoted.reason)
-                                  : fmt::format("no limit to quote: {}", quoted.reason);
+  std::string text =
+      quoted.value ? fmt::format("quote {}, the {}", shown(*quoted.value, found.quoted_tolerance(), 6), quoted.reason)
+                   : fmt::format("no limit to quote: {}", quoted.reason);
   const auto& linear = found.known_linear_limit();
   // Name the limits that are not the quoted limit.
   if (linear && std::isfinite(*linear) && *linear > 0.0 && linear != quoted.value)
-    text += fmt::format(". Linear limit {}", rounded_text(*linear, 6));
+    text += fmt::format(". Linear limit {}", shown(*linear, std::nullopt, 6));
   if (found.end.beyond && found.end.value != quoted.value)
-    text += fmt::format(". Simulated limit {}", deserved(*found.end.value, found.end.tolerance()));
+    text += fmt::format(". Simulated limit {}", shown(*found.end.value, found.end.tolerance(), 6));
+  if (found.tried_all) return text + ". All values of the stable interval were run and are stable";
   if (found.tried_between == 0) return text;
   return text + fmt::format(
                     ". {} verification samples inside the stable interval are also stable: at most {:.0f} % of "
@@ -264,7 +272,7 @@ void report_limits_text(const LimitTable& table, const Columns<LimitRow>& column
     if (i == 0 || row.scene() != table.rows[i - 1].scene())
       text += question_text(row.question, row.scenario, table.over() > 0, layout);
     if (table.is_grid()) continue;
-    answers += layout.wrapped(fmt::format("{}: {}", row.algorithm(), limit_answer(row.limit)), 0);
+    answers += layout.wrapped(fmt::format("{}: {}", row.algorithm(), limit_answer(row.limit, row.question)), 0);
     remarks += remarks_text(row, layout);
   }
   const LimitRow& first = table.first();

@@ -12,7 +12,7 @@ namespace hapbench {
 
 /// Returns the answer as a clause: the limit to quote with its reason, linear limit, simulated limit, and the number of
 /// verification samples.
-std::string limit_answer(const FieldLimit& found);
+std::string limit_answer(const FieldLimit& found, const LimitQuestion& question);
 /// Returns the condition under which a run counts as stable.
 std::string rule_text(const StabilityRule& rule, const Scenario& scenario);
 /// Reports the questions, the answers, the table of the rows and the notes on this table.

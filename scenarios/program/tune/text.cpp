@@ -34,8 +34,9 @@ std::string as_options_of_tune(std::string attempt) {
 
 std::string limits_text(const Tuning& tuning) {
   std::string text = fmt::format(
-      "largest K for which all runs settle (are stable by \"hapbench describe stability\") at every stiffness "
-      "from K to {:g} K{}",
+      "largest K that the search found, with which all runs at stiffnesses from K to {:g} K are settled: stable or "
+      "decaying (\"hapbench describe stability\") or, if a script moves the tool, with little vibration after the first "
+      "quarter of the contact (at most 1 mm/s rms above 30 Hz){}",
       tuning.question.margin, tuning.ranges.damping_ratio ? ", with damping B = 2 zeta sqrt(K m)" : "");
   if (!tuning.question.allow_vibration)
     text +=
@@ -79,7 +80,7 @@ std::string recommendation_text(const Tuning& tuning, const Layout& layout) {
                                   significant(next->choice->rendered() / best->choice->rendered(), 2)));
   }
   line("limit of K", fmt::format("without margin{}, with the scenario's own hand: {}",
-                                 setting_text(best->choice->setting), limit_answer(best->limits)));
+                                 setting_text(best->choice->setting), limit_answer(best->limits, {})));
   line("verified",
        fmt::format("by {} full-length runs between K and {:g} K, all settled: at most {:.0f} % of this interval may be "
                    "unstable (95 % confidence); {} runs in total",

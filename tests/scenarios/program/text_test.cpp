@@ -89,6 +89,19 @@ TEST(Deserved, HasItsUsualDigitsWithoutATolerance) {
   EXPECT_EQ(deserved(std::nan(""), 1e-3), "-");
 }
 
+TEST(Deserved, IsOnTheSafeSideOfALimit) {
+  EXPECT_EQ(deserved_on_side(3718.0, 37.0, 6, Rounding::down), "3710");
+  EXPECT_EQ(deserved_on_side(3711.0, 37.0, 6, Rounding::up), "3720");
+  EXPECT_EQ(deserved_on_side(3718.0, 37.0, 6, Rounding::nearest), deserved(3718.0, 37.0, 6));
+  EXPECT_EQ(deserved_on_side(52565.8497, {}, 6, Rounding::down), "52565.8");
+  EXPECT_EQ(deserved_on_side(2.0, {}, 6, Rounding::down), "2") << "a whole number is exact";
+  EXPECT_EQ(deserved_on_side(2.0, 5.0, 6, Rounding::down), "2") << "it has at least one digit";
+  EXPECT_EQ(deserved_on_side(0.3, {}, 6, Rounding::down), "0.3") << "no unit is lost by rounding errors";
+  EXPECT_EQ(deserved_on_side(0.1 + 0.2, {}, 6, Rounding::up), "0.3");
+  EXPECT_EQ(deserved_on_side(1.23456e-6, 2e-9, 6, Rounding::down), "1.234e-06");
+  EXPECT_EQ(deserved_on_side(std::numeric_limits<double>::infinity(), {}, 6, Rounding::down), "-");
+}
+
 /// Checks the same cases as test_a_number_below_its_error_is_a_bound in tests/scripts/ranking_test.py, which checks how
 /// the HTML page prints these numbers.
 TEST(Deserved, IsABoundIfTheToleranceIsNotSmaller) {

@@ -172,6 +172,14 @@ TEST(FieldLimit, OfAFieldOfIntegersIsOne) {
   EXPECT_EQ(*limit.end.value, 5.0);
   EXPECT_EQ(limit.end.beyond->value, 6.0);
   EXPECT_EQ(*limit.theory, 5.0);
+  EXPECT_TRUE(limit.tried_all);
+}
+
+/// Checks a field of integers that the scenario does not give. Its type follows from the values that it allows.
+TEST(FieldLimit, OfAFieldOfIntegersThatTheSceneDoesNotGive) {
+  const FieldLimit limit = ask({"tap_wall", "rendering.contacts.every", {}, Range{1.0, 40.0, true}});
+  for (const JudgedValue& run : limit.runs) EXPECT_EQ(run.value, std::round(run.value));
+  EXPECT_FALSE(limit.runs.empty());
 }
 
 /// Checks that a passive hand on a handle with dry friction is stable, although the handle sticks and slips.
