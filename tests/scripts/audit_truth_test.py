@@ -252,6 +252,45 @@ class Diagnosis(unittest.TestCase):
         energy = rules_of(audit(log_of(t, z, spring(z, 800.0, delay=2))))["energy"]
         self.assertIn("delay", energy["try"])
 
+    def test_no_damping_is_advised_against_a_delay(self):
+        """Checks a delay of 6 ms and a motion of 25 Hz. Damping has the same delay: with 0.5, 7 and 12 N s/m, the log
+        creates energy or not, and no amount of damping is advised."""
+        t = T * np.arange(4000)
+        z = -1e-3 - 5e-4 * np.sin(50.0 * np.pi * t) - 1e-3 * np.sin(2.6 * np.pi * t)
+        z[t < 0.1] = 1e-3
+        for damping in (0.5, 7.0, 12.0):
+            found = audit(log_of(t, z, spring(z, 1000.0, damping, delay=6)))
+            energy = rules_of(found).get("energy")
+            if energy:
+                self.assertIn("a shorter delay", energy["try"])
+                self.assertNotIn("N s/m", energy["try"])
+
+    def test_a_log_that_is_nearly_always_in_contact(self):
+        """Checks a log with 15 rows without force before a contact that lasts to the end: any force is contact. With
+        noise around zero in place of a contact, the audit still chooses a threshold."""
+        t = T * np.arange(4000)
+        z = -8e-4 + 7e-4 * np.cos(24.0 * np.pi * t)
+        z[:15] = 1e-3
+        found = audit(log_of(t, z, spring(z, 1000.0)))
+        self.assertEqual(found["metrics"]["contacts"], 1)
+        self.assertEqual(found["contact_rule"], "any force")
+        noise = 0.02 * np.random.default_rng(2).normal(size=len(t))
+        noise[:15] = 0.0
+        noisy = audit(log_of(t, z, spring(presses(t, 3, 0.9), 900.0) + noise))
+        self.assertEqual(noisy["metrics"]["contacts"], 3)
+        self.assertIn("only 0.38 % of the rows are without force", noisy["contact_rule"])
+
+    def test_the_reason_for_an_uncertain_stiffness(self):
+        """Checks a contact of thousands of rows whose force oscillates independently of the motion: its stiffness is
+        too uncertain, which is not a lack of rows."""
+        t = T * np.arange(6000)
+        z = np.where(t < 0.2, 1e-3, -5e-4 - 2e-4 * np.sin(2.0 * np.pi * t))
+        force = spring(z, 800.0)
+        force += (force > 0.0) * (0.2 * np.sin(274.0 * np.pi * t) + 0.1 * np.sin(84.0 * np.pi * t))
+        found = audit(log_of(t, z, np.where(z < 0.0, np.maximum(force, 1e-3), 0.0)))
+        if found["stiffness"] is None:
+            self.assertNotIn("rows", " ".join(found["missing"]))
+
     def test_a_fast_motion_is_no_jump_of_contacts(self):
         t = 1e-2 * np.arange(400)
         z = presses(t, 8, 0.15, depth=6e-3, rise=0.05, every=0.4)

@@ -154,6 +154,64 @@ class Identify(Logs):
         self.assertRegex(warned, r"the first after 0\.00\d+ s: their forces were interpolated")
         self.assertIn("the sampling is not uniform", warned)
 
+    def test_a_gap_is_no_wrong_sign(self):
+        """Checks a log that consists of two recordings with a gap of 6 s, after which the handle is elsewhere, and a
+        log of which half a second is missing. The longest part without a gap identifies the device.
+        """
+        measured = np.round(self.trajectory / Q) * Q
+        two = self.log(
+            np.concatenate([measured[:900], measured + 0.02]),
+            np.concatenate([self.time[:900], self.time + 7.0]),
+            np.concatenate([self.force[:900], self.force]),
+        )
+        result, warned = self.identify(two)
+        self.assert_holds(result)
+        self.assertEqual(result["samples"], len(measured))
+        self.assertIn("a gap of 6.101 s after 0.899 s", warned)
+        kept = (self.time < 0.3) | (self.time >= 0.8)
+        result, warned = self.identify(self.log(measured[kept], self.time[kept], self.force[kept]))
+        self.assert_holds(result)
+        self.assertIn("a gap of 0.501 s after 0.299 s", warned)
+
+    def test_missing_rows_are_a_cause_of_the_residual(self):
+        """Checks that the unknown forces of missing rows, which change abruptly, are named as a cause of the residual,
+        and do not count as noise of the position."""
+        force = np.where(np.sin(40.0 * self.time) > 0.0, 1.0, -1.0)
+        measured = np.round(positions(self.time, force, HANDLE) / Q) * Q
+        kept = np.random.default_rng(1).random(len(measured)) > 0.02
+        kept[:2] = True
+        result, warned = self.identify(self.log(measured[kept], self.time[kept], force[kept]))
+        self.assertIn("the unknown forces of the missing samples", warned)
+        self.assertIsNone(result["position_noise_m"]["value"])
+        self.assertEqual(result["position_noise_m"]["interval"][0], 0.0)
+
+    def test_wrong_positions_are_reported(self):
+        measured = np.round(self.trajectory / Q) * Q
+        measured[[300, 900]] += 0.01
+        _, warned = self.identify(self.log(measured))
+        self.assertRegex(warned, r"2 positions are far .* by up to 0\.0\d+ m, the first at 0\.3 s")
+
+    def test_the_encoder_step_of_a_log_that_rounds_positions(self):
+        """Checks encoder steps that are not multiples of the last digit of the log. If the step has only a few last
+        digits, it is not determined, but its interval contains it."""
+        for step, digit in ((2.34e-5, 1e-6), (2.34371e-5, 1e-7), (5.5e-6, 1e-6)):
+            with self.subTest(step=step, digit=digit):
+                counts = np.round(self.trajectory / step)
+                file = self.log(np.round(np.round(counts * step / digit)) * digit)
+                text = file.read_text()
+                rows = [line.split(",") for line in text.splitlines()]
+                digits = round(-np.log10(digit))
+                rows[1:] = [[a, b, f"{float(c):.{digits}f}"] for a, b, c in rows[1:]]
+                file.write_text("\n".join(map(",".join, rows)) + "\n")
+                result, _ = self.identify(file)
+                low, high = result["encoder_step_m"]["interval"]
+                self.assertTrue(low <= step <= high, (low, high))
+                if result["encoder_step_m"]["value"] is not None:
+                    self.assertAlmostEqual(
+                        result["encoder_step_m"]["value"], step, delta=1e-3 * step
+                    )
+                    self.assertLess(high - low, 0.01 * step)
+
     def test_a_handful_of_the_study_ends_in_the_global_minimum(self):
         ones = [judged(seed) for seed in (0, 10, 11, 16, 25, 43)]
         for one in ones:
@@ -317,7 +375,7 @@ class Identify(Logs):
 
     def test_it_reports_when_something_else_is_on_the_handle(self):
         for spring, why in (
-            (2.0, "the device has a property that the model lacks"),
+            (2.0, "a property of the device that the model lacks"),
             (200.0, "the device has a property|Is a hand or a spring"),
         ):
             trajectory = played(self.time, self.force, 50, spring)

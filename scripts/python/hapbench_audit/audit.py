@@ -233,12 +233,14 @@ def missing_of_spring(audit):
         # Reports the reason of the contact with the longest travel, because this contact is the closest to determining
         # a stiffness.
         springs = [one["spring"] for one in audit["contacts"] if one["spring"]]
-        furthest = max(
-            (one for one in springs if "why" in one),
-            key=lambda one: one.get("travel_m", 0.0),
-            default={"why": f"no contact has {FEWEST} rows"},
-        )
-        why = furthest["why"]
+        known = [one["stiffness_interval"] for one in springs if has_stiffness(one)]
+        why = f"no contact has {FEWEST} rows"
+        if known:
+            low, high = min(one[0] for one in known), max(one[1] for one in known)
+            why = f"the contacts give {low:.4g} to {high:.4g} N/m, an interval of more than +- 25 %"
+        reasons = [one for one in springs if "why" in one]
+        if reasons:
+            why = max(reasons, key=lambda one: one.get("travel_m", 0.0))["why"]
         return [f"stiffness: {why}; tap, and press to several depths at several speeds"]
     if audit["stiffness"] and audit["stiffness"].get("why_no_damping"):
         return [

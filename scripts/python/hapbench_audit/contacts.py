@@ -8,13 +8,15 @@ from hapbench_command import fail
 from .log import LONG_INTERVALS
 
 SETTLING = 0.05  # duration of a landing [s]; equals the default of metrics.settling_s of a scenario
-# If at least this fraction of the rows has zero force, every row with a non-zero force counts as contact.
+# If at least this fraction of the rows has zero force, every row with a non-zero force counts as contact. With fewer
+# such rows, this holds if all other forces have a component in one common direction, as in a single contact. Noise
+# around zero has no such direction.
 SOME_ZEROS = 0.01
 # The release threshold is at least FAR times the rms noise. The touch threshold is higher than the release threshold by
 # 2 FAR times the rms noise of one force component.
 FAR = 3.0
-# Threshold of release as a fraction of the 99th percentile of the force. It applies if fewer than the fraction
-# SOME_ZEROS of the rows have zero force.
+# Threshold of release as a fraction of the 99th percentile of the force. It applies if not every non-zero force counts
+# as contact.
 TOUCH_SHARE = 0.05
 
 
@@ -97,7 +99,12 @@ def rows_in_contact(log, size):
         return size > log.touch, log.touch, f"force above {log.touch:g} N (touch_N)"
     if log.contacts is not None:
         return log.contacts > 0, 0.0, "the column of contacts is above 0"
-    if np.mean(size == 0.0) >= SOME_ZEROS or not size.any():
+    zeros = float(np.mean(size == 0.0))
+    if (
+        zeros >= SOME_ZEROS
+        or not size.any()
+        or (zeros and has_one_direction(log.force[size > 0.0]))
+    ):
         return size > 0.0, 0.0, "any force"
     release = TOUCH_SHARE * float(np.percentile(size, 99))
     # Rows with a force below `release` contain only noise. The distance between both thresholds prevents noise from
@@ -106,12 +113,19 @@ def rows_in_contact(log, size):
     release = max(release, FAR * noise)
     touch = release + 2.0 * FAR * noise / np.sqrt(log.axes)
     ends = f"until below {release:.3g} N, " if noise > 0.0 else ""
+    without = f"only {100.0 * zeros:.2g} % of the rows are" if zeros else "no row is"
     return (
         between(size, release, touch),
         touch,
-        f"force above {touch:.3g} N {ends}by 5 % of its 99th percentile and its noise, because the log has no rows "
-        "without force (--set touch_N=... sets it)",
+        f"force above {touch:.3g} N {ends}by 5 % of its 99th percentile and its noise, because {without} without force "
+        "(--set touch_N=... sets it)",
     )
+
+
+def has_one_direction(forces):
+    """Returns True if every force has a positive component along the mean of the directions of all forces."""
+    directions = forces / np.linalg.norm(forces, axis=1)[:, None]
+    return bool(np.all(directions @ directions.mean(axis=0) > 0.0))
 
 
 def why_no_contact(log, size, threshold):

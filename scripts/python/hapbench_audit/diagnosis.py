@@ -329,24 +329,18 @@ def half_hold(stiffness, interval):
 def against_energy(audit):
     energy, stiffness, interval = audit["energy"], audit["stiffness"], audit["clock"]["interval_s"]
     if stiffness and stiffness["delay_interval_s"][0] > 0.0:
-        enough = stiffness["stiffness_N_per_m"] * (
-            stiffness["delay_interval_s"][1] + 0.5 * interval
-        )
-        return (
-            f"a shorter delay: {lag_text(stiffness)}; damping of more than {enough:.3g} N s/m would "
-            "compensate for it"
-        )
+        # Damping that the same loop computes has the same delay, so no amount of it is certain to help.
+        return f"a shorter delay or a smaller stiffness: {lag_text(stiffness)}"
     is_of_hold = energy["net_created_path_J"] < 0.1 * energy["net_created_J"]
     if is_of_hold:
-        return (
-            "a higher rate, or damping"
-            + (
-                f" of more than K T / 2 = {half_hold(stiffness, interval):.3g} N s/m"
-                if stiffness
-                else ""
-            )
-            + ": the contact is passive along the path, and holding each force until the next row creates the energy"
+        enough = half_hold(stiffness, interval) if stiffness else math.inf
+        has_enough = ((stiffness or {}).get("damping_N_s_per_m") or 0.0) > enough
+        more = (
+            f", or damping of more than K T / 2 = {enough:.3g} N s/m against slow motion"
+            if stiffness
+            else ""
         )
+        return f"a higher rate{'' if has_enough else more}: the contact is passive along the path, and holding each force until the next row creates the energy"
     if stiffness and (stiffness.get("damping_N_s_per_m") or 0.0) < 0.0:
         return "the contact has negative damping: check its velocity for a filter or a delay"
     if stiffness and stiffness["delay_interval_s"][1] == 0.0:

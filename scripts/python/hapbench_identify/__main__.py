@@ -32,7 +32,7 @@ from hapbench_import.options import DECIMALS
 from hapbench_import.stroke import columns_text, number_text
 
 from .fit import MASS, fit
-from .log import read_log
+from .log import last_digit_of, read_log
 from .model import IDENTIFIABLE_FRICTION, KINDS, NAMES, design, range_of, required_force
 from .units import (
     LONGEST_STEP,
@@ -77,6 +77,7 @@ UNITS = {
 }
 UNTRUSTED = "The true values can lie outside of the intervals: do not read them as 95 % intervals"
 EXCHANGED = "Are the columns of force and position exchanged (--columns force=NAME,position=NAME)?"
+OUTLIER = 15.0  # smallest residual of an outlier, in units of the median; 10 standard deviations of white noise
 NEGLIGIBLE = 1e-3  # largest offset that counts as zero, as a fraction of the largest force
 # Largest number of samples in the picture, which limits the size of the picture of a long log.
 MAX_DRAWN = 6000
@@ -193,7 +194,7 @@ def identify(options, out):
         exchanged = f" {EXCHANGED}" if may_be_exchanged(log) else ""
         fail(
             f"the mass cannot be identified from this log: the simulated position is off by {found.rms:.3g} m "
-            f"(rms).{exchanged} Is a hand or a spring on the handle, or is a sign or a unit wrong? "
+            f"(rms).{exchanged}{' ' if log.warnings else ''}{'; '.join(log.warnings)}{'.' if log.warnings else ''} Is a hand or a spring on the handle, or is a sign or a unit wrong? "
             '"hapbench import device --design" makes a suitable signal',
             options.log,
         )
@@ -256,15 +257,19 @@ def parameters_of(log, found):
     }
     step = log.encoder_step
     parameters["encoder_step_m"] = {
-        "value": step,
-        "interval": [step * (1.0 - 1e-9), step * (1.0 + 1e-9)],
+        # Without a step, the positions are not rounded, or the log rounds them too coarsely to see the step.
+        "value": step
+        if step or not last_digit_of(log.position[np.isfinite(log.position)])
+        else None,
+        "interval": log.encoder_interval,
     }
     count = np.isfinite(found.residual).sum() / found.memory
     beyond = found.rms**2 - step**2 / 12.0
     spread = found.rms**2 * math.sqrt(2.0 / count) * 1.96
+    low, high = (math.sqrt(max(beyond + sign * spread, 0.0)) for sign in (-1.0, 1.0))
+    # If the model does not explain the residual, the residual is only an upper limit of the noise.
     parameters["position_noise_m"] = unless_wide(
-        math.sqrt(max(beyond, 0.0)),
-        [math.sqrt(max(beyond + sign * spread, 0.0)) for sign in (-1.0, 1.0)],
+        math.sqrt(max(beyond, 0.0)), [0.0 if found.misfit else low, high]
     )
     if parameters["offset_N"]["value"] is not None:
         parameters["offset_N"] = unless_wide(*parameters["offset_N"].values())
@@ -371,11 +376,17 @@ def warnings_of(parameters, found, log):
             f"a constant force of {parameters['offset_N']['value']:.3g} N acts in addition to the commanded "
             "force (such as weight or a cable); device files cannot represent it"
         )
+    warnings += outliers_in(found, log)
     if found.misfit:
+        causes = [] if log.knows_forces else ["the unknown forces of the missing samples"]
+        causes += [] if log.is_even else ["times that differ from the sampling times"]
+        causes += [
+            "a property of the device that the model lacks, such as a hand on the handle, elasticity or friction that "
+            "depends on the position"
+        ]
         warnings.append(
-            f"the residual of {found.rms:.3g} m is larger than noise: the device has a property that "
-            "the model lacks, such as a hand on the handle, elasticity or friction that depends on "
-            "the position; see the picture. The parameters are therefore fitted to pieces of "
+            f"the residual of {found.rms:.3g} m is larger than noise. Possible causes: {'; '.join(causes)}; see the "
+            "picture. The parameters are therefore fitted to pieces of "
             "0.2 s, and their intervals come from fits that each omit one twelfth of the log. "
             f"{UNTRUSTED}"
         )
@@ -386,6 +397,22 @@ def warnings_of(parameters, found, log):
             f"{UNTRUSTED}"
         )
     return warnings
+
+
+def outliers_in(found, log):
+    """Returns a list with a warning if single positions are far from the simulation: by more than OUTLIER times the
+    median deviation, which noise and rounding never reach. Such positions increase the noise and may move the values.
+    """
+    size = np.abs(np.where(np.isfinite(found.residual), found.residual, 0.0))
+    usual = max(np.median(size[size > 0.0]) if size.any() else 0.0, log.encoder_step)
+    far = np.flatnonzero(size > OUTLIER * usual) if usual else np.zeros(0, int)
+    if not 0 < len(far) <= 0.01 * len(size):
+        return []
+    return [
+        f"{len(far)} positions are far from the simulation, by up to {size.max():.3g} m, the first at "
+        f"{log.time[far[0]]:.9g} s: are they errors of the log? They increase position_noise_m; without these rows, the "
+        "noise and the intervals are smaller"
+    ]
 
 
 def drawn(log, found):

@@ -1,6 +1,6 @@
 """A log of one axis of a device: times, commanded forces and positions in SI units."""
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -17,6 +17,7 @@ NAMES = {
     "position": "position_m",
 }  # names of the columns if --columns is not given
 FEWEST = 50  # smallest number of samples
+LONGEST_GAP = 0.1  # longest gap over which forces are interpolated [s]
 
 
 @dataclass
@@ -26,8 +27,10 @@ class Log:
     position: np.ndarray  # position at each time [m]; NaN for missing and for repeated samples
     step: float  # mean interval of the times, without gaps [s]
     encoder_step: float  # encoder step [m]; 0 if the positions are not multiples of any length
+    encoder_interval: list  # smallest and largest encoder step that the written positions allow [m]
     warnings: list
     knows_forces: bool = True  # false if the forces of missing rows are interpolated
+    is_even: bool = True  # false if the intervals of the times differ, apart from missing samples
     # Columns that were read: a dict from quantity to columns, in the format of Columns.used() of hapbench_import.
     columns: dict | None = None
     columns_not_read: list | None = None
@@ -144,6 +147,17 @@ def log_of(time, force, position):
             )
     intervals = np.diff(time)
     missing = missing_samples(intervals)
+    first, after = longest_part(intervals, missing)
+    if after - first < len(time):
+        at = int(np.argmax(intervals * (missing > 0)))
+        warnings.append(
+            f"a gap of {intervals[at]:.4g} s after {time[at]:.9g} s: the motion in it is unknown. Of {len(time)} samples, "
+            f"only the {after - first} from {time[first]:.9g} to {time[after - 1]:.9g} s are used, the longest part "
+            f"without a gap of more than {LONGEST_GAP:g} s"
+        )
+        part = slice(first, after)
+        time, force, position, held = time[part], force[part], position[part], _part_of(held, part)
+        intervals, missing = intervals[first : after - 1], missing[first : after - 1]
     even = missing == 0
     step = float(intervals[even].mean())
     if missing.any():
@@ -152,7 +166,8 @@ def log_of(time, force, position):
             f"{missing.sum()} samples are missing, at most {missing.max()} in a row, the first after "
             f"{time[first]:.9g} s: their forces were interpolated linearly"
         )
-    if np.ptp(intervals[even]) > 0.05 * step:
+    is_even = bool(np.ptp(intervals[even]) <= 0.05 * step)
+    if not is_even:
         warnings.append(
             f"the sampling is not uniform: intervals of {1e3 * intervals[even].min():.3g} ... "
             f"{1e3 * intervals[even].max():.3g} ms; the times are used as they are, with each force held until the "
@@ -171,10 +186,24 @@ def log_of(time, force, position):
         np.interp(all_times, time, force),
         known,
         step,
-        encoder_step_of(position),
+        *encoder_step_of(position),
         warnings,
         not missing.any(),
+        is_even,
     )
+
+
+def longest_part(intervals, missing):
+    """Returns the first sample, and the sample after the last, of the longest part of a log without a gap of missing
+    samples that is longer than LONGEST_GAP. `missing`: number of missing samples in each interval.
+    """
+    cuts = np.flatnonzero((missing > 0) & (intervals > LONGEST_GAP)) + 1
+    ends = [0, *cuts.tolist(), len(intervals) + 1]
+    return max(zip(ends, ends[1:]), key=lambda part: part[1] - part[0])
+
+
+def _part_of(held, part):
+    return None if held is None else replace(held, fresh=held.fresh[part])
 
 
 def missing_samples(intervals):
@@ -191,18 +220,41 @@ def missing_samples(intervals):
 
 
 def encoder_step_of(position):
-    """Returns the encoder step [m]: the length of which the spacings between neighbouring position values are
-    multiples. A spacing fits if it differs from a multiple by less than 2 % of the step. Returns 0 if fewer than 98 %
-    of the spacings fit."""
-    spacings = np.diff(np.unique(position))
+    """Returns (encoder step [m], its smallest and largest possible value). The encoder step is the length of which the
+    spacings between neighbouring position values are multiples. A spacing fits if it differs from a multiple by less
+    than 2 % of the step, or than the last digit of the written positions. The step is 0 if fewer than 98 % of the
+    spacings fit; it is then at most the smallest spacing. The interval follows from the last digit: the first and the
+    last position are each rounded by up to half of it."""
+    values = np.unique(position)
+    digit = last_digit_of(values)
+    spacings = np.diff(values)
     spacings = spacings[
         spacings > max(1e-10, 1e-9 * np.abs(position).max())
     ]  # rounding of the written numbers
     if not len(spacings):
-        return 0.0
-    counts = np.rint(spacings / spacings.min())
-    step = float(spacings.sum() / counts.sum())
-    return step if np.mean(np.abs(spacings - counts * step) < 0.02 * step) >= 0.98 else 0.0
+        return 0.0, [0.0, 0.0]
+    # Count the steps of the short spacings first: the error of the step, times the number of steps, must stay small.
+    step = smallest = float(spacings.min())
+    for longest in (3.0, 30.0, math.inf):
+        short = spacings[spacings <= longest * smallest]
+        step = float(short.sum() / np.rint(short / step).sum())
+    counts = np.rint(spacings / step)
+    # If the step has only a few last digits, every length is near a multiple of it.
+    rounding = digit if step > 4.0 * digit else 0.0
+    fits = np.abs(spacings - counts * step) < max(0.02 * step, rounding)
+    if np.mean(fits) < 0.98:
+        return 0.0, [0.0, smallest + digit]
+    error = max(digit / counts.sum() if rounding else 0.0, 1e-9 * step)
+    return step, [step - error, step + error]
+
+
+def last_digit_of(values):
+    """Returns the smallest power of ten of which all values are multiples, from 0.1 to 1e-9; 0 if there is none."""
+    for digits in range(1, 10):
+        scaled = values * 10.0**digits
+        if np.all(np.abs(scaled - np.rint(scaled)) < 1e-6):
+            return 10.0**-digits
+    return 0.0
 
 
 def _factor(name, word):

@@ -17,6 +17,7 @@ LONGEST_STEP = 0.2  # largest median interval of a log that is fitted without --
 COARSEST = 1e-3  # largest plausible step of an encoder [m]
 ACCEPTED = (1e-3, 20.0)  # masses of handles that are accepted without --scale [kg]
 MAX_REPORTED = 3
+FOLLOWS = 0.02  # largest rms residual of a fit that follows the motion, as a fraction of the travel
 
 
 def is_likely(mass, encoder_step):
@@ -29,7 +30,9 @@ def turned_round(log, found):
     if not found.misfit and _within(found.values[MASS], ACCEPTED):
         return None
     other = fit(_scaled(log, 1.0, 1.0, -1.0))
-    is_good = not other.misfit and other.rms < 0.5 * found.rms or other.rms < 0.1 * found.rms
+    is_good = not other.misfit and other.rms < 0.5 * found.rms
+    # A misfit may be the better explanation if it follows the motion.
+    is_good |= other.rms < min(0.1 * found.rms, FOLLOWS * _travel(log))
     return other if is_good else None
 
 
@@ -114,6 +117,7 @@ def _scaled(log, time, position, force):
         position=position * log.position,
         step=time * log.step,
         encoder_step=position * log.encoder_step,
+        encoder_interval=[position * end for end in log.encoder_interval],
     )
 
 
