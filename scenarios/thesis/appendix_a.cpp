@@ -199,8 +199,9 @@ Finding judge_springs_limited(const Measured& runs, const PublishedNumbers& p) {
                       fluctuate.empty() ? "no other algorithm is smooth without the limits and fluctuates with them"
                                         : "smooth without the limits, but fluctuating with the limits: " + fluctuate),
           "number of swings, first without the limits, then with them: " + text,
-          fmt::format("proposed algorithm: {}; smooth without the limits, but fluctuating with them: {}", swings,
-                      fluctuate.empty() ? "none" : fluctuate)};
+          fmt::format(
+              "proposed algorithm: {}; other algorithms that are smooth without the limits and fluctuate with them: {}",
+              swings, fluctuate.empty() ? "none" : fluctuate)};
 }
 
 // ---- A4: the integrator's stability limits. One case for each published number, in the order of the thesis.
