@@ -35,8 +35,8 @@ std::string as_options_of_tune(std::string attempt) {
 std::string limits_text(const Tuning& tuning) {
   std::string text = fmt::format(
       "largest K that the search found, with which all runs at stiffnesses from K to {:g} K are settled: stable or "
-      "decaying (\"hapbench describe stability\") or, if a script moves the tool, with little vibration after the first "
-      "quarter of the contact (at most 1 mm/s rms above 30 Hz){}",
+      "decaying (\"hapbench describe stability\") or, if a script moves the tool, with little vibration after the "
+      "first quarter of the contact (at most 1 mm/s rms above 30 Hz){}",
       tuning.question.margin, tuning.ranges.damping_ratio ? ", with damping B = 2 zeta sqrt(K m)" : "");
   if (!tuning.question.allow_vibration)
     text +=

@@ -340,7 +340,10 @@ def against_energy(audit):
             if stiffness
             else ""
         )
-        return f"a higher rate{'' if has_enough else more}: the contact is passive along the path, and holding each force until the next row creates the energy"
+        return (
+            f"a higher rate{'' if has_enough else more}: the contact is passive along the path, and holding each force "
+            "until the next row creates the energy"
+        )
     if stiffness and (stiffness.get("damping_N_s_per_m") or 0.0) < 0.0:
         return "the contact has negative damping: check its velocity for a filter or a delay"
     if stiffness and stiffness["delay_interval_s"][1] == 0.0:

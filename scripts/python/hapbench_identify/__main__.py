@@ -191,10 +191,11 @@ def identify(options, out):
         handle = f"a handle of {found.values[MASS]:.3g} kg and an encoder step of {log.encoder_step:.3g} m"
         refuse_units(options, log, f"the fit gives {handle}", found)
     if parameters["handle_mass_kg"]["value"] is None:
+        notes = f" {'; '.join(log.warnings)}." if log.warnings else ""
         exchanged = f" {EXCHANGED}" if may_be_exchanged(log) else ""
         fail(
             f"the mass cannot be identified from this log: the simulated position is off by {found.rms:.3g} m "
-            f"(rms).{exchanged}{' ' if log.warnings else ''}{'; '.join(log.warnings)}{'.' if log.warnings else ''} Is a hand or a spring on the handle, or is a sign or a unit wrong? "
+            f"(rms).{exchanged}{notes} Is a hand or a spring on the handle, or is a sign or a unit wrong? "
             '"hapbench import device --design" makes a suitable signal',
             options.log,
         )
@@ -410,8 +411,8 @@ def outliers_in(found, log):
         return []
     return [
         f"{len(far)} positions are far from the simulation, by up to {size.max():.3g} m, the first at "
-        f"{log.time[far[0]]:.9g} s: are they errors of the log? They increase position_noise_m; without these rows, the "
-        "noise and the intervals are smaller"
+        f"{log.time[far[0]]:.9g} s: are they errors of the log? They increase position_noise_m; without these rows, "
+        "the noise and the intervals are smaller"
     ]
 
 

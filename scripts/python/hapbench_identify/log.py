@@ -151,9 +151,9 @@ def log_of(time, force, position):
     if after - first < len(time):
         at = int(np.argmax(intervals * (missing > 0)))
         warnings.append(
-            f"a gap of {intervals[at]:.4g} s after {time[at]:.9g} s: the motion in it is unknown. Of {len(time)} samples, "
-            f"only the {after - first} from {time[first]:.9g} to {time[after - 1]:.9g} s are used, the longest part "
-            f"without a gap of more than {LONGEST_GAP:g} s"
+            f"a gap of {intervals[at]:.4g} s after {time[at]:.9g} s: the motion in it is unknown. Of {len(time)} "
+            f"samples, only the {after - first} from {time[first]:.9g} to {time[after - 1]:.9g} s are used, the longest "
+            f"part without a gap of more than {LONGEST_GAP:g} s"
         )
         part = slice(first, after)
         time, force, position, held = time[part], force[part], position[part], _part_of(held, part)

@@ -294,7 +294,8 @@ TEST(Diagnosis, MeasuresTheSpacingOfAPlanarOutline) {
     const Result result = run_of_text(fmt::format(R"({{
       "time": {{"step_s": 0.0005, "steps": 4000}},
       "environment": {{"type": "hole_2d", "width_m": 0.001, "depth_m": 0.005, "mouth_m": 0.02, "spacing_m": {}}},
-      "tool": {{"diameter_m": 0.001, "length_m": 0.005, "tip": "round"}}, "initial": {{"position_m": [0.003, 0.00055, 0]}},
+      "tool": {{"diameter_m": 0.001, "length_m": 0.005, "tip": "round"}},
+      "initial": {{"position_m": [0.003, 0.00055, 0]}},
       "hand": {{"type": "impedance", "stiffness_N_per_m": 300, "damping_N_s_per_m": 6,
                "target": {{"x_m": {{"type": "ramp", "start": 0.003, "rate_per_s": 0.007}}, "y_m": -0.003, "z_m": 0}}}}
     }})",
