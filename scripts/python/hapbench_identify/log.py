@@ -152,8 +152,8 @@ def log_of(time, force, position):
         at = int(np.argmax(intervals * (missing > 0)))
         warnings.append(
             f"a gap of {intervals[at]:.4g} s after {time[at]:.9g} s: the motion in it is unknown. Of {len(time)} "
-            f"samples, only the {after - first} from {time[first]:.9g} to {time[after - 1]:.9g} s are used, the longest "
-            f"part without a gap of more than {LONGEST_GAP:g} s"
+            f"samples, only the {after - first} from {time[first]:.9g} to {time[after - 1]:.9g} s are used, the "
+            f"longest part without a gap of more than {LONGEST_GAP:g} s"
         )
         part = slice(first, after)
         time, force, position, held = time[part], force[part], position[part], _part_of(held, part)
