@@ -6,7 +6,6 @@
 #include <complex>
 #include <cstddef>
 #include <numbers>
-#include <unsupported/Eigen/FFT>
 #include <vector>
 
 #include "sim/core/math.hpp"
@@ -23,6 +22,27 @@ double hann(std::size_t i, std::size_t samples) {
   return 0.5 - 0.5 * math::cos(kTurn * static_cast<double>(i) / static_cast<double>(samples - 1));
 }
 
+/// Replaces x by its discrete Fourier transform. The size of x is a power of two.
+void transform(std::vector<std::complex<double>>& x) {
+  const std::size_t n = x.size();
+  for (std::size_t i = 1, j = 0; i < n; ++i) {
+    std::size_t bit = n >> 1U;
+    for (; (j & bit) != 0; bit >>= 1U) j ^= bit;
+    j ^= bit;
+    if (i < j) std::swap(x[i], x[j]);
+  }
+  for (std::size_t size = 2; size <= n; size *= 2)
+    for (std::size_t k = 0; k < size / 2; ++k) {
+      const auto [sine, cosine] = math::sine_cosine(-kTurn * static_cast<double>(k) / static_cast<double>(size));
+      const std::complex<double> w(cosine, sine);
+      for (std::size_t i = k; i < n; i += size) {
+        const std::complex<double> a = x[i], b = w * x[i + size / 2];
+        x[i] = a + b;
+        x[i + size / 2] = a - b;
+      }
+    }
+}
+
 Vec3 mean_of(std::span<const Vec3> force) {
   Vec3 sum = Vec3::Zero();
   for (const Vec3& f : force) sum += f;
@@ -32,14 +52,13 @@ Vec3 mean_of(std::span<const Vec3> force) {
 /// Returns the amplitude spectrum of the force, padded with zeros to at least four times its length.
 std::vector<double> spectrum(std::span<const Vec3> force) {
   const Vec3 mean = mean_of(force);
-  std::vector<double> x(std::bit_ceil(4 * force.size()));
+  std::vector<std::complex<double>> x(std::bit_ceil(4 * force.size()));
   std::vector<double> amplitude(x.size() / 2 + 1);
-  std::vector<std::complex<double>> transformed;
-  Eigen::FFT<double> fft(Eigen::FFT<double>::impl_type(), Eigen::FFT<double>::HalfSpectrum);
   for (int axis = 0; axis < 3; ++axis) {
+    std::ranges::fill(x, 0.0);
     for (std::size_t i = 0; i < force.size(); ++i) x[i] = hann(i, force.size()) * (force[i] - mean)[axis];
-    fft.fwd(transformed, x);
-    for (std::size_t i = 0; i < amplitude.size(); ++i) amplitude[i] += std::norm(transformed[i]);
+    transform(x);
+    for (std::size_t i = 0; i < amplitude.size(); ++i) amplitude[i] += std::norm(x[i]);
   }
   for (double& a : amplitude) a = std::sqrt(a);
   return amplitude;
