@@ -54,7 +54,9 @@ std::string remedy(const TuneQuestion& question, const TuneFailure& failure) {
   std::string text;
   if (!failure.family.empty())
     text = fmt::format("--family {} leaves out {}", fmt::join(others, ","),
-                       failure.variant.empty() ? "these hands" : failure.variant);
+                       failure.variant.empty()        ? "these hands"
+                       : failure.variant == "no hand" ? "the loop without a hand"
+                                                      : failure.variant);
   const bool margin_helps = failure.binding == "margin" && !contact_fails && !failure.unstable_at_K;
   if (margin_helps) text += std::string(text.empty() ? "" : "; ") + "a smaller --margin";
   if (!text.empty()) return text;

@@ -261,6 +261,19 @@ TEST(Tune, NamesTheRunThatFailsAndTheOptionThatLeavesItOut) {
   EXPECT_TRUE(tuned_law(asked, "shaped_stiffness").choice);
 }
 
+/// Checks a handle with a long delay and a slow filter. Most trials fail because the tool passes through a soft
+/// surface, but with a larger K, only the loop without a hand is unstable: --family seeds does not require this loop.
+TEST(Tune, NamesTheOtherHandsBeforeTrialsThatFailEarlier) {
+  TuneQuestion asked = question("tap_wall", {R"(device={"type":"impedance","handle_mass_kg":0.1,"delay_s":0.01,
+                                               "velocity_filter":{"type":"low_pass","cutoff_Hz":20,"order":2}})"});
+  asked.threads = 2;
+  const TunedLaw none = tuned_law(asked, "shaped_stiffness");
+  ASSERT_FALSE(none.choice);
+  EXPECT_EQ(none.relax, "--family seeds leaves out the loop without a hand");
+  asked.families = {"seeds"};
+  EXPECT_TRUE(tuned_law(asked, "shaped_stiffness").choice);
+}
+
 /// Checks a device with a force resolution of 1 kN, which renders nothing of the law's force of a few newtons.
 TEST(Tune, RecommendsNoStiffnessThatRendersNothing) {
   TuneQuestion asked = question("impedance_at_wall", {"device.force_step_N=1000"});
