@@ -22,8 +22,8 @@ double hann(std::size_t i, std::size_t samples) {
   return 0.5 - 0.5 * math::cos(kTurn * static_cast<double>(i) / static_cast<double>(samples - 1));
 }
 
-/// Replaces x by its discrete Fourier transform. The size of x is a power of two. Unlike the transforms of libraries, it
-/// uses the sine and cosine of sim/core/math.hpp, so that its result has the same bits on every machine.
+/// Replaces x by its discrete Fourier transform. The size of x is a power of two. Unlike the transforms of libraries,
+/// it uses the sine and cosine of sim/core/math.hpp, so that its result has the same bits on every machine.
 void transform(std::vector<std::complex<double>>& x) {
   const std::size_t n = x.size();
   for (std::size_t i = 1, j = 0; i < n; ++i) {
