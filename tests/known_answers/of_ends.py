@@ -592,7 +592,7 @@ def digits(bench, base, field):
             "limit.csv:limit",
             known in [part.strip() for part in cell],
             True,
-            "the table's digits are those of the width, rounded to the stable side",
+            "the table rounds the limit down, to the first digit of the width",
             EXACT,
             ("six digits", f"{row['limit']:.6g}" in [part.strip() for part in cell]),
         )

@@ -253,17 +253,16 @@ class Diagnosis(unittest.TestCase):
         self.assertIn("delay", energy["try"])
 
     def test_no_damping_is_advised_against_a_delay(self):
-        """Checks a delay of 6 ms and a motion of 25 Hz. Damping has the same delay: with 0.5, 7 and 12 N s/m, the log
-        creates energy or not, and no amount of damping is advised."""
+        """Checks a delay of 6 ms and a motion of 25 Hz. Damping has the same delay. With 0.5 and with 7 N s/m, the log
+        creates energy, although both dampings would suffice against slow motion or nearly so (K d = 6 N s/m).
+        """
         t = T * np.arange(4000)
         z = -1e-3 - 5e-4 * np.sin(50.0 * np.pi * t) - 1e-3 * np.sin(2.6 * np.pi * t)
         z[t < 0.1] = 1e-3
-        for damping in (0.5, 7.0, 12.0):
-            found = audit(log_of(t, z, spring(z, 1000.0, damping, delay=6)))
-            energy = rules_of(found).get("energy")
-            if energy:
-                self.assertIn("a shorter delay", energy["try"])
-                self.assertNotIn("N s/m", energy["try"])
+        for damping in (0.5, 7.0):
+            energy = rules_of(audit(log_of(t, z, spring(z, 1000.0, damping, delay=6))))["energy"]
+            self.assertIn("a shorter delay", energy["try"])
+            self.assertNotIn("N s/m", energy["try"])
 
     def test_a_log_that_is_nearly_always_in_contact(self):
         """Checks a log with 15 rows without force before a contact that lasts to the end: any force is contact. With
@@ -288,8 +287,8 @@ class Diagnosis(unittest.TestCase):
         force = spring(z, 800.0)
         force += (force > 0.0) * (0.2 * np.sin(274.0 * np.pi * t) + 0.1 * np.sin(84.0 * np.pi * t))
         found = audit(log_of(t, z, np.where(z < 0.0, np.maximum(force, 1e-3), 0.0)))
-        if found["stiffness"] is None:
-            self.assertNotIn("rows", " ".join(found["missing"]))
+        self.assertIsNone(found["stiffness"])
+        self.assertNotIn("no contact has", " ".join(found["missing"]))
 
     def test_a_fast_motion_is_no_jump_of_contacts(self):
         t = 1e-2 * np.arange(400)

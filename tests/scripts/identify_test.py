@@ -376,7 +376,7 @@ class Identify(Logs):
     def test_it_reports_when_something_else_is_on_the_handle(self):
         for spring, why in (
             (2.0, "a property of the device that the model lacks"),
-            (200.0, "the device has a property|Is a hand or a spring"),
+            (200.0, "a property of the device that the model lacks|Is a hand or a spring"),
         ):
             trajectory = played(self.time, self.force, 50, spring)
             done = run(

@@ -29,10 +29,10 @@ if __name__ == "__main__":
 
 import numpy as np
 from hapbench_import.options import DECIMALS
-from hapbench_import.stroke import columns_text, number_text
+from hapbench_import.stroke import columns_text, number_text, resolution_of
 
 from .fit import MASS, fit
-from .log import last_digit_of, read_log
+from .log import read_log
 from .model import IDENTIFIABLE_FRICTION, KINDS, NAMES, design, range_of, required_force
 from .units import (
     LONGEST_STEP,
@@ -260,7 +260,7 @@ def parameters_of(log, found):
     parameters["encoder_step_m"] = {
         # Without a step, the positions are not rounded, or the log rounds them too coarsely to see the step.
         "value": step
-        if step or not last_digit_of(log.position[np.isfinite(log.position)])
+        if step or not resolution_of(log.position[np.isfinite(log.position)])
         else None,
         "interval": log.encoder_interval,
     }

@@ -10,6 +10,7 @@ from hapbench_import.holds import hold_of
 from hapbench_import.options import assignments
 from hapbench_import.recording import open_recording
 from hapbench_import.split_times import fractions_of, remedy_of_repeated_times, repeats_most
+from hapbench_import.stroke import resolution_of
 
 NAMES = {
     "time": "time_s",
@@ -220,13 +221,14 @@ def missing_samples(intervals):
 
 
 def encoder_step_of(position):
-    """Returns (encoder step [m], its smallest and largest possible value). The encoder step is the length of which the
-    spacings between neighbouring position values are multiples. A spacing fits if it differs from a multiple by less
-    than 2 % of the step, or than the last digit of the written positions. The step is 0 if fewer than 98 % of the
-    spacings fit; it is then at most the smallest spacing. The interval follows from the last digit: the first and the
-    last position are each rounded by up to half of it."""
+    """Returns (encoder step [m], its smallest and largest possible value). The spacings between neighbouring position
+    values are multiples of the encoder step, apart from the resolution of the log, to which the log rounds the
+    positions. A spacing counts as a multiple if it differs from one by less than 2 % of the step, or by less than the
+    resolution. If fewer than 98 % of the spacings are multiples, the step is 0, and its largest possible value follows
+    from the smallest spacing. The interval of the step contains the rounding of the first and of the last position.
+    """
     values = np.unique(position)
-    digit = last_digit_of(values)
+    resolution = resolution_of(values) or 0.0
     spacings = np.diff(values)
     spacings = spacings[
         spacings > max(1e-10, 1e-9 * np.abs(position).max())
@@ -239,22 +241,13 @@ def encoder_step_of(position):
         short = spacings[spacings <= longest * smallest]
         step = float(short.sum() / np.rint(short / step).sum())
     counts = np.rint(spacings / step)
-    # If the step has only a few last digits, every length is near a multiple of it.
-    rounding = digit if step > 4.0 * digit else 0.0
+    # If the step is only a few times the resolution, every length is near a multiple of it.
+    rounding = resolution if step > 4.0 * resolution else 0.0
     fits = np.abs(spacings - counts * step) < max(0.02 * step, rounding)
     if np.mean(fits) < 0.98:
-        return 0.0, [0.0, smallest + digit]
-    error = max(digit / counts.sum() if rounding else 0.0, 1e-9 * step)
+        return 0.0, [0.0, smallest + resolution]
+    error = max(rounding / counts.sum(), 1e-9 * step)
     return step, [step - error, step + error]
-
-
-def last_digit_of(values):
-    """Returns the smallest power of ten of which all values are multiples, from 0.1 to 1e-9; 0 if there is none."""
-    for digits in range(1, 10):
-        scaled = values * 10.0**digits
-        if np.all(np.abs(scaled - np.rint(scaled)) < 1e-6):
-            return 10.0**-digits
-    return 0.0
 
 
 def _factor(name, word):
