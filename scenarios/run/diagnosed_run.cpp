@@ -172,25 +172,39 @@ Number unstable_loop(const DiagnosedRun& run) {
   return ratio && is_unstable_at_any_stiffness(*ratio) && !unstable_alone(run) ? Number(1.0) : std::nullopt;
 }
 
-bool is_stable_at_some_stiffness(const DiagnosedRun& run, const std::function<void(Scenario&)>& change) {
+/// Returns ratio_to_stability_limit() after a change of the scenario; empty if the changed loop is unstable without
+/// contact.
+static Number ratio_after(const DiagnosedRun& run, const std::function<void(Scenario&)>& change) {
   LoadedScenario changed = run.loaded;
   change(changed.scenario);
-  const Number ratio = ratio_to_stability_limit(run, changed);
-  return ratio && !is_unstable_at_any_stiffness(*ratio) && unstable_without_wall(changed.scenario).empty();
+  return unstable_without_wall(changed.scenario).empty() ? ratio_to_stability_limit(run, changed) : std::nullopt;
+}
+
+bool is_stable_at_some_stiffness(const DiagnosedRun& run, const std::function<void(Scenario&)>& change) {
+  const Number ratio = ratio_after(run, change);
+  return ratio && !is_unstable_at_any_stiffness(*ratio);
 }
 
 bool is_below_limit(const DiagnosedRun& run, const std::function<void(Scenario&)>& change) {
-  LoadedScenario changed = run.loaded;
-  change(changed.scenario);
-  const Number ratio = ratio_to_stability_limit(run, changed);
-  return ratio && *ratio <= kMaxLimitRatio && unstable_without_wall(changed.scenario).empty();
+  const Number ratio = ratio_after(run, change);
+  return ratio && *ratio <= kMaxLimitRatio;
+}
+
+/// Returns the frequency of the vibration [Hz]: oscillation_frequency() of the rendered force in the last quarter.
+/// Empty if there is no such frequency, or if it is at most kVibrationCutoff.
+static Number vibration_frequency(const DiagnosedRun& run) {
+  if (!run.frequency) {
+    run.frequency = oscillation_frequency(run.observations.last_forces, run.scenario().time.step);
+    if (run.frequency->value_or(0.0) <= kVibrationCutoff) run.frequency->reset();
+  }
+  return *run.frequency;
 }
 
 Number scripted_vibration(const DiagnosedRun& run) {
   // Relative difference of frequencies that count as equal: the resolution of a few periods in the last quarter.
   constexpr double kSameFrequency = 0.03;
-  const auto frequency = oscillation_frequency(run.observations.last_forces, run.scenario().time.step);
-  if (!frequency || *frequency <= kVibrationCutoff) return std::nullopt;
+  const Number frequency = vibration_frequency(run);
+  if (!frequency) return std::nullopt;
   for (const double period : script_periods(run.scenario()))
     for (const double harmonic : {1.0, 2.0, 3.0})
       if (std::abs(*frequency * period / harmonic - 1.0) <= kSameFrequency) return frequency;
@@ -337,8 +351,8 @@ Number bounces(const DiagnosedRun& run) {
 }
 
 std::string buzz_frequency(const DiagnosedRun& run) {
-  const auto frequency = oscillation_frequency(run.observations.last_forces, run.scenario().time.step);
-  return frequency && *frequency > kVibrationCutoff ? fmt::format(", at about {:.0f} Hz", *frequency) : "";
+  const Number frequency = vibration_frequency(run);
+  return frequency ? fmt::format(", at about {:.0f} Hz", *frequency) : "";
 }
 
 }  // namespace hapbench

@@ -30,6 +30,9 @@ struct DiagnosedRun {
   /// Cache of K divided by the linear stability limit, which several rules need and which takes a few milliseconds.
   /// Empty until the ratio has been computed.
   mutable std::optional<Number> ratio_to_limit = {};
+  /// Cache of the frequency of the vibration [Hz], which several rules need and which takes a few milliseconds. Empty
+  /// until the frequency has been computed.
+  mutable std::optional<Number> frequency = {};
 
   const Scenario& scenario() const { return loaded.scenario; }
   template <class... Outcomes>
@@ -152,8 +155,7 @@ Number saturation(const DiagnosedRun& run);
 /// which the hand's script may have lifted the tool (scripted_lifts()).
 Number bounces(const DiagnosedRun& run);
 
-/// Returns the frequency of the vibration as text: oscillation_frequency() of the rendered force in the last quarter.
-/// Empty if there is no such frequency, or if it is at most kVibrationCutoff.
+/// Returns the frequency of the vibration in the last quarter as text; empty without a vibration.
 std::string buzz_frequency(const DiagnosedRun& run);
 
 }  // namespace hapbench

@@ -139,6 +139,12 @@ std::vector<LoopChange> hand_changes() {
           {"a softer hand", [](Scenario& s, double factor) { scale_hand(s.hand, 1.0 / factor, 1.0); }}};
 }
 
+/// Returns the changes of both lists.
+std::vector<LoopChange> both(std::vector<LoopChange> changes, const std::vector<LoopChange>& further) {
+  changes.insert(changes.end(), further.begin(), further.end());
+  return changes;
+}
+
 /// Returns the remedies of those changes after which the loop is stable, with at least one of several factors.
 /// `is_stable`: returns true if the loop is stable after a change of the scenario.
 std::vector<std::string> effective(const std::vector<LoopChange>& changes,
@@ -295,8 +301,7 @@ std::string against_unstable_stiffness(const DiagnosedRun& run) {
 }
 
 std::string against_unstable_servo(const DiagnosedRun& run) {
-  std::vector<LoopChange> changes = device_changes(run.scenario());
-  for (LoopChange& change : hand_changes()) changes.push_back(std::move(change));
+  const std::vector<LoopChange> changes = both(device_changes(run.scenario()), hand_changes());
   const std::vector<std::string> remedies = effective(changes, [&](const auto& change) {
     Scenario changed = run.scenario();
     change(changed);
@@ -306,8 +311,7 @@ std::string against_unstable_servo(const DiagnosedRun& run) {
 }
 
 std::string against_unstable_loop(const DiagnosedRun& run) {
-  std::vector<LoopChange> changes = device_changes(run.scenario());
-  for (LoopChange& change : damping_changes(run.scenario())) changes.push_back(std::move(change));
+  const std::vector<LoopChange> changes = both(device_changes(run.scenario()), damping_changes(run.scenario()));
   const std::vector<std::string> remedies =
       effective(changes, [&](const auto& change) { return is_stable_at_some_stiffness(run, change); });
   if (remedies.empty())

@@ -190,10 +190,8 @@ DeviceLoop device_loop(const Scenario& scenario, double lambda) {
 }
 
 bool device_acts_on_tool(const Scenario& scenario) {
-  const bool hand_reacts = !std::holds_alternative<NoHandFields>(scenario.hand) &&
-                           !std::holds_alternative<ForceHandFields>(scenario.hand) &&
-                           !std::holds_alternative<PushHandFields>(scenario.hand);
-  return has_device(scenario) && (hand_reacts || !std::holds_alternative<AdmittanceDeviceConfig>(scenario.device));
+  const bool is_admittance = std::holds_alternative<AdmittanceDeviceConfig>(scenario.device);
+  return has_device(scenario) && (reacts_to_handle(scenario.hand) || !is_admittance);
 }
 
 bool has_linear_loop(const Scenario& scenario) {

@@ -68,10 +68,9 @@ void warn_of_idle_integrator(const Scenario& scenario, std::vector<Warning>& war
 void warn_of_idle_device(const Scenario& scenario, std::vector<Warning>& warnings) {
   const char* hand = std::holds_alternative<NoHandFields>(scenario.hand)      ? "none"
                      : std::holds_alternative<ForceHandFields>(scenario.hand) ? "force"
-                     : std::holds_alternative<PushHandFields>(scenario.hand)  ? "push"
-                                                                              : nullptr;
+                                                                              : "push";
   const auto* device = std::get_if<AdmittanceDeviceConfig>(&scenario.device);
-  if (hand == nullptr || device == nullptr) return;
+  if (reacts_to_handle(scenario.hand) || device == nullptr) return;
   const AdmittanceDeviceConfig usual;
   const bool changes_loop = device->servo != usual.servo || device->mechanics != usual.mechanics;
   if (!changes_loop && (device->sensor != usual.sensor || device->force_limit != usual.force_limit)) return;

@@ -190,6 +190,12 @@ struct TrackingHandFields {
 using HandFields = std::variant<NoHandFields, ForceHandFields, PushHandFields, ImpedanceHandFields, DragHandFields,
                                 TrackingHandFields, MassSpringDamperHandFields>;
 
+/// Returns false for a hand whose force does not depend on the motion of the handle: none, force and push.
+inline bool reacts_to_handle(const HandFields& hand) {
+  return !std::holds_alternative<NoHandFields>(hand) && !std::holds_alternative<ForceHandFields>(hand) &&
+         !std::holds_alternative<PushHandFields>(hand);
+}
+
 /// Returns the spring and damper of a hand of type impedance or mass_spring_damper; null for all other hands.
 inline const ImpedanceHandFields* spring_of(const HandFields& hand) {
   const auto* passive = std::get_if<MassSpringDamperHandFields>(&hand);

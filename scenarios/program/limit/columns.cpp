@@ -63,7 +63,7 @@ std::string linear_limit_text(const LimitRow& row) {
   const auto& linear = row.limit.known_linear_limit();
   if (!linear) return row.limit.theory_has_none ? "none stable" : "-";
   if (!std::isinf(*linear) && *linear != 0.0)
-    return deserved_on_side(*linear, std::nullopt, 6, row.question.search.smallest ? Rounding::up : Rounding::down);
+    return deserved_on_side(*linear, std::nullopt, 6, stable_side(row.question));
   return *linear == limit_without_transition(false, row.question.search.smallest) ? "none stable" : "no end";
 }
 
@@ -81,14 +81,11 @@ Columns<LimitRow> limit_value_columns(const LimitTable* table) {
   };
   const auto has_inequality = [](const LimitRow& row) { return row.limit.closed_form.has_value(); };
   const auto limit_end = [](const LimitRow& row) -> const IntervalEnd& { return row.limit.end; };
-  // The values of a whole field are exact: the tolerance is only the distance to the next value.
-  const auto unless_whole = [](const LimitRow& row, const std::optional<double>& tolerance) {
-    return row.question.search.whole ? std::nullopt : tolerance;
+  // Returns the printed tolerance of an end of the stable interval.
+  const auto tolerance_of = [](auto end) {
+    return [end](const LimitRow& row) { return printed_tolerance(row.question, std::invoke(end, row).tolerance()); };
   };
-  const auto tolerance = [=](const LimitRow& row) { return unless_whole(row, row.limit.end.tolerance()); };
-  const bool is_smallest = table != nullptr && table->first().question.search.smallest;
-  // A printed limit is on the stable side of the limit.
-  const Rounding inwards = is_smallest ? Rounding::up : Rounding::down;
+  const Rounding inwards = table == nullptr ? Rounding::nearest : stable_side(table->first().question);
   const std::string unit = table == nullptr ? "unit of the field" : field_unit(table->first().question.path);
   using Row = LimitRow;
   return {
@@ -99,7 +96,7 @@ Columns<LimitRow> limit_value_columns(const LimitTable* table) {
        "limit to quote: the smaller of the linear and the simulated limit (with --smallest the larger); empty if no "
        "limit was found within the range",
        [](const Row& r) { return r.limit.quoted.value; }, rounded(inwards, under("quote", 6)),
-       [=](const Row& r) { return unless_whole(r, r.limit.quoted_tolerance()); }},
+       [](const Row& r) { return printed_tolerance(r.question, r.limit.quoted_tolerance()); }},
       {"quoted_reason", "", "reason why quoted_limit has this value or none",
        [](const Row& r) { return r.limit.quoted.reason; }},
       {"linear\nlimit", unit,
@@ -110,7 +107,7 @@ Columns<LimitRow> limit_value_columns(const LimitTable* table) {
        "simulated limit: last stable value before the first unstable one, by bisection on simulated runs; empty if no "
        "interval of values is stable, or if the values are stable to the end of the range, which is no limit",
        [](const LimitRow& row) { return row.limit.end.beyond ? row.limit.end.value : std::nullopt; },
-       rounded(inwards, under("simulated\nlimit", 6)), tolerance},
+       rounded(inwards, under("simulated\nlimit", 6)), tolerance_of(limit_end)},
       {"first_unstable", unit,
        "first unstable value beyond the limit; empty if the values are stable to the end of the range",
        of(limit_end, value_beyond)},
@@ -121,7 +118,7 @@ Columns<LimitRow> limit_value_columns(const LimitTable* table) {
       {"stable_low", unit,
        "low end of the interval of stable values that contains the limit: smallest stable value, to the resolution",
        of(low_end, &IntervalEnd::value), rounded(Rounding::up, under(is_printed(true) ? "stable\nfrom" : "", 6)),
-       [=](const Row& r) { return unless_whole(r, low_end(r).tolerance()); }},
+       tolerance_of(low_end)},
       {"unstable_below", unit,
        "first unstable value below the stable interval; empty if the values are stable to the low end of the range",
        of(low_end, value_beyond)},
@@ -130,7 +127,7 @@ Columns<LimitRow> limit_value_columns(const LimitTable* table) {
       {"stable_high", unit,
        "high end of the interval of stable values that contains the limit: largest stable value, to the resolution",
        of(high_end, &IntervalEnd::value), rounded(Rounding::down, under(is_printed(false) ? "stable\nto" : "", 6)),
-       [=](const Row& r) { return unless_whole(r, high_end(r).tolerance()); }},
+       tolerance_of(high_end)},
       {"unstable_above", unit,
        "first unstable value above the stable interval; empty if the values are stable to the high end of the range",
        of(high_end, value_beyond)},

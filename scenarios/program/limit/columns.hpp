@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "scenarios/program/columns.hpp"
@@ -19,6 +20,16 @@ struct LimitRunRow {
 
   operator const LimitRow&() const { return limit; }  // NOLINT: a run is also used as its case
 };
+
+/// Returns the direction in which a limit is rounded for a text: to the stable side.
+inline Rounding stable_side(const LimitQuestion& question) {
+  return question.search.smallest ? Rounding::up : Rounding::down;
+}
+/// Returns the tolerance with which a value of the field is printed. The values of a field of integers are exact: their
+/// tolerance is only the distance to the next integer.
+inline std::optional<double> printed_tolerance(const LimitQuestion& question, const std::optional<double>& tolerance) {
+  return question.search.whole ? std::nullopt : tolerance;
+}
 
 /// Returns the columns of limit.csv. They include the published closed-form limits of a wall on an impedance device if
 /// a case has these limits. In all functions of this header, `table` is the table that is printed or written, and the

@@ -16,6 +16,7 @@
 #include "scenarios/analysis/stability/compared_devices.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/program/digits.hpp"
+#include "scenarios/program/limit/columns.hpp"
 #include "scenarios/program/names.hpp"
 #include "scenarios/run/scripted_motion.hpp"
 
@@ -241,10 +242,8 @@ std::string rule_text(const StabilityRule& rule, const Scenario& scenario) {
 
 std::string limit_answer(const FieldLimit& found, const LimitQuestion& question) {
   if (!found.end.value) return none_text(found);
-  // A printed limit is on the stable side of the limit. The values of a whole field are exact.
   const auto shown = [&](double value, const std::optional<double>& tolerance, int digits) {
-    return deserved_on_side(value, question.search.whole ? std::nullopt : tolerance, digits,
-                            question.search.smallest ? Rounding::up : Rounding::down);
+    return deserved_on_side(value, printed_tolerance(question, tolerance), digits, stable_side(question));
   };
   const QuotedLimit& quoted = found.quoted;
   std::string text =
