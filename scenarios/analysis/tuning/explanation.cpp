@@ -4,8 +4,10 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <string>
+#include <string_view>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -42,28 +44,46 @@ const TuneTrial* binding_trial(const Trials& trials) {
   return binding;
 }
 
+/// Returns whether the handle did not come to the contact, or did not stay in it.
+bool contact_fails(const TuneFailure& failure) {
+  static constexpr std::array<std::string_view, 6> kVerdicts{"no_contact", "lost_contact", "not_dragged",
+                                                             "stuck",      "went_through", "thrown_out"};
+  return std::ranges::find(kVerdicts, failure.verdict) != kVerdicts.end();
+}
+
+/// Returns the families that `--family` can still name when it leaves out `family`.
+std::vector<std::string> other_families(const TuneQuestion& question, const std::string& family) {
+  std::vector<std::string> others;
+  for (const char* other : kFamilies)
+    if (family != other && std::ranges::count(question.families, other) > 0) others.emplace_back(other);
+  if (others.empty()) others.emplace_back(family == "seeds" ? "hands" : "seeds");
+  return others;
+}
+
+/// Returns what the option `--family` of the remedy leaves out, as a text for the user.
+std::string left_out(const TuneFailure& failure) {
+  if (failure.variant.empty()) return "these hands";
+  return failure.variant == "no hand" ? "the loop without a hand" : failure.variant;
+}
+
+/// Returns the options of `tune` to change after a failure, as a text for the user. Empty if none helps.
+std::string options_to_change(const TuneQuestion& question, const TuneFailure& failure) {
+  std::vector<std::string> options;
+  if (!failure.family.empty())
+    options.push_back(fmt::format("--family {} leaves out {}", fmt::join(other_families(question, failure.family), ","),
+                                  left_out(failure)));
+  if (failure.binding == "margin" && !contact_fails(failure) && !failure.unstable_at_K)
+    options.emplace_back("a smaller --margin");
+  return fmt::format("{}", fmt::join(options, "; "));
+}
+
 /// Returns the option or field to change after a failure, as a text for the user.
 std::string remedy(const TuneQuestion& question, const TuneFailure& failure) {
-  std::vector<std::string> others;
-  for (const char* family : kFamilies)
-    if (failure.family != family && std::ranges::count(question.families, family) > 0) others.emplace_back(family);
-  if (others.empty()) others.emplace_back(failure.family == "seeds" ? "hands" : "seeds");
-  const bool contact_fails = failure.verdict == "no_contact" || failure.verdict == "lost_contact" ||
-                             failure.verdict == "not_dragged" || failure.verdict == "stuck" ||
-                             failure.verdict == "went_through" || failure.verdict == "thrown_out";
-  std::string text;
-  if (!failure.family.empty())
-    text = fmt::format("--family {} leaves out {}", fmt::join(others, ","),
-                       failure.variant.empty()        ? "these hands"
-                       : failure.variant == "no hand" ? "the loop without a hand"
-                                                      : failure.variant);
-  const bool margin_helps = failure.binding == "margin" && !contact_fails && !failure.unstable_at_K;
-  if (margin_helps) text += std::string(text.empty() ? "" : "; ") + "a smaller --margin";
-  if (!text.empty()) return text;
+  if (std::string options = options_to_change(question, failure); !options.empty()) return options;
   if (failure.binding == "friction")
     return R"(rendering.friction {"type": "dry"}, a smaller rendering.friction.mu_f_s_per_m, or a shorter time step)";
   if (failure.binding == "no_force") return "check the device: its encoder, or its force resolution, hides the contact";
-  if (contact_fails)
+  if (contact_fails(failure))
     return "no option of tune changes this: change the hand or the start of the scene (\"hapbench run\" explains the "
            "outcome)";
   return "no option of tune changes this: another device, hand or time step";
