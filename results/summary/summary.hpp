@@ -96,6 +96,8 @@ struct Result {
   /// Warnings about the scenario's files, followed by warnings about the run.
   std::vector<Warning> warnings;
   std::optional<std::vector<Diagnosed>> diagnosis;  ///< empty if the diagnosis was not requested
+  /// Rules of the diagnosis for low vibration with their numbers, also below the thresholds; empty if not requested.
+  std::vector<Diagnosed> low_vibration;
   RunWork work;
   std::vector<TargetRow> targets;  ///< targets of all subjects and trials of a tracking hand
   RunTiming timing;

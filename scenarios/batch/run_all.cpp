@@ -28,7 +28,7 @@ std::vector<Result> run_all(std::span<const Cases> all, const JobOptions& jobs,
     const auto& [cases, i, number] = runs[position];
     results[number] = run_scenario(checked(cases.load(i)),
                                    folder ? std::optional(RunOutput(folder(number), /*has_lock=*/true)) : std::nullopt,
-                                   false, nullptr, false, {}, length);
+                                   false, nullptr, Diagnose::nothing, {}, length);
     results[number].targets.clear();
   });
   return results;

@@ -58,7 +58,8 @@ RunRow row_of_run(const SweepPlan& plan, const SweepOptions& options, std::size_
   try {
     const auto output = options.keep_runs ? std::optional(run_folder(options, run)) : std::nullopt;
     const CheckedScenario scene = checked(plan.cases.load(run));
-    result.row = finished_row(plan, run, run_scenario(scene, output, false, nullptr, false, {}, plan.length));
+    result.row =
+        finished_row(plan, run, run_scenario(scene, output, false, nullptr, Diagnose::nothing, {}, plan.length));
   } catch (const IoError&) {
     throw;  // results of further runs could not be written either; the user can continue the sweep with --resume
   } catch (const std::exception& error) {

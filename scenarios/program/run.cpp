@@ -176,7 +176,7 @@ int run(const RunOptions& options, ProgramContext& context) {
   for (std::size_t i = 0; i < scenarios.size(); ++i) {
     const Result& result =
         results.emplace_back(run_scenario(scenarios[i], RunOutput(directories[i], /*has_lock=*/true),
-                                          {!options.output.quiet, context.progress}, nullptr, /*diagnose=*/true));
+                                          {!options.output.quiet, context.progress}, nullptr, Diagnose::everything));
     // Tell users who try values of a field that the results of the previous value were replaced.
     if (result.replaces_other && options.out.empty() && !options.overrides.empty())
       print_note(context,

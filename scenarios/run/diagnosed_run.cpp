@@ -53,8 +53,9 @@ Number springs_limit(const DiagnosedRun& run, const Scenario& scenario) {
 Number surface_limit(const DiagnosedRun& run, const LoadedScenario& loaded) {
   if (!run.observations.last_contact || has_multi_rate_contacts(loaded.scenario)) return std::nullopt;
   const CheckedScenario scenario = checked(loaded);
-  return linear_stiffness_limit(scenario, make_shell(scenario.scenario(), scenario.files()),
-                                *run.observations.last_contact);
+  const bool is_of_run = &loaded == &run.loaded && run.shell;
+  const auto shell = is_of_run ? run.shell : make_shell(scenario.scenario(), scenario.files());
+  return linear_stiffness_limit(scenario, shell, *run.observations.last_contact);
 }
 
 /// Returns K divided by the largest stable K of the linear loop in contact, rounded to six digits, so that builds with

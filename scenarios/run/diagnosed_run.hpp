@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -10,6 +11,7 @@
 #include "scenarios/run/diagnosis_observer.hpp"
 #include "scenarios/run/expectations.hpp"
 #include "scenarios/scene/load_scenario.hpp"
+#include "sim/geometry/point_shell.hpp"
 #include "sim/tool/tool_shape.hpp"
 
 /// Computes the numbers that the rules of the diagnosis compare with their thresholds, from a finished run. A number is
@@ -27,6 +29,7 @@ struct DiagnosedRun {
   const Result& result;
   const RunObservations& observations;
   const ToolShape* tool;  ///< null if only rules that need no tool (rules on metrics) are evaluated
+  std::shared_ptr<const PointShell> shell = {};  ///< point shell of the run; null: made anew where a rule needs it
   /// Cache of K divided by the linear stability limit, which several rules need and which takes a few milliseconds.
   /// Empty until the ratio has been computed.
   mutable std::optional<Number> ratio_to_limit = {};

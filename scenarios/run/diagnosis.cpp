@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "scenarios/run/diagnosed_run.hpp"
 #include "scenarios/run/diagnosis_advice.hpp"
 #include "scenarios/run/expectations.hpp"
@@ -160,8 +162,9 @@ std::vector<Diagnosed> diagnosed(const DiagnosedRun& run, bool Rule::*mark, bool
     if (beyond_threshold && rule.value != fault && fault(run)) continue;
     const Number value = rule.value(run);
     if (!value || (beyond_threshold && !(*value > rule.threshold))) continue;
-    const std::string says = fmt::format(fmt::runtime(rule.says), fmt::format("{:.3g}", *value));
-    found.push_back({rule.name, rule.number, rule.unit, *value, rule.threshold, says + rule.more(run),
+    std::string says = fmt::format(fmt::runtime(rule.says), fmt::format("{:.3g}", *value));
+    if (*value > rule.threshold) says += rule.more(run);
+    found.push_back({rule.name, rule.number, rule.unit, *value, rule.threshold, std::move(says),
                      beyond_threshold ? rule.attempt(run) : ""});
   }
   return found;
@@ -178,12 +181,16 @@ std::vector<Diagnosed> diagnosis_rules(bool low_vibration) {
 }
 
 std::vector<Diagnosed> diagnosis_findings(const LoadedScenario& loaded, const Result& result,
-                                          const RunObservations& observations, const ToolShape& tool) {
-  return diagnosed({loaded, result, observations, &tool}, nullptr, /*beyond_threshold=*/true);
+                                          const RunObservations& observations, const ToolShape& tool,
+                                          std::shared_ptr<const PointShell> shell) {
+  return diagnosed({loaded, result, observations, &tool, std::move(shell)}, nullptr, /*beyond_threshold=*/true);
 }
 
-std::vector<Diagnosed> low_vibration_numbers(const LoadedScenario& loaded, const Result& result) {
-  return diagnosed({loaded, result, {}, nullptr}, &Rule::low_vibration, /*beyond_threshold=*/false);
+std::vector<Diagnosed> low_vibration_numbers(const LoadedScenario& loaded, const Result& result,
+                                             const RunObservations& observations, const ToolShape& tool,
+                                             std::shared_ptr<const PointShell> shell) {
+  return diagnosed({loaded, result, observations, &tool, std::move(shell)}, &Rule::low_vibration,
+                   /*beyond_threshold=*/false);
 }
 
 std::vector<Warning> rule_warnings(const LoadedScenario& loaded, const Result& result) {

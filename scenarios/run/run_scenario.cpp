@@ -80,16 +80,17 @@ RunWork work_of(const Simulation& simulation, std::uint64_t allocations) {
 /// State of a run: the observers that are used in all trials, and the results so far.
 class Run {
  public:
-  Run(const CheckedScenario& checked, const std::shared_ptr<const PointShell>& shell, std::size_t trials, bool diagnose,
-      RunLength length)
+  Run(const CheckedScenario& checked, const std::shared_ptr<const PointShell>& shell, std::size_t trials,
+      Diagnose diagnose, RunLength length)
       : checked_(checked),
         scenario_(checked.scenario()),
         shell_(shell),
         length_(length),
+        diagnose_(diagnose),
         reference_(reference_force(scenario_, checked.files())),
         sections_(scenario_, reference_ != nullptr) {
     if (scenario_.record.timing) times_.emplace(static_cast<std::size_t>(scenario_.time.steps) * trials);
-    if (diagnose) diagnosis_.emplace(scenario_);
+    if (diagnose != Diagnose::nothing) diagnosis_.emplace(scenario_);
   }
 
   /// Runs a trial. `target`: destination of the recorded tables; empty: nothing is recorded. `label`: label of the
@@ -158,13 +159,17 @@ class Run {
         warning.text = fmt::format("in {} of {} trials, first in trial {}: {}", with_warnings_, trials_,
                                    first_with_warnings_, warning.text);
     }
-    for (const auto& more : {warnings_, tool_warnings(scenario_.rendering, *tool_),
-                             diagnosis_ ? std::vector<Warning>() : rule_warnings(checked_.loaded(), result)})
+    for (const auto& more :
+         {warnings_, tool_warnings(scenario_.rendering, *tool_),
+          diagnose_ == Diagnose::everything ? std::vector<Warning>() : rule_warnings(checked_.loaded(), result)})
       result.warnings.insert(result.warnings.end(), more.begin(), more.end());
     // Describe a tool that is not a cylinder. The fields of the scenario describe a cylinder completely.
     if (!std::holds_alternative<CylinderFields>(scenario_.tool)) result.tool = tool_json(*tool_);
     if (const auto* targets = sections_.find<TargetMetricsObserver>()) result.targets = targets->rows();
-    if (diagnosis_) result.diagnosis = diagnosis_findings(checked_.loaded(), result, diagnosis_->rows(), *tool_);
+    if (diagnose_ == Diagnose::everything)
+      result.diagnosis = diagnosis_findings(checked_.loaded(), result, diagnosis_->rows(), *tool_, shell_);
+    if (diagnose_ == Diagnose::low_vibration)
+      result.low_vibration = low_vibration_numbers(checked_.loaded(), result, diagnosis_->rows(), *tool_, shell_);
     // Report the times of single steps if there are enough samples.
     const StepLatency alone = step_latency(step_nanoseconds_, 0);
     result.timing.step_p50 = if_any(alone.steps > 0, 1e-9 * static_cast<double>(alone.p50));
@@ -258,12 +263,13 @@ class Run {
   const Scenario& scenario_;
   const std::shared_ptr<const PointShell>& shell_;
   RunLength length_;
+  Diagnose diagnose_;
   std::shared_ptr<const ReferenceForce> reference_;
   std::shared_ptr<const ToolShape> tool_;
   std::optional<MetricsObserver> metrics_;  ///< created when the first trial begins, like `sampling_`
   std::optional<SamplingSpread> sampling_;
   SectionObservers sections_;
-  std::optional<DiagnosisObserver> diagnosis_;  ///< empty unless requested
+  std::optional<DiagnosisObserver> diagnosis_;  ///< empty with Diagnose::nothing
   std::optional<InsideDepths> inside_;
   std::optional<StepTimes> times_;               ///< times of all steps; empty unless requested
   std::vector<std::uint64_t> step_nanoseconds_;  ///< sampled durations of single steps [ns] (StepSampler)
@@ -288,7 +294,7 @@ std::vector<Trial> trials_of(const Scenario& scenario) {
 
 // NOLINTNEXTLINE(readability-function-cognitive-complexity): the phases of a run, one after the other.
 Result run_scenario(const CheckedScenario& checked, const std::optional<RunOutput>& output, Progress progress,
-                    RunTables* tables, bool diagnose, std::shared_ptr<const PointShell> shell, RunLength length) {
+                    RunTables* tables, Diagnose diagnose, std::shared_ptr<const PointShell> shell, RunLength length) {
   const Scenario& scenario = checked.scenario();
   const auto start = Clock::now();
   // Build the point shell, unless the caller gives a point shell.

@@ -21,14 +21,21 @@
 
 namespace hapbench {
 
+/// Rules of the diagnosis (diagnosis.hpp) that run_scenario() evaluates.
+enum class Diagnose {
+  nothing,
+  low_vibration,  ///< the rules of diagnosis_rules(true), into Result::low_vibration
+  everything      ///< all rules, into Result::diagnosis
+};
+
 /// Runs all trials of a scenario, one after the other, and returns the result.
 /// - `output`: directory for summary.json, scenario.effective.json and the recorded tables (ResultFolder).
 ///   Several trials record into one subdirectory each.
 /// - `progress`: whether and where to show a progress bar.
 /// - `tables`: receives the recorded tables in memory; ignored with `output`. Without `output` and `tables`,
 ///   the summary has neither provenance nor scenario hash.
-/// - `diagnose`: if true, the result includes a diagnosis of what is wrong with the run (diagnosis.hpp). The diagnosis
-///   costs about 20 ns a step.
+/// - `diagnose`: rules of the diagnosis that are evaluated. Unless it is Diagnose::nothing, the run costs about 20 ns
+///   more a step.
 /// - `shell`: make_shell() of the scenario, if it already exists. Several runs may share it, also at the same
 ///   time.
 /// - `length`: with RunLength::until_failure, the observation of a run ends when the run fails for good or diverges
@@ -39,12 +46,13 @@ namespace hapbench {
 /// Throws IoError if writing fails, and Stopped if a signal ends the run. No partial results remain after an
 /// error.
 Result run_scenario(const CheckedScenario& checked, const std::optional<RunOutput>& output, Progress progress,
-                    RunTables* tables = nullptr, bool diagnose = false, std::shared_ptr<const PointShell> shell = {},
-                    RunLength length = RunLength::full);
+                    RunTables* tables = nullptr, Diagnose diagnose = Diagnose::nothing,
+                    std::shared_ptr<const PointShell> shell = {}, RunLength length = RunLength::full);
 
 /// Runs a scenario with an existing point shell and returns its result. Writes no files and shows no progress.
-inline Result run_with_shell(const CheckedScenario& checked, const std::shared_ptr<const PointShell>& shell) {
-  return run_scenario(checked, {}, false, nullptr, false, shell);
+inline Result run_with_shell(const CheckedScenario& checked, const std::shared_ptr<const PointShell>& shell,
+                             Diagnose diagnose = Diagnose::nothing) {
+  return run_scenario(checked, {}, false, nullptr, diagnose, shell);
 }
 
 }  // namespace hapbench

@@ -19,11 +19,11 @@ namespace {
 // disturbed: number of the diagnosis's rules for low vibration whose threshold is exceeded.
 
 MeasuredValues stability_values(const LoadedScenario& loaded) {
-  const Result run = run_scenario(checked(loaded), std::nullopt, false);
+  const Result run = run_scenario(checked(loaded), std::nullopt, false, nullptr, Diagnose::low_vibration);
   MeasuredValues values = {
       {"completes", {run.end.outcome == Outcome::completes ? 1.0 : 0.0}}, {"buzz", {0.0}}, {"pop", {0.0}}};
   double disturbed = 0.0;
-  for (const Diagnosed& number : low_vibration_numbers(loaded, run)) {
+  for (const Diagnosed& number : run.low_vibration) {
     if (number.rule == "buzz" || number.rule == "pop") values[number.rule] = {number.value};
     if (number.value > number.threshold) disturbed += 1.0;
   }

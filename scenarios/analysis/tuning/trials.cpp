@@ -477,13 +477,12 @@ void Trials::measure_scene(TuneTrial& trial) {
   trial.is_measured = true;
   in_parallel(&trial, 1, [&](std::size_t) {
     const CheckedScenario scene = checked(load(trial.setting, trial.stiffness));
-    const Result run = run_with_shell(scene, shell_);
+    const Result run = run_with_shell(scene, shell_, Diagnose::low_vibration);
     trial.metrics = metrics_of(run);
     if (const Metric* depth = find_metric(run.metrics, "inside_max_m"))
       trial.depth_within = depth->tolerance().value_or(kInfinite);
-    for (const Diagnosed& number : low_vibration_numbers(scene.loaded(), run)) {
+    for (const Diagnosed& number : run.low_vibration)
       trial.largest.insert_or_assign(number.rule, ExtremeValue{number.value, number.says});
-    }
     // Forces below half the resolution of the device are rounded to zero.
     const auto* device = std::get_if<ImpedanceDeviceConfig>(&scene.scenario().device);
     const double smallest = device != nullptr ? 0.5 * device->force_step : 0.0;

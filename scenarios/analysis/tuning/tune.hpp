@@ -40,7 +40,8 @@ struct TunedLaw {
 /// A setting at K is feasible if
 /// - every variant of the scene, including the scene itself, is settled at K, that is, stable by rule_of(). Its
 ///   metrics keep the limits even with their errors added.
-/// - the run of the scene itself has low vibration (low_vibration_numbers in diagnosis.hpp). This condition is dropped
+/// - the run of the scene itself has low vibration (Diagnose::low_vibration in run_scenario.hpp). This condition is
+/// dropped
 ///   if TuneQuestion::allow_vibration is true.
 /// - the run of the scene itself renders a force, and explicit integration of friction is stable in all its steps.
 /// - every variant is settled at G K.

@@ -58,7 +58,7 @@ void tune_laws(const std::vector<std::string>& algorithms, bool quiet, Tuning& t
 /// Returns what the diagnosis reports for a run with the setting and the stiffness that were chosen for a law.
 std::vector<Diagnosed> findings_at(const Tuning& tuning, const TunedLaw& law) {
   const CheckedScenario choice = checked(load_scenario(tuning.question.scenario, law.overrides));
-  return *run_scenario(choice, std::nullopt, false, nullptr, /*diagnose=*/true).diagnosis;
+  return *run_scenario(choice, std::nullopt, false, nullptr, Diagnose::everything).diagnosis;
 }
 
 int tune(const TuneOptions& options, ProgramContext& context) {

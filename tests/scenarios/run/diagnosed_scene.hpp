@@ -21,12 +21,12 @@ struct Scene {
   Words overrides = {};
 };
 
-/// Returns the diagnosed run of a scene with its overrides. The expectations of the file are replaced by the default
-/// expectation.
-inline Result run(const Scene& scene) {
+/// Returns the run of a scene with its overrides. The expectations of the file are replaced by the default expectation.
+inline Result run(const Scene& scene, Diagnose diagnose = Diagnose::everything) {
   Words overrides = {"expect={}", "record.trajectory=false"};
   overrides.insert(overrides.end(), scene.overrides.begin(), scene.overrides.end());
-  return run_scenario(checked(load_scenario(find_scenario(scene.name), overrides)), std::nullopt, false, nullptr, true);
+  return run_scenario(checked(load_scenario(find_scenario(scene.name), overrides)), std::nullopt, false, nullptr,
+                      diagnose);
 }
 
 /// Returns the diagnosed run of a scene that a test writes as JSON.

@@ -516,6 +516,33 @@ TEST(Diagnosis, BlamesTheStepWhereThatIsTooLong) {
   EXPECT_EQ(far.warnings[0].text.find("time.step_s"), std::string::npos) << far.warnings[0].text;
 }
 
+/// Checks that Diagnose::low_vibration (of `tune`) and Diagnose::everything (of `run`) compare the same numbers with
+/// the thresholds: for an impedance device whose motors create energy because of the delay, and for a drill beyond the
+/// linear limit of K on a surface.
+TEST(Diagnosis, LowVibrationComparesTheSameNumbers) {
+  const std::pair<Scene, std::vector<std::string>> scenes[] = {
+      {{"tap_wall", {"rendering.stiffness_N_per_m=2000", "rendering.damping_N_s_per_m=2", "device.delay_samples=4"}},
+       {"energy"}},
+      {{"drag_molar", {"rendering.stiffness_N_per_m=2e6"}}, {"edge"}}};
+  for (const auto& [scene, expected] : scenes) {
+    const Result diagnosed = run(scene), numbers = run(scene, Diagnose::low_vibration);
+    EXPECT_FALSE(numbers.diagnosis);
+    std::vector<std::string> beyond;
+    for (const Diagnosed& number : numbers.low_vibration) {
+      const Diagnosed* const found = finding(diagnosed, number.rule);
+      EXPECT_EQ(found != nullptr, number.value > number.threshold) << scene.name << ": " << number.rule;
+      if (found == nullptr) continue;
+      EXPECT_EQ(found->value, number.value) << scene.name << ": " << number.rule;
+      EXPECT_EQ(found->says, number.says);
+      beyond.push_back(number.rule);
+    }
+    for (const Diagnosed& rule : diagnosis_rules(/*low_vibration=*/true))
+      EXPECT_EQ(finding(diagnosed, rule.rule) != nullptr, std::ranges::count(beyond, rule.rule) == 1)
+          << scene.name << ": " << rule.rule;
+    for (const std::string& rule : expected) EXPECT_EQ(std::ranges::count(beyond, rule), 1) << scene.name;
+  }
+}
+
 /// Checks runs for which no diagnosis is requested. If the numbers of such a run do not characterise the law, the run
 /// still has a warning.
 TEST(Diagnosis, OfARunThatNobodyDiagnosesIsAWarning) {

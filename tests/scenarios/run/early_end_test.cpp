@@ -23,7 +23,7 @@ bool has_values(const Result& run) {
 /// `early`.
 void compare(const CheckedScenario& scene, std::map<Outcome, int>& early) {
   const Result full = run_scenario(scene, {}, false);
-  const Result run = run_scenario(scene, {}, false, nullptr, false, {}, RunLength::until_failure);
+  const Result run = run_scenario(scene, {}, false, nullptr, Diagnose::nothing, {}, RunLength::until_failure);
   EXPECT_EQ(outcome_name(run.end.outcome), outcome_name(full.end.outcome));
   EXPECT_EQ(run.expected, full.expected);
   EXPECT_FALSE(full.end.ended_at);
@@ -78,7 +78,7 @@ CheckedScenario above_plane(const char* patch) {
 }
 
 Result ended(const char* patch) {
-  return run_scenario(above_plane(patch), {}, false, nullptr, false, {}, RunLength::until_failure);
+  return run_scenario(above_plane(patch), {}, false, nullptr, Diagnose::nothing, {}, RunLength::until_failure);
 }
 
 TEST(EarlyEnd, LeavesOnlyIfNoHandBringsTheToolBack) {

@@ -121,7 +121,7 @@ TEST(LinearContact, OfABallOnADomeHasTheLimitOfItsVibration) {
     ASSERT_TRUE(limit) << K;
     EXPECT_GE(*limit, kLowest) << K;
     EXPECT_LE(*limit, 2.0 * kLowest) << K;
-    const Result result = run_scenario(scenario, {}, false, nullptr, /*diagnose=*/true);
+    const Result result = run_scenario(scenario, {}, false, nullptr, Diagnose::everything);
     for (const Diagnosed& found : *result.diagnosis) {
       EXPECT_NE(found.rule, "loop") << K;
       EXPECT_TRUE(found.rule != "edge" || found.value <= K / kLowest) << K << ": " << found.value;
@@ -145,7 +145,7 @@ double edge_after_passage(double stiffness) {
                   "friction": {"mu_s_N_s_per_m": 0, "mu_f_s_per_m": 0}}
   })");
   json["rendering"]["stiffness_N_per_m"] = stiffness;
-  const Result result = run_scenario(checked(read_scenario(json, "")), {}, false, nullptr, /*diagnose=*/true);
+  const Result result = run_scenario(checked(read_scenario(json, "")), {}, false, nullptr, Diagnose::everything);
   EXPECT_EQ(result.end.outcome, Outcome::went_through) << stiffness;
   for (const Diagnosed& found : *result.diagnosis)
     if (std::string(found.rule) == "edge") return found.value;
