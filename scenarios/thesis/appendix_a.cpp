@@ -200,7 +200,7 @@ Finding judge_springs_limited(const Measured& runs, const PublishedNumbers& p) {
                                         : "smooth without the limits, but fluctuating with the limits: " + fluctuate),
           "number of swings, first without the limits, then with them: " + text,
           fmt::format(
-              "proposed algorithm: {}; other algorithms that are smooth without the limits and fluctuate with them: {}",
+              "proposed algorithm: {}; the only other algorithms that are smooth without the limits and fluctuate with them: {}",
               swings, fluctuate.empty() ? "none" : fluctuate)};
 }
 

@@ -125,12 +125,14 @@ std::string deviation_text(const MeasuredCase& m, const Compared& c, bool publis
   if (c.agrees && c.near) return "";
   if (m.all("original").empty())
     return fmt::format("{}: not compared, because no subject has values for both algorithms", m.name);
-  const char* how = c.agrees                ? "far from the published values"
-                    : !published_difference ? "here a significant difference, in the thesis none"
-                    : c.significant         ? "the opposite direction"
-                                            : "no significant difference";
-  return fmt::format("{} {:.2g} (original) against {:.2g}{} (shaping), {}", m.name, mean_of(m.all("original")),
-                     mean_of(m.all("shaped")), column_of(m).unit, how);
+  const std::string how =
+      fmt::format(fmt::runtime(c.agrees                ? "{} far from the published values"
+                               : !published_difference ? "here a significant difference in {}, in the thesis none"
+                               : c.significant         ? "{} differs in the opposite direction"
+                                                       : "no significant difference in {}"),
+                  m.name);
+  return fmt::format("{}: {:.2g} (original) against {:.2g}{} (shaping)", how, mean_of(m.all("original")),
+                     mean_of(m.all("shaped")), column_of(m).unit);
 }
 
 /// Judges an experiment by all its measures except the force. `id`: D1 to D4. `published_difference`: true if the

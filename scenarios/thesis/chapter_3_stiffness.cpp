@@ -147,11 +147,11 @@ Finding judge_range(const Measured& measured, const PublishedNumbers& p, double 
       averaged ? decide(averages, false) : decide(inside >= threshold(p, "nearly_all"), inside >= threshold(p, "most"));
   return {verdict,
           fmt::format(
-              "after one update, the ratio of a contact that is not parallel to k parallel contacts can be as small as "
-              "{:.2f}, {:.2f} and {:.2f} for k = 3, 4 and 5, and the reduction of the thesis keeps about 6 contacts; "
+              "after one update, one contact beside k parallel contacts of another direction can have a ratio as small "
+              "as {:.2f}, {:.2f} and {:.2f} for k = 3, 4 and 5, and the reduction of the thesis keeps about 6 contacts; "
               "the smallest ratio of a step is {:.2f} in the mean over all steps, and the largest ratio {:.2f}{}",
               smallest_after_one_update(3), smallest_after_one_update(4), smallest_after_one_update(5), low, high,
-              inside < 1.0 ? ", but single steps leave the range" : ""),
+              inside < 1.0 ? ", but in a part of the steps, a ratio is outside the range" : ""),
           "",
           averaged ? fmt::format("averages {:.2f} to {:.2f}", low, high)
                    : fmt::format("in {:.0f} % of the steps, all ratios are within {} to {}", 100.0 * inside,
