@@ -41,18 +41,17 @@ struct TunedLaw {
 /// - every variant of the scene, including the scene itself, is settled at K, that is, stable by rule_of(). Its
 ///   metrics keep the limits even with their errors added.
 /// - the run of the scene itself has low vibration (Diagnose::low_vibration in run_scenario.hpp). This condition is
-/// dropped
-///   if TuneQuestion::allow_vibration is true.
+///   dropped if TuneQuestion::allow_vibration is true.
 /// - the run of the scene itself renders a force, and explicit integration of friction is stable in all its steps.
 /// - every variant is settled at G K.
 /// - the loop in contact has stable eigenvalues from K to G K (contact_loops(); with every hand of
 ///   typical_hands() if a hand holds an impedance device).
 ///
 /// The search (tune_search.hpp) finds the feasible setting with the largest K. This choice is then verified
-/// (verification.hpp). If the verification fails, the search is repeated without this choice. If nothing is feasible,
-/// searches with relaxed limits confirm the relaxations that TunedLaw::relax names (relaxation.hpp). If one of these
-/// searches finds a trial that keeps all original limits, this trial becomes the choice. Throws InputError if the
-/// tool's position is prescribed, and Stopped.
+/// (verification.hpp), with low vibration also at stiffnesses slightly below K. If the verification fails, the search
+/// is repeated without this choice. If nothing is feasible, searches with relaxed limits confirm the relaxations that
+/// TunedLaw::relax names (relaxation.hpp). If one of these searches finds a trial that keeps all original limits, this
+/// trial becomes the choice. Throws InputError if the tool's position is prescribed, and Stopped.
 TunedLaw tuned_law(const TuneQuestion& question, const std::string& algorithm);
 
 }  // namespace hapbench

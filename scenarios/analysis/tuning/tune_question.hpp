@@ -16,6 +16,10 @@ namespace hapbench {
 /// Largest number of simulations of the search for one law. Margins, error estimates and verification need a few
 /// hundred more.
 inline constexpr std::size_t kMaxTuneRuns = 6000;
+/// The run of the scene has low vibration at the choice's K and at this number of stiffnesses from this share of K to
+/// K.
+inline constexpr std::size_t kLowVibrationSamples = 4;
+inline constexpr double kLowVibrationFrom = 0.9;
 
 /// Inputs of tuned_law().
 struct TuneQuestion {

@@ -39,6 +39,18 @@ std::vector<TuneSetting> settings_of(const TuneRanges& ranges, const Scenario& s
   return settings;
 }
 
+/// Removes the values of a scan below its highest group of neighbouring feasible values, so that the search continues
+/// at this group. A group has at least two values: a single feasible value may be a chance, for example between two
+/// resonances. Does nothing without a group.
+void keep_highest_group(EvaluatedParameters& scan) {
+  for (auto high = std::prev(scan.end()); high != scan.begin(); --high) {
+    if (const auto low = std::prev(high); high->second && low->second) {
+      scan.erase(scan.begin(), low);
+      return;
+    }
+  }
+}
+
 constexpr double kFinestRatio = 1.004;   // factor on zeta and mass at which refinement ends
 constexpr double kFinestDescent = 1.01;  // factor on K, zeta and mass at which a descent ends
 
@@ -166,6 +178,7 @@ bool TuneSearch::improve(const TuneSetting& setting) {
   }
   const auto holds = [&](double t) { return trials_.feasible(setting, options.value_at(t)); };
   EvaluatedParameters scan = evaluate_scan(kScanIntervals, holds);
+  keep_highest_group(scan);
   if (!best_) add_known(setting, options, scan);
   if (const auto between = window(setting, options, scan)) scan[*between] = true;
   const StableInterval interval = find_stable_interval(options, scan, holds, false);

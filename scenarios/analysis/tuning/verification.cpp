@@ -79,6 +79,25 @@ bool fails_in_longer_run(Trials& trials, const TuneTrial& choice) {
   return true;
 }
 
+/// Returns true if the run of the scene violates a rule of low vibration at a stiffness slightly below the choice, for
+/// example because the choice lies between two resonances. Then refutes the choice and the stiffnesses down to this
+/// one.
+bool vibrates_nearby(Trials& trials, const TuneTrial& choice) {
+  if (trials.limits().allow_vibration) return false;
+  const Range nearby{kLowVibrationFrom * choice.stiffness, choice.stiffness, true};
+  for (const double t : parameters_between(0.0, 1.0, kLowVibrationSamples)) {
+    const TuneTrial& trial = trials.trial_at(choice.setting, nearby.value_at(t));
+    const MetricValues violated = trials.violated_limits(trial);
+    const auto rule = std::ranges::find_if(violated, [&](const auto& entry) { return trials.is_rule(entry.first); });
+    if (rule == violated.end()) continue;
+    trials.refute(choice.setting, trial.stiffness * (1.0 - kTuneResolution), choice.stiffness, rule->first,
+                  fmt::format("at {:.4g} N/m{}: {}", trial.stiffness, setting_text(choice.setting),
+                              trial.extreme({rule->first, true})->text));
+    return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 std::string with_gain(const TuneTrial& trial, double gain) {
@@ -86,8 +105,8 @@ std::string with_gain(const TuneTrial& trial, double gain) {
 }
 
 bool is_verified(Trials& trials, const TuneTrial& choice, TunedLaw& law) {
-  return !fails_between(trials, choice, law) && !scene_limit_is_near(trials, choice, law) &&
-         !fails_in_longer_run(trials, choice);
+  return !vibrates_nearby(trials, choice) && !fails_between(trials, choice, law) &&
+         !scene_limit_is_near(trials, choice, law) && !fails_in_longer_run(trials, choice);
 }
 
 }  // namespace hapbench

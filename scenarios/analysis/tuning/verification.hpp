@@ -5,14 +5,16 @@
 #include "scenarios/analysis/tuning/trials.hpp"
 #include "scenarios/analysis/tuning/tune.hpp"
 
-/// Verifies a choice before it is recommended: at gains that lie between the evaluated gains, in longer runs, and
-/// against the stability limit of the scene.
+/// Verifies a choice before it is recommended: at stiffnesses slightly below K, at gains that lie between the evaluated
+/// gains, in longer runs, and against the stability limit of the scene.
 namespace hapbench {
 
 /// Returns the override that sets the stiffness to the trial's K times `gain`.
 std::string with_gain(const TuneTrial& trial, double gain);
 
 /// Returns true if a choice passes all verifications, the cheapest first:
+/// - the run of the scene has low vibration also at kLowVibrationSamples stiffnesses from kLowVibrationFrom x K to K,
+///   unless TuneLimits::allow_vibration is true;
 /// - it is settled at 56 gains from 1 to G, in runs that cycle through the variants;
 /// - the stability limit of K in the scene itself, found by field_limit(), is beyond G K;
 /// - it is settled in runs twice as long. This check is skipped if a script would move the tool on after the scene's

@@ -39,9 +39,10 @@ std::string limits_text(const Tuning& tuning) {
       "first quarter of the contact (at most 1 mm/s rms above 30 Hz){}",
       tuning.question.margin, tuning.ranges.damping_ratio ? ", with damping B = 2 zeta sqrt(K m)" : "");
   if (!tuning.question.allow_vibration)
-    text +=
-        fmt::format(". The run at K has low vibration: none of the rules {} applies (\"hapbench describe diagnosis\")",
-                    low_vibration_rules());
+    text += fmt::format(
+        ". The runs at K and at {} stiffnesses from {:g} K to K have low vibration: none of the rules {} applies "
+        "(\"hapbench describe diagnosis\")",
+        kLowVibrationSamples, kLowVibrationFrom, low_vibration_rules());
   for (const auto& [name, bound] : tuning.question.limits) {
     if (bound.min) text += fmt::format(". At K {} >= {:g}", name, *bound.min);
     if (bound.max) text += fmt::format(". At K {} <= {:g}", name, *bound.max);

@@ -146,7 +146,8 @@ void add_tune(CommandLine& line) {
       "time.step_s=0.001.\n\n"
       "Requirements: the scenario's run and the runs of each family are stable at K and at margin x K, the linear "
       "limit is at least margin x K, every --bound holds at K, and a force is rendered. Unless --allow-vibration is "
-      "given, the scenario's run has low vibration: none of the rules {} applies (\"hapbench describe diagnosis\").\n\n"
+      "given, the scenario's run has low vibration at K and at {} stiffnesses from {:g} K to K: none of the rules {} "
+      "applies (\"hapbench describe diagnosis\").\n\n"
       "Result: K, zeta and law, the binding constraint, the margins that are left, and the expected metrics with their "
       "errors. {} verification samples between K and margin x K must be stable; otherwise the search continues with "
       "another K.\n\n"
@@ -159,7 +160,8 @@ void add_tune(CommandLine& line) {
       "feasible, an earlier NAME_tuned.json is removed.\n\n"
       "Time: seconds to minutes; a search for a law ends after {} runs.\n\n"
       "Exit status: 0 also if nothing is feasible; 2 bad input; 130 stopped by Ctrl-C.",
-      low_vibration_rules(), kVerificationSamples + kSamplesNearLimit, kMaxTuneRuns));
+      kLowVibrationSamples, kLowVibrationFrom, low_vibration_rules(), kVerificationSamples + kSamplesNearLimit,
+      kMaxTuneRuns));
 }
 
 }  // namespace hapbench

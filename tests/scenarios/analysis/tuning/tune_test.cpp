@@ -1,5 +1,6 @@
 #include "scenarios/analysis/tuning/tune.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -10,6 +11,8 @@
 #include <vector>
 
 #include "device_model/theory/linear_loops.hpp"
+#include "scenarios/analysis/stability/interval_search.hpp"
+#include "scenarios/analysis/stability/limit_question.hpp"
 #include "scenarios/analysis/tuning/trials.hpp"
 #include "scenarios/input/bundled_scenarios.hpp"
 #include "scenarios/input/text_lines.hpp"
@@ -121,6 +124,43 @@ TEST(Tune, IsNotBoundByAHandThatIsTooSoftToPullTheToolOn) {
   const TunedLaw law = tuned_law(asked, "shaped_stiffness");
   ASSERT_TRUE(law.choice) << law.why;
   EXPECT_GT(law.choice->stiffness, 36000.0);
+}
+
+/// Returns the question of a bundled scene in which the force jumps at single values of K far below the largest
+/// feasible K.
+TuneQuestion device_at_wall() {
+  TuneQuestion asked = question("device_at_wall", {});
+  asked.threads = 2;
+  return asked;
+}
+
+/// Checks that the search goes on above a stiffness at which the force jumps: in the whole range of zeta, it finds a K
+/// that is at least as large as in a part of the range. `kTuneResolution` is the width at which a search for K stops.
+TEST(Tune, FindsInAWideRangeWhatItFindsInANarrowRange) {
+  TuneQuestion narrow = device_at_wall();
+  narrow.damping_ratio = {0.5, 1.0};
+  const TunedLaw part = tuned_law(narrow, "shaped_stiffness"), whole = tuned_law(device_at_wall(), "shaped_stiffness");
+  ASSERT_TRUE(part.choice && whole.choice);
+  EXPECT_GE(whole.choice->stiffness, (1.0 - kTuneResolution) * part.choice->stiffness);
+}
+
+/// Checks low vibration slightly below the choice in runs of the test: no stiffness of the verification may break a
+/// rule of low vibration.
+TEST(Tune, RecommendsNoStiffnessBesideAVibration) {
+  const TuneQuestion asked = device_at_wall();
+  const TunedLaw law = tuned_law(asked, "shaped_stiffness");
+  ASSERT_TRUE(law.choice) << law.why;
+  const Range nearby{kLowVibrationFrom * law.choice->stiffness, law.choice->stiffness, true};
+  std::vector<double> parameters = parameters_between(0.0, 1.0, kLowVibrationSamples);
+  parameters.push_back(1.0);
+  for (const double t : parameters) {
+    std::vector<std::string> overrides = law.overrides;
+    overrides.push_back(fmt::format("{}={}", kStiffnessPath, nearby.value_at(t)));
+    const Result run = run_scenario(checked(load_scenario(asked.scenario, overrides)), std::nullopt, false, nullptr,
+                                    Diagnose::low_vibration);
+    for (const Diagnosed& number : run.low_vibration)
+      EXPECT_LE(number.value, number.threshold) << nearby.value_at(t) << " N/m: " << number.says;
+  }
 }
 
 TEST(Tune, NamesTheLimitToRelaxAndByHowMuch) {
