@@ -194,14 +194,15 @@ Finding judge_springs_limited(const Measured& runs, const PublishedNumbers& p) {
                                   without["arrives"] == 1.0 ? "" : " (does not arrive)", with["swings"],
                                   with["arrives"] == 1.0 ? "" : " (does not arrive)"));
   }
-  return {decide(keeps && published_pairs, keeps && !fluctuate.empty()),
-          fmt::format("the proposed algorithm {} its performance; {}", keeps ? "keeps" : "does not keep",
-                      fluctuate.empty() ? "no other algorithm is smooth without the limits and fluctuates with them"
-                                        : "smooth without the limits, but fluctuating with the limits: " + fluctuate),
-          "number of swings, first without the limits, then with them: " + text,
-          fmt::format(
-              "proposed algorithm: {}; the only other algorithms that are smooth without the limits and fluctuate with them: {}",
-              swings, fluctuate.empty() ? "none" : fluctuate)};
+  return {
+      decide(keeps && published_pairs, keeps && !fluctuate.empty()),
+      fmt::format("the proposed algorithm {} its performance; {}", keeps ? "keeps" : "does not keep",
+                  fluctuate.empty() ? "no other algorithm is smooth without the limits and fluctuates with them"
+                                    : "smooth without the limits, but fluctuating with the limits: " + fluctuate),
+      "number of swings, first without the limits, then with them: " + text,
+      fmt::format(
+          "proposed algorithm: {}; of the other algorithms, smooth without the limits and fluctuating with them: {}",
+          swings, fluctuate.empty() ? "none" : fluctuate)};
 }
 
 // ---- A4: the integrator's stability limits. One case for each published number, in the order of the thesis.

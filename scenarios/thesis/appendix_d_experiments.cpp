@@ -125,14 +125,12 @@ std::string deviation_text(const MeasuredCase& m, const Compared& c, bool publis
   if (c.agrees && c.near) return "";
   if (m.all("original").empty())
     return fmt::format("{}: not compared, because no subject has values for both algorithms", m.name);
-  const std::string how =
-      fmt::format(fmt::runtime(c.agrees                ? "{} far from the published values"
-                               : !published_difference ? "here a significant difference in {}, in the thesis none"
-                               : c.significant         ? "{} differs in the opposite direction"
-                                                       : "no significant difference in {}"),
-                  m.name);
-  return fmt::format("{}: {:.2g} (original) against {:.2g}{} (shaping)", how, mean_of(m.all("original")),
-                     mean_of(m.all("shaped")), column_of(m).unit);
+  const char* how = c.agrees                ? "far from the published values"
+                    : !published_difference ? "a significant difference, unlike in the thesis"
+                    : c.significant         ? "a difference in the opposite direction"
+                                            : "a difference that is not significant";
+  return fmt::format("{} {:.2g} (original) against {:.2g}{} (shaping), {}", m.name, mean_of(m.all("original")),
+                     mean_of(m.all("shaped")), column_of(m).unit, how);
 }
 
 /// Judges an experiment by all its measures except the force. `id`: D1 to D4. `published_difference`: true if the
@@ -338,8 +336,8 @@ Finding judge_pilots(const Measured& measured, const PublishedNumbers& published
                   offset.text(), height.text(), worse.empty() ? "no position" : worse),
       "",
       fmt::format(
-          "success rate with the original algorithm: {:.2f} for targets beyond the published positions, {:.2f} for "
-          "the easiest target",
+          "success rate with the original algorithm: {:.2f} for targets farther from the axis or lower than the "
+          "published ones, {:.2f} for the easiest target",
           beyond, easiest)};
 }
 

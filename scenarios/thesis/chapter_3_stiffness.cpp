@@ -145,17 +145,19 @@ Finding judge_range(const Measured& measured, const PublishedNumbers& p, double 
   const bool averages = low >= once.at_least && high <= once.at_most;
   const Verdict verdict =
       averaged ? decide(averages, false) : decide(inside >= threshold(p, "nearly_all"), inside >= threshold(p, "most"));
-  return {verdict,
-          fmt::format(
-              "after one update, one contact beside k parallel contacts of another direction can have a ratio as small "
-              "as {:.2f}, {:.2f} and {:.2f} for k = 3, 4 and 5, and the reduction of the thesis keeps about 6 contacts; "
-              "the smallest ratio of a step is {:.2f} in the mean over all steps, and the largest ratio {:.2f}{}",
-              smallest_after_one_update(3), smallest_after_one_update(4), smallest_after_one_update(5), low, high,
-              inside < 1.0 ? ", but in a part of the steps, a ratio is outside the range" : ""),
-          "",
-          averaged ? fmt::format("averages {:.2f} to {:.2f}", low, high)
-                   : fmt::format("in {:.0f} % of the steps, all ratios are within {} to {}", 100.0 * inside,
-                                 plain(once.at_least), plain(once.at_most))};
+  return {
+      verdict,
+      fmt::format(
+          "after one update, if k contacts are parallel to each other, a contact of another direction can have a ratio "
+          "as small as {:.2f}, {:.2f} and {:.2f} for k = 3, 4 and 5, and the reduction of the thesis keeps about 6 "
+          "contacts, so k can be up to 5; the smallest ratio of a step is {:.2f} in the mean over all steps, and the "
+          "largest ratio {:.2f}{}",
+          smallest_after_one_update(3), smallest_after_one_update(4), smallest_after_one_update(5), low, high,
+          inside < 1.0 ? ", but in a part of the steps, a ratio is outside the range" : ""),
+      "",
+      averaged ? fmt::format("mean over the steps: smallest ratio {:.2f}, largest ratio {:.2f}", low, high)
+               : fmt::format("in {:.0f} % of the steps, all ratios are within {} to {}", 100.0 * inside,
+                             plain(once.at_least), plain(once.at_most))};
 }
 
 Finding judge_first_update(const Measured& measured, const PublishedNumbers& p) {

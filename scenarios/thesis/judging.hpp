@@ -39,8 +39,8 @@ struct VerdictText {
 /// The texts of all verdicts, in the order of Verdict.
 inline constexpr VerdictText kVerdicts[] = {
     {"replicated",
-     "our implementation, written by other authors from the text of the thesis alone, meets the claim's rule with the "
-     "published numbers (as in the ACM badge \"Results Replicated\", version 1.1)"},
+     "our implementation, written from the text of the thesis alone and not by its author, meets the claim's rule with "
+     "the published numbers (as in the ACM badge \"Results Replicated\", version 1.1)"},
     {"qualitatively replicated", "the direction or the mechanism is as published; the numbers are not"},
     {"not replicated", "neither the numbers nor the direction are as published, in this model of device and hand"},
     {"contradicted", "an exact result contradicts the claim"},
