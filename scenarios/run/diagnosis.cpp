@@ -134,9 +134,7 @@ constexpr Rule kRules[] = {
      "pressed tool",
      "1/s", kMaxChatter, "the force chatters: it reverses {} times per second", chatter, against_chatter, no_more,
      true},
-    {"energy",
-     "net energy created by the rendering; on an impedance device, in a run with a diagnosis, by the force of the "
-     "motors at the handle",
+    {"energy", "net energy created by the rendering; on an impedance device, by the force of the motors at the handle",
      "J", kMaxCreatedEnergy, "net energy of {} J was created", created_energy, against_energy, created_by, true},
     {"force_sign", "mean angle between the rendered force and the force measured with the stroke", "rad", 2.6,
      "the measured force is opposite to the rendered force (mean angle {} rad), like a force of the tool on the "

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "scenarios/run/diagnosis.hpp"
+#include "scenarios/run/run_scenario.hpp"
 #include "scenarios/thesis/claims.hpp"
 #include "scenarios/thesis/measurements.hpp"
 

@@ -93,8 +93,11 @@ std::string remedy(const TuneQuestion& question, const TuneFailure& failure) {
 void explain_limits(Trials& trials, const TuneLimits& limits, const std::vector<Relaxation>& found, TunedLaw& law) {
   trials.begin_search(limits);
   const TuneTrial& nearest = trials.evaluated(found[0].choice, Need::all);
-  law.binding = nearest.binding;
-  law.why = nearest.why;
+  // A choice that keeps all limits failed its verification: law.why has the reason of the last failure.
+  if (!nearest.feasible()) {
+    law.binding = nearest.binding;
+    law.why = nearest.why;
+  }
   std::vector<std::string> texts;
   for (const Relaxation& relaxation : found) texts.push_back(relaxation.text);
   law.relax = fmt::format("{}", fmt::join(texts, "; or "));

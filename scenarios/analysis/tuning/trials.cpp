@@ -282,6 +282,34 @@ std::optional<Failing> Trials::first_failing(const TuneTrial& trial, std::size_t
   return std::nullopt;
 }
 
+std::vector<std::optional<TuneFailure>> Trials::vibrations(const TuneSetting& setting,
+                                                           const std::vector<double>& stiffnesses) {
+  std::vector<std::optional<TuneFailure>> found(stiffnesses.size());
+  in_parallel(nullptr, found.size(), [&](std::size_t i) {
+    const CheckedScenario scene = checked(load(setting, stiffnesses[i]));
+    const RunStability run = stability_of(scene, shell_, rule_for(scene.scenario(), variants_[0]));
+    if (run.verdict == RunVerdict::vibrating || run.verdict == RunVerdict::diverged) {
+      found[i] = TuneFailure{"settled", verdict_with(run, variants_[0])};
+      return;
+    }
+    for (const Diagnosed& number : run_with_shell(scene, shell_, Diagnose::low_vibration).low_vibration)
+      if (!found[i] && number.value > number.threshold) found[i] = TuneFailure{number.rule, number.says};
+  });
+  count_runs(found.size());
+  return found;
+}
+
+std::optional<TuneFailure> Trials::vibration_of(const TuneTrial& trial) const {
+  if (trial.failure && trial.failure->binding == "settled" && trial.failure->variant_index == 0 &&
+      (trial.failure->verdict == run_verdict_name(RunVerdict::vibrating) ||
+       trial.failure->verdict == run_verdict_name(RunVerdict::diverged)))
+    return TuneFailure{"settled", trial.failure->verdict};
+  for (const auto& [rule, threshold] : rules_)
+    if (const auto found = trial.largest.find(rule); found != trial.largest.end() && found->second.value > threshold)
+      return TuneFailure{rule, found->second.text};
+  return std::nullopt;
+}
+
 void Trials::in_parallel(TuneTrial* trial, std::size_t count, const std::function<void(std::size_t)>& job) {
   runs_ += count;
   if (trial != nullptr) {
@@ -625,6 +653,7 @@ const Trials::Refutation* Trials::refutation_of(const TuneTrial& trial) const {
 }
 
 void Trials::refute(const TuneSetting& setting, double from, double to, std::string constraint, std::string reason) {
+  last_refuted_ = TuneFailure{constraint, reason};
   refutations_.push_back({setting, from, to, std::move(constraint), std::move(reason)});
   for (auto& [key, trial] : all_)
     if (requested_.contains(&trial) && trial.feasible()) judge(trial);

@@ -139,6 +139,15 @@ class Trials {
   std::optional<Failing> first_failing(const TuneTrial& trial, std::size_t count,
                                        const std::function<std::string(std::size_t run)>& more);
 
+  /// Runs the scene itself with a setting at each stiffness [N/m]. Returns for each run how it vibrates: its verdict
+  /// `vibrating` or `diverged`, or a violated rule of low vibration; empty if neither. Makes two runs for each
+  /// stiffness, which do not count for the search.
+  std::vector<std::optional<TuneFailure>> vibrations(const TuneSetting& setting,
+                                                     const std::vector<double>& stiffnesses);
+  /// Returns how the run of the scene itself vibrates in a trial, as vibrations() does, as far as the trial was
+  /// evaluated.
+  std::optional<TuneFailure> vibration_of(const TuneTrial& trial) const;
+
   // ---- Limits on metrics
 
   /// Returns the violated limits of a trial, each with the factor > 1 by which the extreme value and its error are
@@ -160,6 +169,8 @@ class Trials {
   /// Restricts every refutation to the setting that failed. Returns false if there are no refutations or they are
   /// already restricted.
   bool restrict_refutations();
+  /// Returns the refutation of the choice that failed last; null if no choice was refuted.
+  const TuneFailure* last_refuted() const { return last_refuted_ ? &*last_refuted_ : nullptr; }
   /// Returns the smallest K that is known to be unstable for a choice [N/m]; infinite if none is known.
   double smallest_unstable() const { return smallest_unstable_; }
   /// Records that a choice is unstable at K [N/m].
@@ -224,6 +235,7 @@ class Trials {
   std::set<const TuneTrial*> requested_;  ///< trials of this search
   std::vector<Refutation> refutations_;
   bool exact_refutations_ = false;
+  std::optional<TuneFailure> last_refuted_;  ///< of all searches
   std::size_t runs_ = 0, search_runs_ = 0;
   std::string purpose_, aim_;
 };

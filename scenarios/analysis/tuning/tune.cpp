@@ -38,7 +38,11 @@ std::optional<TuneTrial> verified_choice(Trials& trials, const std::optional<Lim
     // also keeps its limits with all errors.
     if (choice && !trials.evaluated(*choice, Need::excess).feasible()) continue;
     trials.begin_purpose("verification");
-    if (choice && !is_verified(trials, *choice, law)) continue;
+    if (choice && !is_verified(trials, *choice, law)) {
+      law.binding = trials.last_refuted()->binding;
+      law.why = trials.last_refuted()->why;
+      continue;
+    }
     if (choice && !strictest) {
       law.binding = search.beyond().binding;
       law.why = search.beyond().why;

@@ -16,10 +16,10 @@ namespace hapbench {
 /// Largest number of simulations of the search for one law. Margins, error estimates and verification need a few
 /// hundred more.
 inline constexpr std::size_t kMaxTuneRuns = 6000;
-/// The run of the scene has low vibration at the choice's K and at this number of stiffnesses from this share of K to
-/// K.
+/// Number of stiffnesses below the K of a choice at which the run of the scene must have low vibration, too, unless
+/// TuneQuestion::allow_vibration is true.
 inline constexpr std::size_t kLowVibrationSamples = 4;
-inline constexpr double kLowVibrationFrom = 0.9;
+inline constexpr double kLowVibrationFrom = 0.9;  ///< smallest of these stiffnesses, in units of K
 
 /// Inputs of tuned_law().
 struct TuneQuestion {

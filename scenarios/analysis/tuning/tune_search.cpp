@@ -39,10 +39,10 @@ std::vector<TuneSetting> settings_of(const TuneRanges& ranges, const Scenario& s
   return settings;
 }
 
-/// Removes the values of a scan below its highest group of neighbouring feasible values, so that the search continues
-/// at this group. A group has at least two values: a single feasible value may be a chance, for example between two
-/// resonances. Does nothing without a group.
-void keep_highest_group(EvaluatedParameters& scan) {
+/// Removes the values of a scan below its two highest neighbouring feasible values, so that the search continues there.
+/// A single feasible value may be a chance, for example between two resonances. Does nothing if no two neighbours are
+/// feasible.
+void keep_highest_neighbours(EvaluatedParameters& scan) {
   for (auto high = std::prev(scan.end()); high != scan.begin(); --high) {
     if (const auto low = std::prev(high); high->second && low->second) {
       scan.erase(scan.begin(), low);
@@ -125,7 +125,12 @@ void TuneSearch::search_settings() {
   // Begin with the known feasible trials: a trial that was evaluated earlier in this search may be the only feasible
   // trial.
   best_.reset();
-  if (const TuneTrial* known = trials_.stiffest_feasible()) improve(TuneTrial(*known).setting);
+  if (const TuneTrial* known = trials_.stiffest_feasible()) {
+    best_ = *known;
+    beyond_ = {};
+    beyond_.fail("range", "the end of the search range");
+    improve(TuneSetting(best_->setting));
+  }
   for (const TuneSetting& setting : settings_) improve(setting);
   if (best_) return;
   trials_.begin_purpose("search in finer steps");
@@ -164,7 +169,7 @@ Range TuneSearch::stiffnesses() const {
 }
 
 /// Searches for a feasible K of a setting above the best K so far. If there is a feasible K, makes the trial at the
-/// largest feasible K the best trial and returns true.
+/// largest K that the search finds the best trial and returns true.
 bool TuneSearch::improve(const TuneSetting& setting) {
   // Search only above the best K.
   IntervalSearchOptions options{.range = stiffnesses(), .resolution = kTuneResolution};
@@ -178,7 +183,7 @@ bool TuneSearch::improve(const TuneSetting& setting) {
   }
   const auto holds = [&](double t) { return trials_.feasible(setting, options.value_at(t)); };
   EvaluatedParameters scan = evaluate_scan(kScanIntervals, holds);
-  keep_highest_group(scan);
+  keep_highest_neighbours(scan);
   if (!best_) add_known(setting, options, scan);
   if (const auto between = window(setting, options, scan)) scan[*between] = true;
   const StableInterval interval = find_stable_interval(options, scan, holds, false);

@@ -19,7 +19,8 @@ double stricter(double value, const LimitEnd& end, double factor);
 /// The initial settings combine damping ratios zeta, spaced by factors of about 10^(1/4), with up to three virtual
 /// masses: the scene's mass and both ends of the mass range. The search has four stages:
 /// - For each initial setting, it first evaluates a K that is 0.5 % above the best K so far. If the setting is feasible
-///   there, it searches for the largest feasible K of the setting, beginning with a scan of kScanIntervals intervals.
+///   there, it scans larger K in kScanIntervals intervals, and bisects above the highest two neighbouring feasible
+///   values of the scan, or above the first feasible value if no two neighbours are feasible.
 /// - Only if no trial is feasible, it divides intervals of the scan into thirds if the run of the scene itself is
 ///   settled at one of their ends. It then evaluates the velocity filters. Finally, it reduces excess() by pattern
 ///   searches from the trials with the smallest excess().
@@ -30,7 +31,7 @@ class TuneSearch {
   /// `trials` must outlive this object.
   explicit TuneSearch(Trials& trials);
 
-  /// Returns the feasible trial with the largest K; empty if no trial is feasible.
+  /// Returns the feasible trial with the largest K that the search finds; empty if it finds none.
   std::optional<TuneTrial> best();
   /// Returns a feasible trial that keeps a strict value of one end of a limit (TuneTrial::kept()). From the feasible
   /// trial with the strictest value, a pattern search goes to neighbours with a value stricter by at least 0.5 %. Empty

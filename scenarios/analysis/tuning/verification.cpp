@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <limits>
+#include <map>
+#include <optional>
 #include <vector>
 
 #include "scenarios/run/scene_loop.hpp"
@@ -79,23 +81,28 @@ bool fails_in_longer_run(Trials& trials, const TuneTrial& choice) {
   return true;
 }
 
-/// Returns true if the run of the scene violates a rule of low vibration at a stiffness slightly below the choice, for
-/// example because the choice lies between two resonances. Then refutes the choice and the stiffnesses down to this
-/// one.
+/// Returns true if the run of the scene vibrates at a stiffness from kLowVibrationFrom x K to K, for example because
+/// the choice lies between two resonances. Then refutes all stiffnesses that have the lowest such stiffness so near
+/// below them. Uses the known trials of the setting, and further runs.
 bool vibrates_nearby(Trials& trials, const TuneTrial& choice) {
   if (trials.limits().allow_vibration) return false;
   const Range nearby{kLowVibrationFrom * choice.stiffness, choice.stiffness, true};
-  for (const double t : parameters_between(0.0, 1.0, kLowVibrationSamples)) {
-    const TuneTrial& trial = trials.trial_at(choice.setting, nearby.value_at(t));
-    const MetricValues violated = trials.violated_limits(trial);
-    const auto rule = std::ranges::find_if(violated, [&](const auto& entry) { return trials.is_rule(entry.first); });
-    if (rule == violated.end()) continue;
-    trials.refute(choice.setting, trial.stiffness * (1.0 - kTuneResolution), choice.stiffness, rule->first,
-                  fmt::format("at {:.4g} N/m{}: {}", trial.stiffness, setting_text(choice.setting),
-                              trial.extreme({rule->first, true})->text));
-    return true;
+  std::map<double, TuneFailure> failures;  // by stiffness
+  for (const auto& [key, trial] : trials.all())
+    if (key.first == choice.setting && key.second >= nearby.from && key.second <= nearby.to)
+      if (const auto failure = trials.vibration_of(trial)) failures.emplace(key.second, *failure);
+  if (failures.empty()) {
+    std::vector<double> stiffnesses;
+    for (const double t : parameters_between(0.0, 1.0, kLowVibrationSamples)) stiffnesses.push_back(nearby.value_at(t));
+    const auto found = trials.vibrations(choice.setting, stiffnesses);
+    for (std::size_t i = 0; i < found.size(); ++i)
+      if (found[i]) failures.emplace(stiffnesses[i], *found[i]);
   }
-  return false;
+  if (failures.empty()) return false;
+  const auto& [K, failure] = *failures.begin();
+  trials.refute(choice.setting, K * (1.0 - kTuneResolution), K / kLowVibrationFrom, failure.binding,
+                fmt::format("at {:.4g} N/m{}: {}", K, setting_text(choice.setting), failure.why));
+  return true;
 }
 
 }  // namespace

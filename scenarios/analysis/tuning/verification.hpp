@@ -13,8 +13,10 @@ namespace hapbench {
 std::string with_gain(const TuneTrial& trial, double gain);
 
 /// Returns true if a choice passes all verifications, the cheapest first:
-/// - the run of the scene has low vibration also at kLowVibrationSamples stiffnesses from kLowVibrationFrom x K to K,
-///   unless TuneLimits::allow_vibration is true;
+/// - at kLowVibrationSamples stiffnesses from kLowVibrationFrom x K to K, and in the known trials of the setting
+/// between
+///   these stiffnesses, the run of the scene does not vibrate (Trials::vibrations()). This check is skipped if
+///   TuneLimits::allow_vibration is true;
 /// - it is settled at 56 gains from 1 to G, in runs that cycle through the variants;
 /// - the stability limit of K in the scene itself, found by field_limit(), is beyond G K;
 /// - it is settled in runs twice as long. This check is skipped if a script would move the tool on after the scene's

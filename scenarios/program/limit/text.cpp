@@ -166,10 +166,9 @@ std::string notes_text(const LimitTable& table, const Layout& layout) {
       {!table.is_grid(), fmt::format("stable {}: other end of the interval of stable values that contains the limit",
                                      table.first().question.search.smallest ? "to" : "from")},
       {table.is_grid(),
-       "linear limit: limit by the eigenvalues of the loop of device, hand and contact, without dry friction and "
-       "encoder; no end: the loop is stable to the end of the range; none stable: it is stable at no value; -: the "
-       "eigenvalues give no limit (column "
-       "no_linear_reason of limit.csv)"},
+       "linear limit: limit by the eigenvalues of the loop of device, hand and contact, without dry friction, encoder "
+       "and force stage; no end: the loop is stable to the end of the range; none stable: it is stable at no value; "
+       "-: the eigenvalues give no limit (column no_linear_reason of limit.csv)"},
       {true,
        fmt::format(
            "first unstable: class of the first unstable run beyond the simulated limit ({}); if no value is stable, "
