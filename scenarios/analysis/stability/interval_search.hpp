@@ -62,7 +62,7 @@ EvaluatedParameters evaluate_scan(int intervals, const IsStable& stable);
 
 /// Bisects the first stable-to-unstable transition above the current value, or above the first stable parameter if the
 /// current value is unstable. Returns an empty interval if no parameter is stable. On input `evaluated` has at least
-/// one parameter; the search adds all parameters that it evaluates.
+/// t = 1; the search adds all parameters that it evaluates.
 ///
 /// If `beside` is false, finds only `stable` and `beyond`. If `beside` is true, also evaluates three parameters on each
 /// side of the transition. If these parameters show an earlier transition, bisects the earlier transition instead, up

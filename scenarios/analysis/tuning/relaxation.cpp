@@ -121,6 +121,7 @@ std::optional<Relaxation> joint_relaxation(Trials& trials, const TuneLimits& lim
     TuneLimits relaxed = relaxed_to(trials, trial, limits, factor);
     if (drops_rules && std::exchange(relaxed.allow_vibration, true)) continue;  // was tried before
     const std::string text = relaxed_text(limits, relaxed);
+    if (text.empty()) continue;  // relaxes nothing
     trials.set_aim(text);
     if (const auto choice = search(relaxed, std::nullopt)) return Relaxation{text, *choice};
   }
@@ -141,8 +142,12 @@ const TuneTrial* nearest_to_limits(Trials& trials, const TuneLimits& limits) {
 std::vector<Relaxation> relaxations(Trials& trials, const TuneLimits& limits, const VerifiedSearch& search) {
   std::vector<Relaxation> found;
   // Decide before the searches below, which change the limits of `trials`.
+  const TuneFailure* refuted = trials.last_refuted();
+  const bool vibrates_nearby = refuted != nullptr && trials.is_rule(refuted->binding);
   const bool rules_alone =
-      std::ranges::any_of(trials.all(), [&](const auto& entry) { return violates_only_rules(trials, entry.second); });
+      !limits.allow_vibration && (vibrates_nearby || std::ranges::any_of(trials.all(), [&](const auto& entry) {
+                                    return violates_only_rules(trials, entry.second);
+                                  }));
   for (const LimitEnd& end : ends_of(limits))
     if (auto relaxation = smallest_relaxation(trials, limits, end, search)) found.push_back(std::move(*relaxation));
   if (rules_alone)

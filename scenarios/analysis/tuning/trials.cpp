@@ -37,6 +37,19 @@ StabilityRule rule_for(const Scenario& scenario, const SceneVariant& variant) {
   return rule;
 }
 
+/// Returns how the run of the scene itself vibrates in a trial: its verdict, or the first rule of low vibration that it
+/// violates; empty if neither, as far as the trial was evaluated. `rules`: the rules with their thresholds.
+std::optional<TuneFailure> vibration_of(const TuneTrial& trial, const std::map<std::string, double>& rules) {
+  const auto has_verdict = [&](RunVerdict verdict) { return trial.failure->verdict == run_verdict_name(verdict); };
+  if (trial.failure && trial.failure->binding == "settled" && trial.failure->variant_index == 0 &&
+      (has_verdict(RunVerdict::vibrating) || has_verdict(RunVerdict::diverged)))
+    return TuneFailure{"settled", trial.failure->verdict};
+  for (const auto& [rule, threshold] : rules)
+    if (const auto found = trial.largest.find(rule); found != trial.largest.end() && found->second.value > threshold)
+      return TuneFailure{rule, found->second.text};
+  return std::nullopt;
+}
+
 /// Stores the largest and the smallest value of a limited metric over the variants in the trial. Stores no value if the
 /// metric has no value in one of the runs.
 void note_extremes(TuneTrial& trial, const std::string& name, std::span<const MetricValues> metrics,
@@ -295,19 +308,20 @@ std::vector<std::optional<TuneFailure>> Trials::vibrations(const TuneSetting& se
     for (const Diagnosed& number : run_with_shell(scene, shell_, Diagnose::low_vibration).low_vibration)
       if (!found[i] && number.value > number.threshold) found[i] = TuneFailure{number.rule, number.says};
   });
-  count_runs(found.size());
+  // A run that is not settled needs no second run.
+  count_runs(static_cast<std::size_t>(
+      std::ranges::count_if(found, [](const auto& failure) { return !failure || failure->binding != "settled"; })));
   return found;
 }
 
-std::optional<TuneFailure> Trials::vibration_of(const TuneTrial& trial) const {
-  if (trial.failure && trial.failure->binding == "settled" && trial.failure->variant_index == 0 &&
-      (trial.failure->verdict == run_verdict_name(RunVerdict::vibrating) ||
-       trial.failure->verdict == run_verdict_name(RunVerdict::diverged)))
-    return TuneFailure{"settled", trial.failure->verdict};
-  for (const auto& [rule, threshold] : rules_)
-    if (const auto found = trial.largest.find(rule); found != trial.largest.end() && found->second.value > threshold)
-      return TuneFailure{rule, found->second.text};
-  return std::nullopt;
+std::map<double, TuneFailure> Trials::known_vibrations(const TuneSetting& setting, const Range& stiffnesses) const {
+  std::map<double, TuneFailure> found;
+  for (const auto& [key, trial] : all_) {
+    const auto& [of, K] = key;
+    if (of != setting || K < stiffnesses.from || K > stiffnesses.to || !requested_.contains(&trial)) continue;
+    if (const auto failure = vibration_of(trial, rules_)) found.emplace(K, *failure);
+  }
+  return found;
 }
 
 void Trials::in_parallel(TuneTrial* trial, std::size_t count, const std::function<void(std::size_t)>& job) {

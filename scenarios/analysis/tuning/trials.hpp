@@ -140,13 +140,13 @@ class Trials {
                                        const std::function<std::string(std::size_t run)>& more);
 
   /// Runs the scene itself with a setting at each stiffness [N/m]. Returns for each run how it vibrates: its verdict
-  /// `vibrating` or `diverged`, or a violated rule of low vibration; empty if neither. Makes two runs for each
-  /// stiffness, which do not count for the search.
+  /// `vibrating` or `diverged`, or a violated rule of low vibration; empty if neither. Makes one or two runs for
+  /// each stiffness, which do not count for the search.
   std::vector<std::optional<TuneFailure>> vibrations(const TuneSetting& setting,
                                                      const std::vector<double>& stiffnesses);
-  /// Returns how the run of the scene itself vibrates in a trial, as vibrations() does, as far as the trial was
-  /// evaluated.
-  std::optional<TuneFailure> vibration_of(const TuneTrial& trial) const;
+  /// Returns how the scene itself vibrates in the trials of this search with the setting and a stiffness in the range
+  /// [N/m], as far as the trials were evaluated. Trials without a vibration are left out. The keys are the stiffnesses.
+  std::map<double, TuneFailure> known_vibrations(const TuneSetting& setting, const Range& stiffnesses) const;
 
   // ---- Limits on metrics
 

@@ -66,9 +66,13 @@ void explain_or_find(Trials& trials, TunedLaw& law) {
   trials.set_aim("");
   trials.begin_search(limits);
   trials.recall_all();
-  if (trials.stiffest_feasible() != nullptr) law.choice = verified_choice(trials, {}, law);
+  if (trials.stiffest_feasible() != nullptr) {
+    TunedLaw found = law;
+    found.choice = verified_choice(trials, {}, found);
+    found.relax.clear();
+    if (found.choice) law = found;
+  }
   if (law.choice) {
-    law.relax.clear();
     return;
   }
   if (law.why.empty()) {

@@ -19,7 +19,7 @@ inline constexpr std::size_t kMaxTuneRuns = 6000;
 /// Number of stiffnesses below the K of a choice at which the run of the scene must have low vibration, too, unless
 /// TuneQuestion::allow_vibration is true.
 inline constexpr std::size_t kLowVibrationSamples = 4;
-inline constexpr double kLowVibrationFrom = 0.9;  ///< smallest of these stiffnesses, in units of K
+inline constexpr double kLowVibrationFrom = 0.9;  ///< these stiffnesses are above this share of K
 
 /// Inputs of tuned_law().
 struct TuneQuestion {

@@ -76,6 +76,10 @@ std::optional<TuneTrial> TuneSearch::best() {
     for (const TuneSetting& setting : settings_)
       if (setting.mass == best_->setting.mass) improve({setting.damping_ratio, setting.mass, filter});
   refine();
+  // A scan may have feasible values above the neighbours at which its search continued.
+  for (const TuneTrial* known = trials_.stiffest_feasible(); known->stiffness > best_->stiffness;
+       known = trials_.stiffest_feasible())
+    continue_from(*known);
   // Evaluate the trial just above the best trial further, so that its violated limit is reported with the error of the
   // metric.
   if (beyond_.stiffness > 0.0) beyond_ = trials_.evaluated(beyond_, Need::excess);
@@ -125,12 +129,7 @@ void TuneSearch::search_settings() {
   // Begin with the known feasible trials: a trial that was evaluated earlier in this search may be the only feasible
   // trial.
   best_.reset();
-  if (const TuneTrial* known = trials_.stiffest_feasible()) {
-    best_ = *known;
-    beyond_ = {};
-    beyond_.fail("range", "the end of the search range");
-    improve(TuneSetting(best_->setting));
-  }
+  if (const TuneTrial* known = trials_.stiffest_feasible()) continue_from(*known);
   for (const TuneSetting& setting : settings_) improve(setting);
   if (best_) return;
   trials_.begin_purpose("search in finer steps");
@@ -142,6 +141,14 @@ void TuneSearch::search_settings() {
   if (!best_)
     for (const TuneTrial* start : trials_.nearest(kStarts))
       if (!best_) approach(*start);
+}
+
+/// Makes a feasible trial the best trial, and searches above it.
+void TuneSearch::continue_from(const TuneTrial& trial) {
+  best_ = trial;
+  beyond_ = {};
+  beyond_.fail("range", "the end of the search range");
+  improve(TuneSetting(best_->setting));
 }
 
 /// Searches for a feasible K of a setting between the stiffnesses of the scan, from the largest stiffness downwards. If

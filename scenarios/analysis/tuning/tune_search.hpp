@@ -51,6 +51,7 @@ class TuneSearch {
   void add_known(const TuneSetting& setting, const IntervalSearchOptions& options, EvaluatedParameters& scan) const;
   bool is_too_soft(const TuneSetting& setting, const IntervalSearchOptions& options, double t);
   void search_settings();
+  void continue_from(const TuneTrial& trial);
   void scan_finely(const TuneSetting& setting);
   void refine();
   void approach(const TuneTrial& start);

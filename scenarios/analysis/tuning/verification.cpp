@@ -82,15 +82,13 @@ bool fails_in_longer_run(Trials& trials, const TuneTrial& choice) {
 }
 
 /// Returns true if the run of the scene vibrates at a stiffness from kLowVibrationFrom x K to K, for example because
-/// the choice lies between two resonances. Then refutes all stiffnesses that have the lowest such stiffness so near
-/// below them. Uses the known trials of the setting, and further runs.
+/// the choice lies between two resonances. Then refutes the stiffnesses from the lowest such stiffness to the largest
+/// one that has it so near below it. Uses the known trials of the setting; if none of them vibrates, makes further
+/// runs.
 bool vibrates_nearby(Trials& trials, const TuneTrial& choice) {
   if (trials.limits().allow_vibration) return false;
   const Range nearby{kLowVibrationFrom * choice.stiffness, choice.stiffness, true};
-  std::map<double, TuneFailure> failures;  // by stiffness
-  for (const auto& [key, trial] : trials.all())
-    if (key.first == choice.setting && key.second >= nearby.from && key.second <= nearby.to)
-      if (const auto failure = trials.vibration_of(trial)) failures.emplace(key.second, *failure);
+  std::map<double, TuneFailure> failures = trials.known_vibrations(choice.setting, nearby);  // by stiffness
   if (failures.empty()) {
     std::vector<double> stiffnesses;
     for (const double t : parameters_between(0.0, 1.0, kLowVibrationSamples)) stiffnesses.push_back(nearby.value_at(t));

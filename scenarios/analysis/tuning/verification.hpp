@@ -13,9 +13,8 @@ namespace hapbench {
 std::string with_gain(const TuneTrial& trial, double gain);
 
 /// Returns true if a choice passes all verifications, the cheapest first:
-/// - at kLowVibrationSamples stiffnesses from kLowVibrationFrom x K to K, and in the known trials of the setting
-/// between
-///   these stiffnesses, the run of the scene does not vibrate (Trials::vibrations()). This check is skipped if
+/// - from kLowVibrationFrom x K to K, the run of the scene does not vibrate: neither in the known trials of the setting
+///   nor at kLowVibrationSamples further stiffnesses (Trials::vibrations()). This check is skipped if
 ///   TuneLimits::allow_vibration is true;
 /// - it is settled at 56 gains from 1 to G, in runs that cycle through the variants;
 /// - the stability limit of K in the scene itself, found by field_limit(), is beyond G K;

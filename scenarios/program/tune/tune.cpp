@@ -126,7 +126,7 @@ void add_tune(CommandLine& line) {
               "runs at K must keep METRIC=MAX or METRIC=MIN:MAX, such as inside_max_m=3e-4 or "
               "force_rms_above_30Hz_N=0.05; repeatable");
   command.flag("--allow-vibration", options.question.allow_vibration,
-               "do not require low vibration of the scenario's run at K");
+               "do not require low vibration of the scenario's run at K and slightly below");
   command.add("--family <name,...>", options.family,
               "further runs that must be stable: hands, seeds, speeds, or all (default: hands)",
               {.comma_separated = true});
