@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <optional>
+#include <utility>
 
 #include "scenarios/analysis/stability/interval_search.hpp"
 #include "scenarios/analysis/tuning/explanation.hpp"
@@ -70,10 +71,10 @@ void explain_or_find(Trials& trials, TunedLaw& law) {
     TunedLaw found = law;
     found.choice = verified_choice(trials, {}, found);
     found.relax.clear();
-    if (found.choice) law = found;
-  }
-  if (law.choice) {
-    return;
+    if (found.choice) {
+      law = std::move(found);
+      return;
+    }
   }
   if (law.why.empty()) {
     law.binding = "settled";
