@@ -179,6 +179,7 @@ Measured measure_springs_limited(const Evidence& e) {
 
 Finding judge_springs_limited(const Measured& runs, const PublishedNumbers& p) {
   std::string fluctuate, text, swings;
+  std::size_t others = 0, fluctuating = 0;
   bool keeps = true, published_pairs = false;
   for (std::size_t i = 0; i + 1 < runs.size(); i += 2) {
     const MeasuredCase &without = runs[i], &with = runs[i + 1];
@@ -186,23 +187,28 @@ Finding judge_springs_limited(const Measured& runs, const PublishedNumbers& p) {
       append_item(swings, fmt::format("{} swings with {} pairs", with["swings"], with["pairs"]), ", ");
       keeps = keeps && with["arrives"] == 1.0 && with["swings"] <= without["swings"] &&
               with["overshoot"] <= (1.0 + threshold(p, "same_overshoot")) * without["overshoot"];
-    } else if (is_smooth(without, p) && with["swings"] >= without["swings"] + threshold(p, "fluctuates")) {
-      append_item(fluctuate, fmt::format("{} with {} pairs", with.name, with["pairs"]), ", ");
-      published_pairs = published_pairs || with["pairs"] == static_cast<double>(kPairs);
+    } else {
+      ++others;
+      if (is_smooth(without, p) && with["swings"] >= without["swings"] + threshold(p, "fluctuates")) {
+        ++fluctuating;
+        append_item(fluctuate, fmt::format("{} with {} pairs", with.name, with["pairs"]), ", ");
+        published_pairs = published_pairs || with["pairs"] == static_cast<double>(kPairs);
+      }
     }
     append_item(text, fmt::format("{}, {} pairs: {}{}, then {}{}", with.name, with["pairs"], without["swings"],
                                   without["arrives"] == 1.0 ? "" : " (does not arrive)", with["swings"],
                                   with["arrives"] == 1.0 ? "" : " (does not arrive)"));
   }
-  return {
-      decide(keeps && published_pairs, keeps && !fluctuate.empty()),
-      fmt::format("the proposed algorithm {} its performance; {}", keeps ? "keeps" : "does not keep",
-                  fluctuate.empty() ? "no other algorithm is smooth without the limits and fluctuates with them"
-                                    : "smooth without the limits, but fluctuating with the limits: " + fluctuate),
-      "number of swings, first without the limits, then with them: " + text,
-      fmt::format(
-          "proposed algorithm: {}; of the other algorithms, smooth without the limits and fluctuating with them: {}",
-          swings, fluctuate.empty() ? "none" : fluctuate)};
+  return {decide(keeps && published_pairs, keeps && !fluctuate.empty()),
+          fmt::format("the proposed algorithm {} its performance; {}", keeps ? "keeps" : "does not keep",
+                      fluctuate.empty() ? "no other algorithm is smooth without the limits and fluctuates with them"
+                                        : "smooth without the limits, but fluctuating with the limits: " + fluctuate),
+          "number of swings, first without the limits, then with them: " + text,
+          fmt::format("proposed algorithm: {}; {} of {} cases with other algorithms {} smooth without the limits and "
+                      "{} with them{}",
+                      swings, fluctuating, others, fluctuating == 1 ? "is" : "are",
+                      fluctuating == 1 ? "fluctuates" : "fluctuate",
+                      fluctuate.empty() ? "" : fmt::format(" ({})", fluctuate))};
 }
 
 // ---- A4: the integrator's stability limits. One case for each published number, in the order of the thesis.

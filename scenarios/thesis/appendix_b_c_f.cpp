@@ -90,8 +90,8 @@ Finding judge_groove(const Measured& measured, const PublishedNumbers& p) {
                   "{} the missing damping across this direction",
                   with > majority ? "does not hide" : "hides"),
       "",
-      fmt::format("under-damped at {} of {} angles without friction, at {} of {} in the case whose friction "
-                  "is groove.friction",
+      fmt::format("under-damped at {} of {} angles without friction, at {} of {} with the assumed "
+                  "friction coefficient",
                   without, measured.size(), with, measured.size())};
 }
 

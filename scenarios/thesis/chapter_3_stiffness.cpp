@@ -239,8 +239,8 @@ Finding judge_convergence(const MeasuredCase& m, const PublishedNumbers& p) {
   return {
       one ? Verdict::replicated : Verdict::contradicted,
       one ? "the exact limit is 1 at every contact of these runs"
-          : "no weight can be negative; the iteration converges to the stiffness tensor nearest to the identity that "
-            "such weights can form, and in this limit, the ratio of a contact with weight 0 is above 1"};
+          : "no weight can be negative, so for some sets of contacts, no weights make all ratios 1; in the limit of "
+            "the iteration, the ratio of a contact with weight 0 is above 1"};
 }
 
 // ---- R2: the largest stiffness in any direction, in units of K, over contact sets found by a random search. One case
