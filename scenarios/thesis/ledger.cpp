@@ -204,8 +204,8 @@ std::string revisions(const Json& claims) {
         "\n### Rules that were changed after their verdicts were known\n\nThe column *rule before* has the conditions "
         "of the earlier rule. The present program applied both rules to its runs: with the recorded assumptions, and "
         "with every other plausible value of one assumption at a time. The earlier rule of J1 needs other hands; for "
-        "this rule, the present program made further runs. *Decided by* lists the assumptions that change the verdict of a "
-        "rule. The link in the first column leads to the present rule.\n\n"
+        "this rule, the present program made further runs. *Decided by* lists the assumptions that change the "
+        "verdict of a rule. The link in the first column leads to the present rule.\n\n"
         "| id | rule before | verdict before | decided by, before | verdict now | decided by, now | reason |\n"
         "|---|---|---|---|---|---|---|\n" +
         rows;
