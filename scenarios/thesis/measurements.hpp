@@ -46,6 +46,14 @@ ContactBuffer wall_point(double beyond, const char* depth_model);
 /// Number of repetitions of a timing measurement.
 inline constexpr int kRepetitions = 21;
 
+/// Returns the median of `values`: of an even number of values, the upper one of the two in the middle. Requires a
+/// value.
+inline double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
 /// Returns the median processor time [s] of a call of `work` over up to `repetitions` calls. Stops after one second in
 /// total. Processor time does not include waiting for other processes.
 template <class Work>
@@ -58,9 +66,7 @@ double seconds_of(int repetitions, Work work) {
     durations.push_back(processor_seconds() - start);
     all += durations.back();
   }
-  const auto middle = durations.begin() + static_cast<std::ptrdiff_t>(durations.size() / 2);
-  std::nth_element(durations.begin(), middle, durations.end());
-  return *middle;
+  return median(std::move(durations));
 }
 
 /// Returns a variant of `scenario` for measuring contacts. In `scenario`, a drill is in the block's hole. The variant
