@@ -204,11 +204,8 @@ Finding judge_springs_limited(const Measured& runs, const PublishedNumbers& p) {
                       fluctuate.empty() ? "no other algorithm is smooth without the limits and fluctuates with them"
                                         : "smooth without the limits, but fluctuating with the limits: " + fluctuate),
           "number of swings, first without the limits, then with them: " + text,
-          fmt::format("proposed algorithm: {}; {} of {} cases with other algorithms {} smooth without the limits and "
-                      "{} with them{}",
-                      swings, fluctuating, others, fluctuating == 1 ? "is" : "are",
-                      fluctuating == 1 ? "fluctuates" : "fluctuate",
-                      fluctuate.empty() ? "" : fmt::format(" ({})", fluctuate))};
+          fmt::format("proposed algorithm: {}; the limits cause fluctuation in {} of {} cases with other algorithms{}",
+                      swings, fluctuating, others, fluctuate.empty() ? "" : ": " + fluctuate)};
 }
 
 // ---- A4: the integrator's stability limits. One case for each published number, in the order of the thesis.

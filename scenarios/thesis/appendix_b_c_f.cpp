@@ -60,6 +60,7 @@ Measured measure_groove(const Evidence& e) {
                                                      fmt::format("environment.groups.1.direction=[{},{},0]", s, -c),
                                                      "rendering.algorithm=" + algorithm});
         m.values["given"] = {loaded.scenario.rendering.damping_ratio};
+        m.values[scene + "_mu_s"] = {loaded.scenario.rendering.mu_s};
         m.values[scene + "_" + algorithm] = {damping_ratio_of(loaded)};
       }
     }
@@ -90,9 +91,8 @@ Finding judge_groove(const Measured& measured, const PublishedNumbers& p) {
                   "{} the missing damping across this direction",
                   with > majority ? "does not hide" : "hides"),
       "",
-      fmt::format("under-damped at {} of {} angles without friction, at {} of {} with the assumed "
-                  "friction coefficient",
-                  without, measured.size(), with, measured.size())};
+      fmt::format("under-damped at {} of {} angles without friction, at {} of {} with mu_s = {} N s/m", without,
+                  measured.size(), with, measured.size(), plain(measured.front()["groove_friction_mu_s"]))};
 }
 
 // ---- B3: the merged depth before and after adding two points, in units of the depth of each point. With n = kPoints,

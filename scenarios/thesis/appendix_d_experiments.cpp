@@ -336,9 +336,9 @@ Finding judge_pilots(const Measured& measured, const PublishedNumbers& published
                   offset.text(), height.text(), worse.empty() ? "no position" : worse),
       "",
       fmt::format(
-          "success rate with the original algorithm: {:.2f} for targets farther from the axis or lower than the "
-          "published ones, {:.2f} for the easiest target",
-          beyond, easiest)};
+          "success rate with the original algorithm: {:.2f} for targets that are more than {} mm from the axis or "
+          "lower than {} mm, {:.2f} for the easiest target",
+          beyond, plain(published["D6.offset"].at_most * 1e3), plain(published["D6.height"].at_least * 1e3), easiest)};
 }
 
 /// An experiment of appendix D.

@@ -150,7 +150,7 @@ std::string other_values(const Json& claims) {
                     "<br>");
   if (cells.empty()) return "";
   std::string text =
-      "\n### What other assumptions would change\n\nEach row has an assumption. Each entry of a row has another "
+      "\n### The effect of other assumptions\n\nEach row has an assumption. Each entry of a row has another "
       "value of the assumption, a claim whose verdict changes with this value, the changed verdict, and the number "
       "measured with this value. A rule can use more numbers than the printed number: for example, the rule of F4 "
       "compares three hands, and the rules of D1 to D4 use times and speeds, too. A verdict can therefore change "
@@ -354,7 +354,7 @@ std::string ledger_markdown(const Json& ledger) {
       "- *depends on several*: each of the named assumptions changes the verdict alone.\n"
       "- *not sampled*: no other values were tried.\n";
   const std::string failing = failures(claims);
-  text += "\n## 2. Claims that failed, and what other assumptions would change\n\n" +
+  text += "\n## 2. Claims that failed, and the effect of other assumptions\n\n" +
           (failing.empty() ? "" : "Part 4 has the claims about computing time.\n\n" + failing) + other_values(claims);
   text += "\n## 3. All claims, by chapter\n" + chapters(claims);
   text += "\n## 4. Computing times, claims that are not testable, changed rules and findings of this project\n";
