@@ -100,7 +100,7 @@ QuotedLimit quoted_limit(const LimitQuestion& question, const FieldLimit& limit)
   if (agree)
     return {is_first(*value, *linear) ? *value : *linear, name + "; the runs agree" + stable_beyond(question, limit)};
   if (is_first(*value, *linear) && beyond)
-    return {value, fmt::format("simulated limit: {}; it is {} than the {}", next_run(question, limit),
+    return {value, fmt::format("simulated limit: {}; this limit is {} than the {}", next_run(question, limit),
                                smallest ? "larger" : "smaller", name)};
   if (is_first(*value, *linear))
     return {{},

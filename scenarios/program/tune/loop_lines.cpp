@@ -42,9 +42,9 @@ std::vector<std::string> overrides_for_scale(const Json& scenario, double scale)
 std::string loop_lines(const Json& scenario, const std::filesystem::path& file, double scale) {
   const std::string opened = fmt::format("setup.scenario = {};\n", Json(file.string()).dump());
   const std::vector<std::string> overrides = overrides_for_scale(scenario, scale);
-  if (overrides.empty()) return "in your own loop (scenarios/LOOP.md): " + opened;
+  if (overrides.empty()) return "for your own loop (scenarios/LOOP.md): " + opened;
   std::string text = fmt::format(
-      "in your own loop (scenarios/LOOP.md). With this scale the hand feels {0:g} times the coefficients of the "
+      "for your own loop (scenarios/LOOP.md). With this scale the hand feels {0:g} times the coefficients of the "
       "scenario, so these lines divide the coefficients by {0:g}; a force then "
       "presses the tool {0:g} times as deep:\n  setup.mount.scale = {0};\n  {1}"
       "  static const char* const overrides[] = {{\n",

@@ -34,10 +34,11 @@ std::string as_options_of_tune(std::string attempt) {
 
 std::string limits_text(const Tuning& tuning) {
   std::string text = fmt::format(
-      "largest K that the search found, with which all runs at stiffnesses from K to {:g} K are settled: stable or "
-      "decaying (\"hapbench describe stability\") or, if a script moves the tool, with little vibration after the "
-      "first quarter of the contact (at most 1 mm/s rms above 30 Hz){}",
-      tuning.question.margin, tuning.ranges.damping_ratio ? ", with damping B = 2 zeta sqrt(K m)" : "");
+      "largest K that the search found{}. All runs at stiffnesses from K to {:g} K are settled: stable or decaying "
+      "(\"hapbench describe stability\") or, if a script moves the tool, with little vibration after the first quarter "
+      "of the contact (at most 1 mm/s rms above 30 Hz)",
+      tuning.ranges.damping_ratio ? ", with damping B = 2 zeta sqrt(K m) and m = rendering.mass_kg" : "",
+      tuning.question.margin);
   if (!tuning.question.allow_vibration)
     text += fmt::format(
         ". The runs at K and at {} stiffnesses from {:g} K to K have low vibration: none of the rules {} applies "
@@ -48,10 +49,9 @@ std::string limits_text(const Tuning& tuning) {
     if (bound.max) text += fmt::format(". At K {} <= {:g}", name, *bound.max);
   }
   const auto range = [](const char* name, const std::optional<Range>& found) {
-    return found ? fmt::format(". Range of {}: {:.3g} ... {:.3g}", name, found->from, found->to) : "";
+    return found ? fmt::format(". Range of {}: {:.3g} to {:.3g}", name, found->from, found->to) : "";
   };
-  return text + range("zeta (of rendering.mass_kg)", tuning.ranges.damping_ratio) +
-         range("virtual mass [kg]", tuning.ranges.mass);
+  return text + range("zeta", tuning.ranges.damping_ratio) + range("virtual mass [kg]", tuning.ranges.mass);
 }
 
 std::string choice_text(const TuneTrial& choice) {
@@ -77,8 +77,9 @@ std::string recommendation_text(const Tuning& tuning, const Layout& layout) {
   line("margins", margins_text(best->margins) + "; each is the smallest over all runs");
   if (tuning.ranking.size() > 1) {
     const TunedLaw* next = tuning.ranking[1];
-    line("runner-up", fmt::format("{}, {}: renders {} times the stiffness", next->algorithm, choice_text(*next->choice),
-                                  significant(next->choice->rendered() / best->choice->rendered(), 2)));
+    line("runner-up",
+         fmt::format("{}, {}: renders {} times the stiffness of {}", next->algorithm, choice_text(*next->choice),
+                     significant(next->choice->rendered() / best->choice->rendered(), 2), best->algorithm));
   }
   line("limit of K", fmt::format("without margin{}, with the scenario's own hand: {}",
                                  setting_text(best->choice->setting), limit_answer(best->limits, {})));

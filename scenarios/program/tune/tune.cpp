@@ -99,7 +99,7 @@ int tune(const TuneOptions& options, ProgramContext& context) {
   report_tuning(tuning, layout, report);
   if (const std::string delay = delay_note(loaded.scenario); !delay.empty()) report.add_text(layout.wrapped(delay, 0));
   if (!tuned.empty()) {
-    report.add_text(fmt::format("\"hapbench run {}\" gives these metrics\n", shell_file(tuned)));
+    report.add_text(fmt::format("\"hapbench run {}\" gives these metrics;\n", shell_file(tuned)));
     report.add_text(loop_lines(tuned_json, tuned, scale));
   }
   report.add_text(fmt::format("results in {}\n\"hapbench plot {}\" draws them\n", out.string(), shell_file(out)));

@@ -65,7 +65,7 @@ TEST(LoopLines, GiveTheForceOfScaleOneAtEveryScale) {
 TEST(LoopLines, AreStatementsInC) {
   const Json scene = Json::parse(kScene);
   EXPECT_EQ(loop_lines(scene, "out/my.json", 1.0),
-            "in your own loop (scenarios/LOOP.md): setup.scenario = \"out/my.json\";\n");
+            "for your own loop (scenarios/LOOP.md): setup.scenario = \"out/my.json\";\n");
   const std::string scaled = loop_lines(scene, "my.json", 2.0);
   for (const char* line : {"  setup.mount.scale = 2;\n", "      \"rendering.stiffness_N_per_m=1000\",\n",
                            "      \"rendering.mass_kg=0.05\",\n", "      NULL};\n  setup.overrides = overrides;\n"})
