@@ -287,7 +287,7 @@ TEST(Claims, AreJudgedByTheirThresholds) {
        {{"", replicated}, {"with_surface_normal=-1", qualitatively}, {"with_shortest_distance=1", not_replicated}}},
       // A motion that does not oscillate is not under-damped.
       {"B2",
-       "given=0.7 groove_friction_original_averaging=0.3 groove_swing_original_averaging=0 | "
+       "given=0.7 groove_friction_mu_s=5 groove_friction_original_averaging=0.3 groove_swing_original_averaging=0 | "
        "groove_friction_original_averaging=0",
        {{"", replicated},
         {"groove_friction_original_averaging=nan", qualitatively},
