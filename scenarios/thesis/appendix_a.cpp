@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <string>
+#include <vector>
 
 #include "scenarios/analysis/stability/field_limit.hpp"
 #include "scenarios/batch/axis.hpp"
@@ -178,8 +180,9 @@ Measured measure_springs_limited(const Evidence& e) {
 }
 
 Finding judge_springs_limited(const Measured& runs, const PublishedNumbers& p) {
-  std::string fluctuate, text, swings;
-  std::size_t others = 0, fluctuating = 0;
+  std::string text, swings;
+  std::vector<std::string> fluctuating;
+  std::size_t others = 0;
   bool keeps = true, published_pairs = false;
   for (std::size_t i = 0; i + 1 < runs.size(); i += 2) {
     const MeasuredCase &without = runs[i], &with = runs[i + 1];
@@ -190,8 +193,7 @@ Finding judge_springs_limited(const Measured& runs, const PublishedNumbers& p) {
     } else {
       ++others;
       if (is_smooth(without, p) && with["swings"] >= without["swings"] + threshold(p, "fluctuates")) {
-        ++fluctuating;
-        append_item(fluctuate, fmt::format("{} with {} pairs", with.name, with["pairs"]), ", ");
+        fluctuating.push_back(fmt::format("{} with {} pairs", with.name, with["pairs"]));
         published_pairs = published_pairs || with["pairs"] == static_cast<double>(kPairs);
       }
     }
@@ -199,13 +201,14 @@ Finding judge_springs_limited(const Measured& runs, const PublishedNumbers& p) {
                                   without["arrives"] == 1.0 ? "" : " (does not arrive)", with["swings"],
                                   with["arrives"] == 1.0 ? "" : " (does not arrive)"));
   }
-  return {decide(keeps && published_pairs, keeps && !fluctuate.empty()),
+  const std::string names = fmt::format("{}", fmt::join(fluctuating, ", "));
+  return {decide(keeps && published_pairs, keeps && !fluctuating.empty()),
           fmt::format("the proposed algorithm {} its performance; {}", keeps ? "keeps" : "does not keep",
-                      fluctuate.empty() ? "no other algorithm is smooth without the limits and fluctuates with them"
-                                        : "smooth without the limits, but fluctuating with the limits: " + fluctuate),
+                      names.empty() ? "no other algorithm is smooth without the limits and fluctuates with them"
+                                    : "smooth without the limits, but fluctuating with the limits: " + names),
           "number of swings, first without the limits, then with them: " + text,
           fmt::format("proposed algorithm: {}; the limits cause fluctuation in {} of {} cases with other algorithms{}",
-                      swings, fluctuating, others, fluctuate.empty() ? "" : ": " + fluctuate)};
+                      swings, fluctuating.size(), others, names.empty() ? "" : ": " + names)};
 }
 
 // ---- A4: the integrator's stability limits. One case for each published number, in the order of the thesis.
