@@ -91,8 +91,9 @@ Finding judge_groove(const Measured& measured, const PublishedNumbers& p) {
                   "{} the missing damping across this direction",
                   with > majority ? "does not hide" : "hides"),
       "",
-      fmt::format("under-damped at {} of {} angles without friction, at {} of {} with mu_s = {} N s/m", without,
-                  measured.size(), with, measured.size(), plain(measured.front()["groove_friction_mu_s"]))};
+      fmt::format(
+          "under-damped at {} of {} angles without friction, at {} of {} with the scene's friction, mu_s = {} N s/m",
+          without, measured.size(), with, measured.size(), plain(measured.front()["groove_friction_mu_s"]))};
 }
 
 // ---- B3: the merged depth before and after adding two points, in units of the depth of each point. With n = kPoints,

@@ -9,6 +9,9 @@
 #include <limits>
 #include <map>
 #include <regex>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/input/text_lines.hpp"
@@ -185,33 +188,40 @@ std::string table_of(const Json& claims, const std::string& title, bool (*belong
   return rows.empty() ? "" : fmt::format("\n### {}\n\n{}{}", title, kHeading, rows);
 }
 
-/// Returns the table of revised rules with their earlier verdicts, and a sentence with the claims whose rules were
-/// committed before the measurement (Claim::added).
-std::string revisions(const Json& claims) {
-  std::string rows, added;
+/// Returns the verdict of a claim with its earlier rule and with its present rule.
+std::string both_verdicts(const Json& claim) {
+  const std::string before = text_at(claim.at("revised"), "verdict"), now = text_at(claim, "verdict");
+  return fmt::format("{}: {}{}", link_to(claim), before, before == now ? " (unchanged)" : ", now " + now);
+}
+
+/// Returns a table with a row for each reason that changed rules: the changed claims with both verdicts.
+/// claim_pages() prints the earlier rules. Empty if no rule was changed.
+std::string changed_rules(const Json& claims) {
+  std::vector<std::pair<std::string, std::string>> rows;  // reason, claims
   for (const Json& claim : claims) {
-    if (claim.contains("revised")) {
-      const Json& before = claim.at("revised");
-      rows += fmt::format("| {} | {} | {} | {} | {} | {} | {} |\n", link_to(claim), text_at(before, "rule"),
-                          text_at(before, "verdict"), decided_by(before), text_at(claim, "verdict"), decided_by(claim),
-                          text_at(before, "reason"));
-    }
-    if (is(claim, "added")) append_item(added, link_to(claim), ", ");
+    if (!claim.contains("revised")) continue;
+    const std::string reason = text_at(claim.at("revised"), "reason");
+    auto row = std::ranges::find(rows, reason, &std::pair<std::string, std::string>::first);
+    if (row == rows.end()) row = rows.insert(row, {reason, ""});
+    append_item(row->second, both_verdicts(claim), "<br>");
   }
-  std::string text;
-  if (!rows.empty())
-    text +=
-        "\n### Rules that were changed after their verdicts were known\n\nThe column *rule before* has the conditions "
-        "of the earlier rule. The present program applied both rules to its runs: with the recorded assumptions, and "
-        "with every other plausible value of one assumption at a time. The earlier rule of J1 needs other hands; for "
-        "this rule, the present program made further runs. *Decided by* lists the assumptions that change the "
-        "verdict of a rule. The link in the first column leads to the present rule.\n\n"
-        "| id | rule before | verdict before | decided by, before | verdict now | decided by, now | reason |\n"
-        "|---|---|---|---|---|---|---|\n" +
-        rows;
-  if (!added.empty())
-    text += fmt::format("\nThe rules of {} were committed before these claims were measured.\n", added);
+  if (rows.empty()) return "";
+  std::string text =
+      "\n### Rules that were changed after their verdicts were known\n\nThe present program applied the earlier and the "
+      "present rule to its runs. The link of a claim leads to both rules and, for each rule, to the assumptions that "
+      "change its verdict. The earlier rule of J1 needs other hands; for this rule, the present program made further "
+      "runs.\n\n| reason of the change | verdict with the earlier rule, and now |\n|---|---|\n";
+  for (const auto& [reason, cell] : rows) text += fmt::format("| {} | {} |\n", reason, cell);
   return text;
+}
+
+/// Returns a sentence with the claims whose rules were committed before the measurement (Claim::added).
+std::string rules_before_measurement(const Json& claims) {
+  std::string added;
+  for (const Json& claim : claims)
+    if (is(claim, "added")) append_item(added, link_to(claim), ", ");
+  return added.empty() ? ""
+                       : fmt::format("\nThe rules of {} were committed before these claims were measured.\n", added);
 }
 
 /// Returns the numbers of each case; a list if a name has several numbers.
@@ -366,7 +376,7 @@ std::string ledger_markdown(const Json& ledger) {
       untestable += fmt::format("- {}, {} ({}): {}.\n", link_to(claim), text_at(claim, "claim"),
                                 text_at(claim, "place"), text_at(claim, "why"));
   if (!untestable.empty()) text += "\n### Not testable\n\n" + untestable;
-  text += revisions(claims);
+  text += changed_rules(claims) + rules_before_measurement(claims);
   text += table_of(claims, "Findings of this project, which are no claims of the thesis",
                    [](const Json& claim) { return is(claim, "ours"); });
   return text +

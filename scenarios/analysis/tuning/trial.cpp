@@ -13,7 +13,8 @@ std::optional<double> value_in(const MetricValues& metrics, std::string_view nam
 
 std::string setting_text(const TuneSetting& setting) {
   std::string text;
-  if (setting.damping_ratio) text += fmt::format(", zeta = {:.3g} (of rendering.mass_kg)", *setting.damping_ratio);
+  if (setting.damping_ratio)
+    text += fmt::format(", zeta = {:.3g} relative to rendering.mass_kg", *setting.damping_ratio);
   if (setting.mass) text += fmt::format(", {:.3g} kg", *setting.mass);
   return setting.filter.empty() ? text : text + ", " + setting.filter;
 }

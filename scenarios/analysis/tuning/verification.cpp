@@ -24,7 +24,7 @@ bool refute(Trials& trials, const TuneTrial& choice, double K, const std::string
   trials.note_unstable(K);
   const double lowest = std::min(K / trials.question().margin, choice.stiffness) * (1.0 - kTuneResolution);
   trials.refute(choice.setting, lowest, std::max(K, choice.stiffness), "margin",
-                fmt::format("at {:.4g} N/m{}: {}", K, setting_text(choice.setting), why));
+                fmt::format("{} (K = {:.4g} N/m{})", why, K, setting_text(choice.setting)));
   return true;
 }
 
@@ -76,8 +76,8 @@ bool fails_in_longer_run(Trials& trials, const TuneTrial& choice) {
   if (!failing) return false;
   trials.refute(choice.setting, choice.stiffness / kStiffnessReduction, std::numeric_limits<double>::infinity(),
                 "settled",
-                fmt::format("at {:.4g} N/m{}, in a run twice as long: {}", choice.stiffness,
-                            setting_text(choice.setting), failing->why));
+                fmt::format("{} (K = {:.4g} N/m{}, in a run twice as long)", failing->why, choice.stiffness,
+                            setting_text(choice.setting)));
   return true;
 }
 
@@ -99,7 +99,7 @@ bool vibrates_nearby(Trials& trials, const TuneTrial& choice) {
   if (failures.empty()) return false;
   const auto& [K, failure] = *failures.begin();
   trials.refute(choice.setting, K * (1.0 - kTuneResolution), K / kLowVibrationFrom, failure.binding,
-                fmt::format("at {:.4g} N/m{}: {}", K, setting_text(choice.setting), failure.why));
+                fmt::format("{} (K = {:.4g} N/m{})", failure.why, K, setting_text(choice.setting)));
   return true;
 }
 

@@ -77,9 +77,10 @@ std::string recommendation_text(const Tuning& tuning, const Layout& layout) {
   line("margins", margins_text(best->margins) + "; each is the smallest over all runs");
   if (tuning.ranking.size() > 1) {
     const TunedLaw* next = tuning.ranking[1];
-    line("runner-up",
-         fmt::format("{}, {}: renders {} times the stiffness of {}", next->algorithm, choice_text(*next->choice),
-                     significant(next->choice->rendered() / best->choice->rendered(), 2), best->algorithm));
+    const std::string factor = significant(next->choice->rendered() / best->choice->rendered(), 2);
+    line("runner-up", fmt::format("{}, {}: renders {} stiffness {} {}", next->algorithm, choice_text(*next->choice),
+                                  factor == "1" ? "about the same" : factor + " times the", factor == "1" ? "as" : "of",
+                                  best->algorithm));
   }
   line("limit of K", fmt::format("without margin{}, with the scenario's own hand: {}",
                                  setting_text(best->choice->setting), limit_answer(best->limits, {})));

@@ -238,17 +238,39 @@ TEST(Ledger, HasFourPartsWithANumberInEveryRow) {
     ++rows;
     std::vector<std::string> cells;
     for (const std::string_view cell : parts_of(line, '|')) cells.emplace_back(cell);
-    if (cells.size() != 8) continue;  // skips the rows of the table of revised rules
+    ASSERT_EQ(cells.size(), 8u) << line;
     for (std::size_t i = 1; i < 7; ++i) EXPECT_GT(cells[i].size(), 2u) << line;
     EXPECT_NE(cells[4], " – ") << "no number: " << line;
   }
   EXPECT_EQ(parts, (std::vector<std::string>{"1", "2", "3", "4"}));
-  std::size_t judged = 0, revised = 0;
-  for (const Claim& claim : all_claims()) {
-    judged += claim.judge != nullptr ? 1U : 0U;
-    revised += claim.earlier.rule.empty() ? 0U : 1U;
+  EXPECT_EQ(rows, std::ranges::count_if(all_claims(), [](const Claim& claim) { return claim.judge != nullptr; }));
+}
+
+TEST(Ledger, HasBothVerdictsOfEveryChangedRuleAndBothRules) {
+  const std::string page = test::read_file(kReference / "claims.md"),
+                    sections = test::read_file(kReference / "claim_pages.md");
+  const std::string changed = page.substr(page.find("### Rules that were changed"));
+  const std::string table = changed.substr(0, changed.find("\n### ", 1));
+  const Json ledger = Json::parse(test::read_file(kReference / "claims.json"));
+  std::size_t revised = 0;
+  for (const Json& claim : ledger["claims"]) {
+    if (!claim.contains("revised")) continue;
+    ++revised;
+    const auto text = [](const Json& of, const char* key) { return of[key].get<std::string>(); };
+    const std::string id = text(claim, "id"), before = text(claim["revised"], "verdict"), now = text(claim, "verdict");
+    const auto entry = table.find("[" + id + "](");
+    ASSERT_NE(entry, std::string::npos) << id;
+    const std::string verdicts = before + (before == now ? " (unchanged)" : ", now " + now);
+    EXPECT_EQ(table.substr(table.find(": ", entry) + 2, verdicts.size()), verdicts) << id;
+    EXPECT_NE(table.find("| " + text(claim["revised"], "reason") + " |"), std::string::npos) << id;
+    const auto section = sections.find("\n## " + id + "\n");
+    ASSERT_NE(section, std::string::npos) << id;
+    const std::string of_claim = sections.substr(section, sections.find("\n## ", section + 1) - section);
+    EXPECT_NE(of_claim.find(text(claim, "rule")), std::string::npos) << id;
+    EXPECT_NE(of_claim.find(text(claim["revised"], "rule")), std::string::npos) << id;
   }
-  EXPECT_EQ(rows, judged + revised);
+  EXPECT_EQ(revised,
+            std::ranges::count_if(all_claims(), [](const Claim& claim) { return !claim.earlier.rule.empty(); }));
 }
 
 TEST(Ledger, OpensWithTheSentencesOfTheAbstract) {
