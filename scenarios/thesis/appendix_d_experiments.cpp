@@ -162,7 +162,7 @@ Finding judge_experiment(const Measured& measured, const PublishedNumbers& publi
       in_simulation(consistent),
       (deviating.empty() ? std::string("every measure agrees with the thesis in direction and significance")
                          : "measures that differ from the published result: " + deviating) +
-          fmt::format(". The mean that deviates most from its published mean is the {}, by {:.2g} standard errors. The "
+          fmt::format(". Of all means, the {} deviates most from its published value, by {:.2g} standard errors. The "
                       "mean force is nearly an input, because subjects regulate the force that the gauge shows",
                       farthest, largest),
       text, number};

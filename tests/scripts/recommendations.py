@@ -17,7 +17,7 @@ import tempfile
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
-SOURCE = Path(__file__).resolve().parents[2]
+LIBRARY = Path(__file__).resolve().parents[2] / "scenarios/library"
 GROUPS = ("examples", "beyond", "thesis", "limits", "validation")
 DEVICES = ("own", "touch", "omega.3")
 BOUNDS = {"force_rms_above_30Hz_N": 0.05, "inside_max_m": 5e-4}
@@ -29,11 +29,11 @@ CONDEMN |= {"buzz", "pop", "shake", "bounces", "chatter", "energy"}
 
 
 def all_cases(seed):
-    """Returns (scene, device, with bounds) of every case, in random order."""
+    """Returns (scene, device, with bounds) of every case, in random order. The scene is its path in the library."""
     scenes = [
-        file.stem
+        f"{group}/{file.name}"
         for group in GROUPS
-        for file in sorted((SOURCE / "scenarios/library" / group).glob("*.json"))
+        for file in sorted((LIBRARY / group).glob("*.json"))
     ]
     cases = [
         (scene, device, bound) for scene in scenes for device in DEVICES for bound in (False, True)
@@ -67,7 +67,7 @@ def judged(program, scene, device, bound):
     """Returns a dictionary with the answer of `tune` (recommended, infeasible, refused or unfinished) and, for a
     recommendation, the faults that `run` finds."""
     with tempfile.TemporaryDirectory() as folder:
-        words = [program, "tune", scene, "--json", "--jobs", 1, "--out", f"{folder}/tune"]
+        words = [program, "tune", LIBRARY / scene, "--json", "--jobs", 1, "--out", f"{folder}/tune"]
         words += [] if device == "own" else ["--device", device]
         for metric, most in BOUNDS.items() if bound else ():
             words += ["--bound", f"{metric}={most}"]

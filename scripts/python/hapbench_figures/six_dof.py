@@ -240,7 +240,12 @@ def comparison(results):
     legend.add_artist(legend.legend(*cycle.get_legend_handles_labels(), **of_laws))
     of_scenes = {"loc": "lower center", "bbox_to_anchor": (0.5, -0.1), "title": "(e)"}
     legend.legend(*pivot.get_legend_handles_labels(), **of_scenes)
-    counted = [row for row in chosen_everywhere(rows) if row["law_unbalanced_steps"] > 0]
+    unbalanced = {}  # by scene
+    for row in chosen_everywhere(rows):
+        if row["law_unbalanced_steps"] > 0:
+            scene_name = row["scene"].removeprefix("six_dof_")
+            steps = f"{row['law_unbalanced_steps']:.0f} with the law {look(row['law'])[1]}"
+            unbalanced.setdefault(scene_name, []).append(steps)
     values = {
         "matched": 1e6
         * max(
@@ -249,8 +254,7 @@ def comparison(results):
             if row["reference_jumps"] == 0
         ),
         "unbalanced": "; ".join(
-            f"{look(row['law'])[1]} {row['law_unbalanced_steps']:.0f} ({row['scene'].removeprefix('six_dof_')})"
-            for row in counted
+            f"{scene_name}: {', '.join(steps)}" for scene_name, steps in unbalanced.items()
         )
         or "none",
         "jumps": sum(row["reference_jumps"] for row in chosen_everywhere(rows, LAWS[0])),
