@@ -207,10 +207,10 @@ std::string changed_rules(const Json& claims) {
   }
   if (rows.empty()) return "";
   std::string text =
-      "\n### Rules that were changed after their verdicts were known\n\nThe present program applied the earlier and the "
-      "present rule to its runs. The link of a claim leads to both rules and, for each rule, to the assumptions that "
-      "change its verdict. The earlier rule of J1 needs other hands; for this rule, the present program made further "
-      "runs.\n\n| reason of the change | verdict with the earlier rule, and now |\n|---|---|\n";
+      "\n### Rules that were changed after their verdicts were known\n\nThe present program applied the earlier and "
+      "the present rule to its runs. The link of a claim leads to both rules and, for each rule, to the assumptions "
+      "that change its verdict. The earlier rule of J1 needs other hands; for this rule, the present program made "
+      "further runs.\n\n| reason of the change | verdict with the earlier rule, and now |\n|---|---|\n";
   for (const auto& [reason, cell] : rows) text += fmt::format("| {} | {} |\n", reason, cell);
   return text;
 }

@@ -160,7 +160,5 @@ def corner(results):
     axes[0, 2].set(title="change in one step", ylabel="|Δ model force| [N]")
     style.plt.setp(axes[0], xlabel="displacement of the tip\ntowards the wall [mm]")
     axes[0, 1].legend(loc="upper left", handlelength=1.5, fontsize=6.5, borderaxespad=0.1)
-    remark = (
-        "; it also does with continuous normal projection (brown curve, nearly on the wide curve)"
-    )
+    remark = " and with continuous normal projection (brown curve, nearly on the wide curve)"
     return style.lettered(figure, axes[0]), {"continuous": remark if ours else ""}

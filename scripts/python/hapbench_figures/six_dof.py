@@ -244,7 +244,7 @@ def comparison(results):
     for row in chosen_everywhere(rows):
         if row["law_unbalanced_steps"] > 0:
             scene_name = row["scene"].removeprefix("six_dof_")
-            steps = f"{row['law_unbalanced_steps']:.0f} with the law {look(row['law'])[1]}"
+            steps = f'"{look(row["law"])[1]}" {row["law_unbalanced_steps"]:.0f}'
             unbalanced.setdefault(scene_name, []).append(steps)
     values = {
         "matched": 1e6
