@@ -44,9 +44,9 @@ void scale_and_check(MeshFaces& faces, double scale, const fs::path& file) {
 }
 
 /// Connects the triangles to a mesh. Throws InputError if that is impossible.
-CheckedMesh connect(const TriangleSoup& soup, const fs::path& file) {
+CheckedMesh connect(const TriangleSoup& soup, const fs::path& file, bool flip_open) {
   try {
-    return mesh_from_triangles(soup);
+    return mesh_from_triangles(soup, flip_open);
   } catch (const MeshError& error) {
     fail_in_file(file, error.what());
   }
@@ -72,7 +72,7 @@ void refuse_cut_face(const MeshFaces& faces, const MeshFindings& found, const fs
 
 /// Throws InputError if no point shell can be made from the surface.
 void check_surface(const CheckedMesh& surface, const MeshSampling& sampling, const fs::path& file) {
-  if (sampling.flip && surface.findings.open_edges.empty())
+  if (sampling.flip && surface.findings.open_component_count == 0)
     fail_in_file(file, "is closed, so that its outside is known; allowed: flip_normals of an open surface only");
   const std::size_t vertices = surface.mesh.n_vertices();
   if (static_cast<double>(vertices) > kMaxSurfacePoints)
@@ -115,12 +115,8 @@ CheckedMesh read_surface(std::string_view bytes, const fs::path& file, const Mes
   TriangleSoup soup;
   soup.triangles = triangles_of(faces, file);
   soup.vertices = std::move(faces.vertices);
-  // Reverse the winding, and with it the normals.
-  if (sampling.flip) {
-    for (auto& corners : soup.triangles) std::swap(corners[1], corners[2]);
-  }
   // Connect the triangles and check the surface.
-  CheckedMesh surface = connect(soup, file);
+  CheckedMesh surface = connect(soup, file, sampling.flip);
   refuse_cut_face(faces, surface.findings, file);
   check_surface(surface, sampling, file);
   warn_of_unused_vertices(faces, soup.vertices.size(), !surface.findings.open_edges.empty());
@@ -259,6 +255,10 @@ const std::vector<Vec3>& MeshFile::open_edges() const {
 
 bool MeshFile::is_closed() const {
   return surface_->findings.open_edges.empty() && surface_->findings.non_manifold_edges.empty();
+}
+
+bool MeshFile::knows_outside() const {
+  return surface_->findings.open_component_count == 0;
 }
 
 TriangleSoup MeshFile::triangles() const {

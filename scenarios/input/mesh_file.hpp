@@ -49,6 +49,8 @@ class MeshFile {
 
   /// Returns true if every edge of the file's mesh has exactly two faces.
   bool is_closed() const;
+  /// Returns true if every component is closed, so that the outside is known and the normals point outwards.
+  bool knows_outside() const;
 
   /// Returns the repairs, irregularities and components of the mesh.
   const MeshFindings& findings() const;

@@ -75,9 +75,12 @@ struct Shape {
   double area = 0.0;    ///< area of all triangles [m^2]
   std::size_t triangles = 0;
   bool is_reversed = false;  ///< the winding of the part was reversed, after the volume was computed
+  /// Centres of three triangles of the part [m]: if two of them are inside another part, this part is inside it. One of
+  /// them may lie on the surface of the other part.
+  std::array<Vec3, 3> samples = {};
 
   double size() const { return box.size().norm(); }
-  bool holds(const Shape& other) const {
+  bool box_holds(const Shape& other) const {
     return (other.box.min.array() >= box.min.array()).all() && (other.box.max.array() <= box.max.array()).all();
   }
   /// The threshold is larger than the rounding error of the volume. A part that consists of two coincident sheets, and
@@ -88,12 +91,28 @@ struct Shape {
   bool encloses_nothing() const { return std::abs(volume) <= 1e-6 * size() * area; }
 };
 
+/// A closed part as a solid, for the test whether it encloses points.
+class PartSolid {
+ public:
+  /// `vertices` must outlive this object; `triangles` are the triangles of the part.
+  PartSolid(const std::vector<Vec3>& vertices, std::vector<Triangle> triangles)
+      : vertices_(vertices), triangles_(std::move(triangles)), tree_(vertices_, triangles_) {}
+
+  /// Returns true if the surface of the part winds around the point [m], in either direction.
+  bool holds(const Vec3& point) const { return tree_.winding_number(point, vertices_, triangles_) != 0; }
+
+ private:
+  const std::vector<Vec3>& vertices_;
+  std::vector<Triangle> triangles_;
+  TriangleTree tree_;
+};
+
 /// Connected parts of a surface, and the triangles to reverse so that each part is wound consistently.
 class MeshParts {
  public:
   /// Finds the parts, and marks the triangles to reverse so that all neighbours agree with the first triangle of their
-  /// part. O(triangles).
-  MeshParts(std::size_t triangles, const std::vector<Hinge>& hinges)
+  /// part. `sides`: the sides of all triangles, by edge. O(triangles).
+  MeshParts(std::size_t triangles, const std::vector<Hinge>& hinges, const std::vector<TriangleSide>& sides)
       : hinges_(hinges), part_(triangles, kNone), reversed_(triangles, false) {
     const auto at = hinges_at_triangles(triangles, hinges);
     std::vector<std::uint32_t> open;
@@ -107,9 +126,13 @@ class MeshParts {
       while (!open.empty()) {
         const std::uint32_t t = open.back();
         open.pop_back();
-        for (const std::uint32_t h : at[t]) visit_neighbour(t, h, part, open);
+        for (const std::uint32_t h : at[t])
+          if (h != kNone) visit_neighbour(t, hinges_[h], part, open);
       }
     }
+    for_each_edge(sides, [&](std::span<const TriangleSide> edge) {
+      if (edge.size() != 2) note_open_parts(edge);
+    });
   }
 
   /// Returns a hinge whose triangles cannot be wound consistently; the surface then has only one side. Empty if there
@@ -137,10 +160,9 @@ class MeshParts {
     return count;
   }
 
-  /// Orients the closed parts outwards. A closed part in the bounding box of a larger closed part is reversed if the
-  /// larger part is reversed. Any other closed part is reversed if it encloses a negative volume. Only the
-  /// kMaxEnclosingParts largest of these other parts are tested for enclosing smaller parts. Returns the number of
-  /// reversed parts.
+  /// Orients the closed parts outwards. A closed part inside a larger closed part is reversed if the larger part is
+  /// reversed. Any other closed part is reversed if it encloses a negative volume. Only the kMaxEnclosingParts largest
+  /// of these other parts are tested for enclosing smaller parts. Returns the number of reversed parts.
   std::size_t orient_outwards(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles) {
     // Compute the bounding box and the volume of each part.
     shapes_.assign(count(), Shape{});
@@ -149,6 +171,7 @@ class MeshParts {
       ++shapes[part_[t]].triangles;
       for (const std::uint32_t corner : triangles[t]) shapes[part_[t]].box.add(vertices[corner]);
     }
+    std::vector<std::size_t> seen(count(), 0);  // number of triangles of each part so far
     for (std::size_t t = 0; t < part_.size(); ++t) {
       Shape& shape = shapes[part_[t]];
       // Sum the volumes of the tetrahedra between the triangles and a corner of the part's box. A distant origin
@@ -157,6 +180,9 @@ class MeshParts {
       const Vec3 a = vertices[i] - shape.box.min, b = vertices[j] - shape.box.min, c = vertices[k] - shape.box.min;
       shape.volume += (reversed_[t] ? -1.0 : 1.0) * a.dot(b.cross(c)) / 6.0;
       shape.area += 0.5 * (b - a).cross(c - a).norm();
+      const std::size_t n = seen[part_[t]]++;
+      for (const std::size_t third : {0u, 1u, 2u})
+        if (n == third * (shape.triangles - 1) / 2) shape.samples[third] = shape.box.min + (a + b + c) / 3.0;
     }
 
     // Orient the parts from the largest to the smallest. A part inside an outermost part is reversed together with
@@ -165,10 +191,17 @@ class MeshParts {
     std::iota(largest_first.begin(), largest_first.end(), 0u);
     std::ranges::stable_sort(largest_first, std::greater(), [&](std::uint32_t p) { return shapes[p].size(); });
     std::vector<bool> inside_out(count(), false);
+    std::unordered_map<std::uint32_t, PartSolid> solids;  // of outermost parts
+    const auto encloses = [&](std::uint32_t q, std::uint32_t p) {
+      if (!shapes[q].box_holds(shapes[p])) return false;
+      auto solid = solids.find(q);
+      if (solid == solids.end()) solid = solids.try_emplace(q, vertices, triangles_of(q, triangles)).first;
+      return std::ranges::count_if(shapes[p].samples, [&](const Vec3& at) { return solid->second.holds(at); }) > 1;
+    };
     for (const std::uint32_t p : largest_first) {
       if (!closed_[p]) continue;
       const auto outer =
-          std::find_if(outermost.begin(), outermost.end(), [&](std::uint32_t q) { return shapes[q].holds(shapes[p]); });
+          std::find_if(outermost.begin(), outermost.end(), [&](std::uint32_t q) { return encloses(q, p); });
       inside_out[p] = outer == outermost.end() ? shapes[p].is_inside_out() : inside_out[*outer];
       if (outer == outermost.end() && outermost.size() < kMaxEnclosingParts) outermost.push_back(p);
     }
@@ -181,6 +214,7 @@ class MeshParts {
   /// was called.
   void describe(MeshFindings& found) const {
     found.component_count = count();
+    found.open_component_count = static_cast<std::size_t>(std::ranges::count(closed_, false));
     std::vector<std::uint32_t> order(count());
     std::iota(order.begin(), order.end(), 0u);
     const std::size_t described = std::min(count(), kMaxComponents);
@@ -195,24 +229,47 @@ class MeshParts {
     }
   }
 
+  /// Reverses the parts that are not closed.
+  void reverse_open() {
+    std::vector<bool> open(closed_);
+    open.flip();
+    reverse(open);
+  }
+
   /// Flags of the triangles: true if the winding must be reversed.
   const std::vector<bool>& reversed() const { return reversed_; }
 
  private:
   std::size_t count() const { return closed_.size(); }
-  /// Adds the triangle beyond hinge h of triangle t to a part and to the `open` triangles, unless it has a part
+  /// Adds the triangle beyond a hinge of triangle t to a part and to the `open` triangles, unless it has a part
   /// already.
-  void visit_neighbour(std::uint32_t t, std::uint32_t h, std::uint32_t part, std::vector<std::uint32_t>& open) {
-    if (h == kNone) {
-      closed_[part] = false;
-      return;
-    }
-    const Hinge& hinge = hinges_[h];
+  void visit_neighbour(std::uint32_t t, const Hinge& hinge, std::uint32_t part, std::vector<std::uint32_t>& open) {
     const std::uint32_t neighbour = hinge.triangles[hinge.triangles[0] == t ? 1 : 0];
     if (part_[neighbour] != kNone) return;
     part_[neighbour] = part;
     reversed_[neighbour] = hinge.opposed ? reversed_[t] : !reversed_[t];
     open.push_back(neighbour);
+  }
+  /// Marks the parts as open that end at an edge with one triangle or with more than two. A part passes through such an
+  /// edge, and does not end there, if its triangles run along the edge equally often in both directions.
+  void note_open_parts(std::span<const TriangleSide> edge) {
+    for (const TriangleSide& side : edge) {
+      const std::uint32_t part = part_[side.triangle];
+      std::int64_t balance = 0;
+      for (const TriangleSide& other : edge)
+        if (part_[other.triangle] == part) balance += other.forward != reversed_[other.triangle] ? 1 : -1;
+      if (balance != 0) closed_[part] = false;
+    }
+  }
+  /// Returns the triangles of a part, wound consistently.
+  std::vector<Triangle> triangles_of(std::uint32_t part, const std::vector<Triangle>& triangles) const {
+    std::vector<Triangle> of_part;
+    for (std::size_t t = 0; t < part_.size(); ++t)
+      if (part_[t] == part) {
+        const auto& [a, b, c] = triangles[t];
+        of_part.push_back(reversed_[t] ? Triangle{a, c, b} : Triangle{a, b, c});
+      }
+    return of_part;
   }
   void reverse(const std::vector<bool>& parts) {
     for (std::size_t t = 0; t < part_.size(); ++t) {
@@ -223,7 +280,7 @@ class MeshParts {
   const std::vector<Hinge>& hinges_;
   std::vector<std::uint32_t> part_;  ///< part number of each triangle
   std::vector<bool> reversed_;
-  std::vector<bool> closed_;   ///< for each part: true if every edge has two triangles
+  std::vector<bool> closed_;   ///< for each part: true if it ends at no edge
   std::vector<Shape> shapes_;  ///< properties of the parts
 };
 
@@ -518,7 +575,7 @@ std::vector<SurfacePoint> subsampled(const std::vector<SurfacePoint>& points, do
   return thin;
 }
 
-CheckedMesh mesh_from_triangles(const TriangleSoup& soup) {
+CheckedMesh mesh_from_triangles(const TriangleSoup& soup, bool flip_open) {
   for (std::size_t i = 0; i < soup.vertices.size(); ++i) {
     if (!soup.vertices[i].allFinite()) throw MeshError("vertex " + std::to_string(i) + " is not finite");
   }
@@ -532,7 +589,7 @@ CheckedMesh mesh_from_triangles(const TriangleSoup& soup) {
   std::vector<TriangleSide> sides = sides_by_edge(triangles);
   const std::vector<bool> has_opposite = drop_copies(triangles, sides, result.findings);
   const std::vector<Hinge> hinges = hinges_of(sides, soup.vertices, result.findings);
-  MeshParts parts(triangles.size(), hinges);
+  MeshParts parts(triangles.size(), hinges, sides);
   if (const auto hinge = parts.contradiction()) {
     const Triangle& t = triangles[hinge->triangles[0]];
     throw MeshError("is not orientable: no winding fits all faces around " + text(soup.vertices[t[hinge->corners[0]]]) +
@@ -540,6 +597,7 @@ CheckedMesh mesh_from_triangles(const TriangleSoup& soup) {
   }
   result.findings.flipped_triangles = parts.follow_majority(has_opposite);
   result.findings.inverted_parts = parts.orient_outwards(soup.vertices, triangles);
+  if (flip_open) parts.reverse_open();
   parts.describe(result.findings);
 
   // Build the half-edge mesh with one vertex for each triangle fan.

@@ -45,8 +45,7 @@ std::vector<SurfacePoint> subsampled(const std::vector<SurfacePoint>& points, do
 struct MeshComponent {
   std::size_t triangles = 0;
   Box box;  ///< bounding box [m]
-  /// True if every edge has two triangles. False if the component is open or was cut along an edge with more than two
-  /// triangles.
+  /// True if the component ends at no edge. False if it is open, or ends at an edge with more than two triangles.
   bool is_closed = true;
   bool is_cavity = false;    ///< true if the component is closed, with normals towards its inside
   bool is_reversed = false;  ///< true if the component is closed, and its winding was reversed
@@ -71,6 +70,7 @@ struct MeshFindings {
   /// Midpoints [m] of the edges with one triangle only, where the surface is open.
   std::vector<Vec3> open_edges = {};
   std::size_t component_count = 0;
+  std::size_t open_component_count = 0;  ///< components that are not closed: the file decides where their normals point
   /// The components in order of decreasing diameter; only the first kMaxComponents.
   std::vector<MeshComponent> components = {};
 };
@@ -98,13 +98,13 @@ class MeshError : public std::runtime_error {
 /// - Edges: an edge with more than two triangles does not connect these triangles. They belong to different fans, and
 /// each fan gets a vertex of its own.
 /// - Winding: makes the winding of each connected part consistent, following the majority of its triangles. Orients
-/// closed parts outwards. A part inside the bounding box of a larger part may be a cavity, and is therefore
-/// reversed if and only if the larger part is reversed.
+/// closed parts outwards. A closed part inside a larger closed part may be a cavity, and is therefore reversed if and
+/// only if the larger part is reversed. `flip_open`: true to reverse the parts that are not closed.
 ///
 /// Throws MeshError if there are no triangles, a coordinate is not finite, the surface is not orientable (a Moebius
 /// band), or more than 10,000 triangles meet in one vertex (which would take quadratic time). O(n log n) otherwise.
 /// Precondition: vertex indices are valid.
-CheckedMesh mesh_from_triangles(const TriangleSoup& soup);
+CheckedMesh mesh_from_triangles(const TriangleSoup& soup, bool flip_open = false);
 
 /// Returns the triangles of the component with the largest diameter; of several equally large components, the first.
 /// The result contains all vertices of the mesh, also those of other components.

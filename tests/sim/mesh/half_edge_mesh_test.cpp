@@ -250,6 +250,46 @@ TEST(MeshFromTriangles, KeepsCavitiesAndTurnsThemWithWhatIsAroundThem) {
   EXPECT_NEAR(enclosed_volume(turned.mesh), 216.0 - 8.0, 1e-12);
 }
 
+/// A part in the bounding box of a larger part is no cavity unless the larger part encloses it: of a torus and a cube
+/// in its opening, only the parts that are inside out are turned.
+TEST(MeshFromTriangles, TurnsAPartThatAnotherPartOnlySurrounds) {
+  const TriangleSoup frame = test::torus(9, 7), ball = cube(0.1);
+  const double volume = enclosed_volume(mesh_from_triangles(frame).mesh) + 0.2 * 0.2 * 0.2;
+  for (const bool turned_frame : {false, true})
+    for (const bool turned_ball : {false, true}) {
+      const auto [mesh, found] =
+          mesh_from_triangles(together(turned_frame ? reversed(frame) : frame, turned_ball ? reversed(ball) : ball));
+      EXPECT_EQ(found.inverted_parts, (turned_frame ? 1u : 0u) + (turned_ball ? 1u : 0u));
+      EXPECT_NEAR(enclosed_volume(mesh), volume, 1e-12 * volume);
+    }
+}
+
+/// Two cubes that share an edge: four faces meet in this edge, but each cube is closed and is oriented.
+TEST(MeshFromTriangles, TurnsClosedPartsThatShareAnEdge) {
+  for (const bool turned : {false, true}) {
+    const TriangleSoup both = together(cube(), cube(1.0, {2, 2, 0}));
+    const auto [mesh, found] = mesh_from_triangles(turned ? reversed(both) : both);
+    EXPECT_EQ(found.non_manifold_edges.size(), 1u);
+    EXPECT_EQ(found.open_component_count, 0u);
+    EXPECT_EQ(found.inverted_parts, turned ? 2u : 0u);
+    EXPECT_NEAR(enclosed_volume(mesh), 16.0, 1e-12);
+  }
+}
+
+/// flip_open turns the open parts only, and counts no closed part as reversed.
+TEST(MeshFromTriangles, FlipsOpenPartsOnly) {
+  TriangleSoup open = cube();
+  open.triangles.erase(open.triangles.begin() + 2, open.triangles.begin() + 4);  // the top face
+  const TriangleSoup both = together(open, cube(1.0, {900, 0, 0}));
+  const CheckedMesh as_given = mesh_from_triangles(both), flipped = mesh_from_triangles(both, /*flip_open=*/true);
+  EXPECT_EQ(flipped.findings.inverted_parts, 0u);
+  EXPECT_EQ(flipped.findings.open_component_count, 1u);
+  const auto given = vertices_with_normals(as_given.mesh), after = vertices_with_normals(flipped.mesh);
+  ASSERT_EQ(given.size(), after.size());
+  for (std::size_t i = 0; i < given.size(); ++i)
+    EXPECT_EQ(after[i].normal, given[i].position.x() < 100.0 ? Vec3(-given[i].normal) : given[i].normal);
+}
+
 TEST(MeshFromTriangles, KeepsTheWindingOfOpenSurfaces) {
   TriangleSoup open = cube();
   open.triangles.erase(open.triangles.begin() + 2, open.triangles.begin() + 4);  // the top face
