@@ -158,6 +158,9 @@ void warn_of_unread_rendering(const Scenario& scenario, const Json& json, std::v
     if (scenario.rendering.hunt_crossley && is_given(pointer))
       warnings.push_back({kNoEffect, pointer, "has no effect together with rendering.damping"});
   }
+  if (scenario.rendering.damping && !scenario.rendering.hunt_crossley && is_given("/rendering/damping_ratio"))
+    warnings.push_back({kNoEffect, "/rendering/damping_ratio",
+                        "has no effect together with rendering.damping_N_s_per_m, which replaces it"});
   constexpr const char* kCutoff = "/rendering/angular_velocity_cutoff_Hz";
   if (is_given(kCutoff) && !scenario.rendering.angular_damping)
     warnings.push_back({kNoEffect, kCutoff, "has no effect without rendering.angular_damping"});
@@ -178,15 +181,16 @@ void warn_of_stiff_bristle(const Scenario& scenario, std::vector<Warning>& warni
            bristle.K, bristle.dt, r.mass)});
 }
 
-/// Searches `json` for scripts of waypoints and returns a warning about the first script whose last segment begins at
-/// or after the end of the run. Returns nullopt if `json` has no such script. `at` is the JSON pointer of `json`;
-/// `duration` is the length of the run [s]. Precondition: the fields of `json` are valid.
+/// Searches `json` for scripts of waypoints and returns a warning about the first script that moves on after the end of
+/// the run by more than a tenth of the run. Returns nullopt if `json` has no such script. `at` is the JSON pointer of
+/// `json`; `duration` is the length of the run [s]. Precondition: the fields of `json` are valid.
 std::optional<Warning> first_unplayed(const Json& json, const std::string& at, double duration) {
+  constexpr double kUnplayed = 0.1;
   if (!json.is_object()) return std::nullopt;
-  // Check a script of waypoints. The time of the second-to-last waypoint is the beginning of the last segment.
   if (json.value("type", Json()) == "waypoints") {
     const Json& points = json.at("points");
-    if (points.size() < 2 || points[points.size() - 2][0].get<double>() < duration) return std::nullopt;
+    const bool moves = points.size() > 1 && points[points.size() - 2][1] != points.back()[1];
+    if (!moves || points.back()[0].get<double>() <= (1.0 + kUnplayed) * duration) return std::nullopt;
     return Warning{"unplayed_script", at,
                    fmt::format("the script's last waypoint is at {:.6g} s, but the run ends at {:.6g} s; is "
                                "time.duration_s (or steps) right?",

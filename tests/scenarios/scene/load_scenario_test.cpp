@@ -72,6 +72,22 @@ TEST_F(Extends, AnObjectOfAnotherTypeReplacesAllOfIt) {
             Json::parse(R"({"type": "force", "x_N": {"type": "ramp", "start": 1, "rate_per_s": 2}, "y_N": 3})"));
 }
 
+/// An object without a type has the first type of its field, such as a cylinder. Naming this type keeps its fields.
+TEST_F(Extends, NamingTheTypeOfAnUntypedObjectKeepsItsFields) {
+  write("untyped.json", R"({"tool": {"diameter_m": 0.004}, "rendering": {"friction": {"mu_s_N_s_per_m": 3}}})");
+  const Json json = read_scenario_text(write("mine.json", R"({"extends": "untyped.json",
+      "tool": {"type": "cylinder", "length_m": 0.03},
+      "rendering": {"friction": {"type": "viscous", "mu_f_s_per_m": 2}}})"))
+                        .json;
+  EXPECT_EQ(json["tool"], Json::parse(R"({"type": "cylinder", "diameter_m": 0.004, "length_m": 0.03})"));
+  EXPECT_EQ(json["rendering"]["friction"],
+            Json::parse(R"({"type": "viscous", "mu_s_N_s_per_m": 3, "mu_f_s_per_m": 2})"));
+  const Json other = read_scenario_text(write("mine.json", R"({"extends": "untyped.json",
+      "tool": {"type": "bur", "shape": "round"}})"))
+                         .json;
+  EXPECT_EQ(other["tool"], Json::parse(R"({"type": "bur", "shape": "round"})"));
+}
+
 TEST_F(Extends, NeitherNameNorExpectIsTakenOver) {
   merged(R"({"extends": "base.json"})");
   const Scenario scenario = load_scenario(directory_ / "mine.json").scenario;

@@ -33,6 +33,29 @@ TEST(Warnings, NameFieldsThatTheAlgorithmDoesNotRead) {
   EXPECT_EQ(found[2], "/rendering/angular_velocity_cutoff_Hz: has no effect without rendering.angular_damping");
 }
 
+TEST(Warnings, NameADampingRatioThatADampingReplaces) {
+  EXPECT_TRUE(warnings_with({"rendering.damping_N_s_per_m=3"}).empty());
+  const auto found = warnings_with({"rendering.damping_N_s_per_m=3", "rendering.damping_ratio=0.2"});
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found[0],
+            "/rendering/damping_ratio: has no effect together with rendering.damping_N_s_per_m, which replaces it");
+}
+
+/// A script moves on after the end of the run, also if it has two waypoints only. A script that holds its last value
+/// does not.
+TEST(Warnings, NameAScriptThatIsLongerThanTheRun) {
+  const auto script = [](const char* points) {
+    return warnings_with({"time.duration_s=0.1", std::string(R"(hand.target={"x_m":0,"y_m":0,"z_m":)") +
+                                                     R"({"type":"waypoints","points":)" + points + "}}"});
+  };
+  for (const char* points : {"[[0,0.001],[0.5,-0.001]]", "[[0,0.001],[0.05,0],[0.5,-0.001]]"}) {
+    ASSERT_EQ(script(points).size(), 1u) << points;
+    EXPECT_NE(script(points)[0].find("last waypoint is at 0.5 s, but the run ends at 0.1 s"), std::string::npos);
+  }
+  for (const char* points : {"[[0,0.001],[0.1,-0.001]]", "[[0,0.001],[0.05,0],[0.5,0]]"})
+    EXPECT_TRUE(script(points).empty()) << points;
+}
+
 TEST(Warnings, NameTheOverrideInsteadOfAFileThatDoesNotSetTheField) {
   const auto texts = [](std::vector<std::string> overrides) {
     const LoadedScenario loaded = load_scenario(find_scenario("poke_plane"), overrides);
