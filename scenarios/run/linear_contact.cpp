@@ -43,6 +43,22 @@ Mat3 without_noise(const Mat3& M, double largest) {
   return (M.array().abs() > kRelativeError * largest).select(M, 0.0);
 }
 
+/// Returns true if the tool of a scene moves only in the plane z = 0, because the surface and the state `near` of a run
+/// lie in this plane: no force along z ever arises.
+bool stays_in_plane(const Scenario& scenario, const ContactState& near) {
+  return std::holds_alternative<Hole2d>(scenario.environment) && near.pose.position.z() == 0.0 &&
+         near.pose.axis.z() == 0.0;
+}
+
+/// Sets the derivatives with respect to z, and those of forces along z, to zero.
+void remove_z(LinearContact& contact) {
+  for (Mat3* M : {&contact.rendered.stiffness, &contact.rendered.damping, &contact.rendered.assumed.stiffness,
+                  &contact.rendered.assumed.damping, &contact.hand.stiffness, &contact.hand.damping}) {
+    M->row(2).setZero();
+    M->col(2).setZero();
+  }
+}
+
 /// Evaluates the forces, and their derivatives, on a tool that rests at a position.
 class RestingTool {
  public:
@@ -53,6 +69,7 @@ class RestingTool {
         time_(near.time),
         axis_(near.pose.axis),
         roll_(near.pose.roll),
+        in_plane_(stays_in_plane(scenario, near)),
         admittance_(std::get_if<AdmittanceDeviceConfig>(&scenario.device)) {
     parts_.hand->reset();
     parts_.source->follow(&row_);
@@ -127,6 +144,7 @@ class RestingTool {
     contact.rendered.damping = without_noise(contact.rendered.damping, contact.rendered.damping.cwiseAbs().maxCoeff());
     contact.hand = parts_.hand->impedance();
     contact.input = input_slope();
+    if (in_plane_) remove_z(contact);
     return contact;
   }
 
@@ -238,6 +256,7 @@ class RestingTool {
   double time_;
   Vec3 axis_;
   double roll_;
+  bool in_plane_;                             ///< true if the tool moves only in the plane z = 0
   const AdmittanceDeviceConfig* admittance_;  ///< null for other devices
   std::uint64_t row_ = 0;
   Vec3 position_ = Vec3::Zero();

@@ -37,7 +37,8 @@ struct ContactAtRest {
 /// friction, encoder, sensor noise, force stages and passivity controller are left out. The derivatives of the rendered
 /// force with respect to position and velocity of the tool are central differences with relative errors of 1e-7. The
 /// set of contacts is held constant: where a point begins to touch, the difference is one-sided. The force at each
-/// position is the force on a tool that rests there: the proxy of a constraint-based law has come to rest.
+/// position is the force on a tool that rests there: the proxy of a constraint-based law has come to rest. In a planar
+/// scene, in which no force along z arises, the derivatives along z are 0.
 ///
 /// The equilibrium is found by Newton's method, with the targets of the hand as at the time of `near`. Without an
 /// equilibrium, the derivatives belong to the pose of `near`; a law whose force jumps when a point begins to touch need

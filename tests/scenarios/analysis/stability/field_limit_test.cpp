@@ -79,6 +79,29 @@ TEST(FieldLimit, HasNoLinearLimitIfContactsComeAndGo) {
   EXPECT_EQ(limit.quoted.value, limit.end.value);
 }
 
+/// A tilted peg in a planar hole. Along z, the contact pushes the peg away from the plane, but the peg never leaves
+/// this plane: the linear limit is that of the two directions within the plane, which the runs confirm within the
+/// resolution of the search.
+TEST(FieldLimit, OfAPlanarSceneLeavesOutTheDirectionAcrossThePlane) {
+  const Words scene = {R"(environment={"type":"hole_2d","width_m":0.001,"depth_m":0.005,"spacing_m":0.0001})",
+                       R"(motion={"orientation":{"tilt_rad":{"type":"waypoints","interpolation":"cosine",)"
+                       R"("points":[[0,0],[0.4,-0.18]]}}})",
+                       R"(hand={"type":"impedance","stiffness_N_per_m":300,"damping_N_s_per_m":6,)"
+                       R"("target":{"x_m":0,"y_m":-0.0045,"z_m":0}})",
+                       R"(tool={"diameter_m":0.001,"length_m":0.01,"tip":"round"})",
+                       R"(initial={"position_m":[0,-0.003,0]})",
+                       R"(time={"step_s":0.0005,"duration_s":1})",
+                       R"(rendering={"depth_model":"shortest_distance","stiffness_N_per_m":20000,"damping_ratio":0.7})",
+                       R"(device={"type":"ideal"})"};
+  const FieldLimit limit = ask({.scenario = "poke_plane",
+                                .field = "rendering.stiffness_N_per_m",
+                                .overrides = scene,
+                                .rule = {.max_vibration = 1e-3}},
+                               "shaped_stiffness");
+  ASSERT_TRUE(limit.linear && limit.end.value);
+  EXPECT_NEAR(*limit.linear, *limit.end.value, 0.01 * *limit.linear);
+}
+
 /// Checks a flat tip with the law `proxy`, which renders one of 49 equal points. Rounding decides which point. The
 /// contact lasts, although the number of the rendered point changes. At K = 1700 N/m, the tool begins at its
 /// equilibrium.
