@@ -74,12 +74,12 @@ Number ratio_to_stability_limit(const DiagnosedRun& run, const LoadedScenario& l
   return rounded_to_digits(K / std::max(kSmallestStiffness * K, *limit), 6);
 }
 
-/// Returns true if the run shows a sign of an unstable loop: it vibrates, diverges or loses contact. Returns false if a
-/// force law or a contact module reported a fault, because the loop is then not the cause.
+/// Returns true if the run shows a sign of an unstable loop: it vibrates, diverges, loses contact or passes through the
+/// surface. Returns false if a force law or a contact module reported a fault, because the loop is then not the cause.
 bool looks_unstable(const DiagnosedRun& run) {
   if (!run.result.end.divergence.fault.empty()) return false;
-  return run.ended(Outcome::diverges, Outcome::lost_contact) || run.vibrates() || buzz(run).value_or(0.0) > kMaxBuzz ||
-         shake(run).value_or(0.0) > kMaxShake;
+  return run.ended(Outcome::diverges, Outcome::lost_contact, Outcome::went_through) || run.vibrates() ||
+         buzz(run).value_or(0.0) > kMaxBuzz || shake(run).value_or(0.0) > kMaxShake;
 }
 
 /// Returns ratio_to_stability_limit() if looks_unstable(run) is true, else an empty value.
@@ -232,6 +232,13 @@ Number coarseness(const DiagnosedRun& run) {
   return run.if_completed(is_outline ? factor : std::sqrt(factor));
 }
 
+/// Returns the damping that the law renders along its stiffest direction [N s/m], with its upper limit.
+static double rendered_damping(const DiagnosedRun& run) {
+  const RenderingConfig& rendering = run.scenario().rendering;
+  const double B = run.metric("ratio_max").value_or(1.0) * normal_damping(rendering);
+  return rendering.max_damping ? std::min(B, *rendering.max_damping) : B;
+}
+
 Number encoder_force(const DiagnosedRun& run) {
   const ImpedanceDeviceConfig* device = run.impedance();
   const bool is_rough = buzz(run).value_or(0.0) > kMaxBuzz || pop(run).value_or(0.0) > kMaxBuzz ||
@@ -243,7 +250,7 @@ Number encoder_force(const DiagnosedRun& run) {
   for (int i = 0; i < kFilterSamples; ++i)
     fastest = std::max(fastest, filter.read(Vec3(device->encoder_step, 0.0, 0.0)).x());
   const Number mean = run.metric("force_mean_in_contact_N");
-  return quotient(normal_damping(run.scenario().rendering) * fastest, mean);
+  return quotient(rendered_damping(run) * fastest, mean);
 }
 
 Number position_noise_force(const DiagnosedRun& run) {
@@ -258,8 +265,7 @@ Number position_noise_force(const DiagnosedRun& run) {
     const double velocity = filter.read(Vec3(i == 0 ? device->position_noise : 0.0, 0.0, 0.0)).x();
     squares += velocity * velocity;
   }
-  const RenderingConfig& rendering = run.scenario().rendering;
-  return rendering.hunt_crossley ? 0.0 : normal_damping(rendering) * std::sqrt(squares);
+  return run.scenario().rendering.hunt_crossley ? 0.0 : rendered_damping(run) * std::sqrt(squares);
 }
 
 Number sensor_noise_force(const DiagnosedRun& run) {
@@ -307,11 +313,13 @@ bool stiffer_hand_helps(const DiagnosedRun& run) {
 Number damping_share(const DiagnosedRun& run) {
   const Scenario& s = run.scenario();
   const ImpedanceDeviceConfig* device = run.impedance();
-  const Number lambda = run.metric("ratio_max");
-  // Hunt and Crossley's damping replaces B and grows with the depth.
-  if (!lambda || !run.is_free() || s.rendering.hunt_crossley) return std::nullopt;
-  double B = *lambda * normal_damping(s.rendering);
-  if (const auto& most = s.rendering.max_damping) B = std::min(B, *most);
+  // Hunt and Crossley's damping replaces B and grows with the depth. Delays, filters and a transmission lower the
+  // largest stable damping; the rule "loop" covers them.
+  if (!run.metric("ratio_max") || !run.is_free() || s.rendering.hunt_crossley) return std::nullopt;
+  if (device != nullptr && (device->delay_samples > 0.0 || device->transmission || device->position_filter ||
+                            !std::holds_alternative<DifferenceFilter>(device->velocity_filter)))
+    return std::nullopt;
+  const double B = rendered_damping(run);
   double mass = device != nullptr ? device->handle_mass : s.rendering.mass;
   // A passive hand is fixed to the handle.
   if (const auto* hand = std::get_if<MassSpringDamperHandFields>(&s.hand)) mass += hand->mass;

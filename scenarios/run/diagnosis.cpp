@@ -122,9 +122,7 @@ constexpr Rule kRules[] = {
     {"limiter", "fraction of the steps in contact in which the input-force limiter of the device cuts the hand's force",
      "1", 0.2, "the device's limiter cuts the hand's force during {} of the contact time",
      [](const DiagnosedRun& r) { return share(r.observations.at_input_limit, r.observations.in_contact); },
-     [](const DiagnosedRun&) {
-       return std::string("a smaller hand force, or a larger device.force_limit_N (f_th in section 2.7 of the thesis)");
-     }},
+     against_input_limit},
     {"bounces",
      "number of landings per second; the first landing, and one landing for each period or waypoint of the hand's "
      "script, are not counted",

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <cmath>
 #include <functional>
 #include <optional>
 #include <string>
@@ -11,6 +12,7 @@
 
 #include "algorithms/registry.hpp"
 #include "algorithms/stages/damping_and_limits.hpp"
+#include "scenarios/run/quantity_text.hpp"
 #include "scenarios/run/scene_distances.hpp"
 #include "scenarios/run/scene_loop.hpp"
 
@@ -168,6 +170,12 @@ bool is_too_stiff(const DiagnosedRun& run) {
   return is_beyond(stability_limit_ratio(run), kMaxLimitRatio);
 }
 
+/// Returns the changes of device and damping with which the loop is stable at this K.
+std::vector<std::string> remedies_at_this_stiffness(const DiagnosedRun& run) {
+  return effective(both(device_changes(run.scenario()), damping_changes(run.scenario())),
+                   [&](const auto& change) { return is_below_limit(run, change); });
+}
+
 /// Returns the advice if the linear loop is unstable: without contact, because of K, or at any K. Empty if it is
 /// stable.
 std::optional<std::string> against_instability(const DiagnosedRun& run) {
@@ -195,6 +203,13 @@ std::vector<std::string> against_measured_causes(const DiagnosedRun& run) {
   return remedies;
 }
 
+/// Returns true if the damping of the contacts is less than a twentieth of the critical damping.
+bool is_nearly_undamped(const DiagnosedRun& run) {
+  const RenderingConfig& r = run.scenario().rendering;
+  constexpr double kNearlyUndamped = 0.05;
+  return !r.hunt_crossley && normal_damping(r) < kNearlyUndamped * 2.0 * std::sqrt(r.stiffness * r.mass);
+}
+
 /// Returns the advice against a rough force: remedies for the measured causes or, if no cause was measured, a smaller K
 /// for a tool that is free to move. `laws`: the words after "… shows which algorithm has" in the last sentence.
 /// `metric`: metric by which the algorithms are compared.
@@ -207,6 +222,9 @@ std::string against_roughness(const DiagnosedRun& run, const char* laws, const c
   if (!remedies.empty()) return either(remedies) + "; " + comparison;
   // If a script moves the tool, the contacts do not depend on K, and a smaller K scales all forces by the same factor.
   if (!run.is_free()) return "another algorithm or a smoother motion; " + comparison;
+  if (is_nearly_undamped(run))
+    return fmt::format("a larger {} (the contact is nearly undamped), or another algorithm; {}",
+                       damping_field(run.scenario().rendering), comparison);
   return "a smaller K or another algorithm; " + comparison;
 }
 
@@ -236,6 +254,8 @@ std::string against_divergence(const DiagnosedRun& run) {
   std::vector<std::string> remedies;
   if (is_beyond(unstable_loop(run), 0.5)) remedies.push_back(against_unstable_loop(run));
   if (is_beyond(damping_share(run), 1.0)) remedies.push_back("a smaller " + damping_field(run.scenario().rendering));
+  if (has_multi_rate_contacts(run.scenario()))
+    remedies.emplace_back("a smaller rendering.contacts.every or a smaller K");
   if (is_beyond(run.metric("explicit_friction_rows_beyond"), 0.0)) remedies.push_back(against_friction(run));
   if (remedies.empty() && !is_too_stiff(run) && left_surface_long_ago(run))
     return fmt::format(
@@ -246,6 +266,25 @@ std::string against_divergence(const DiagnosedRun& run) {
   return either(remedies) + (run.is_free() ? "; \"hapbench tune\" finds K and zeta" : "");
 }
 
+/// Returns the advice for a tool that passed through a surface without touching one of its points.
+static std::string against_untouched_surface(const DiagnosedRun& run) {
+  const auto spacing = point_distance(run.loaded);
+  if (run.tool == nullptr || (spacing && spacing->metres < run.tool->half_width()))
+    return "another initial.position_m or tool: the tool passed through the surface without touching one of its points";
+  const std::string finer = spacing ? fmt::format("a smaller {} ({} now)", spacing->path, length_text(spacing->metres))
+                                    : std::string("a surface with more points");
+  return fmt::format("{}: the tool, {} wide, passed between the points of the surface", finer,
+                     length_text(2.0 * run.tool->half_width()));
+}
+
+/// Returns the advice for a tool that passed through the surface while its loop was unstable. A smaller K would let it
+/// sink in deeper.
+static std::string against_sinking_when_unstable(const DiagnosedRun& run) {
+  std::vector<std::string> remedies = remedies_at_this_stiffness(run);
+  if (remedies.empty()) remedies.emplace_back("a smaller hand force together with a smaller K");
+  return either(remedies) + ": the rule \"edge\" names the stability limit of K, and a smaller K alone sinks in deeper";
+}
+
 std::string against_sinking(const DiagnosedRun& run) {
   const OutcomeFacts& facts = run.observations.facts;
   if (!facts.scale_question.empty()) return "check the sizes: " + facts.scale_question;
@@ -254,6 +293,8 @@ std::string against_sinking(const DiagnosedRun& run) {
                          : "another motion.position: the script starts inside the environment";
   if (step_exceeds_half_width(run)) return kShorterStep;
   if (!run.is_free()) return "another motion.position, because the script moves the tool there";
+  if (run.observations.in_contact == 0) return against_untouched_surface(run);
+  if (is_too_stiff(run)) return against_sinking_when_unstable(run);
   if (const auto advice = against_instability(run)) return *advice;
   return "a larger K or a smaller hand force; if the rule \"soft\" is listed, another algorithm";
 }
@@ -263,6 +304,9 @@ std::string against_loss(const DiagnosedRun& run) {
   if (!facts.scale_question.empty()) return "check the sizes: " + facts.scale_question;
   if (step_exceeds_half_width(run)) return kShorterStep;
   if (run.ended(Outcome::no_contact)) {
+    if (run.scenario().rendering.contact_source == kTrace)
+      return "check the times of the contact trace (/rendering/contact_source): no contact of the trace fell on a step "
+             "of the run";
     if (facts.holding_friction)
       return fmt::format(
           "a hand with a larger stiffness or force: the device's dry friction of {:.3g} N (device.coulomb_N) holds the "
@@ -273,6 +317,9 @@ std::string against_loss(const DiagnosedRun& run) {
            "and distances); if the tool came nearer until the end of the run, more time.steps";
   }
   if (const auto advice = against_instability(run)) return *advice;
+  if (!run.has_hand())
+    return "a hand that presses the tool on the surface, or another algorithm: without a hand, only the force of the law "
+           "moves the tool";
   return "a hand whose path ends on the surface";
 }
 
@@ -333,8 +380,13 @@ std::string against_shaking(const DiagnosedRun& run) {
 }
 
 std::string against_coarseness(const DiagnosedRun& run) {
-  return fmt::format("half of {}; \"hapbench compare --errors\" shows which metrics depend on it",
-                     point_distance(run.loaded)->path);
+  // Half of the spacing gives four times as many points. If the rendered stiffness grows with their number, K must be
+  // smaller by this factor. Stiffness shaping keeps the ratio below 1.5.
+  constexpr double kGrowsWithPoints = 1.5;
+  const bool grows = is_beyond(run.metric("ratio_max"), kGrowsWithPoints);
+  return fmt::format(
+      "half of {}{}; \"hapbench compare --errors\" shows which metrics depend on it", point_distance(run.loaded)->path,
+      grows ? " and a quarter of K, because the stiffness of this algorithm grows with the number of points" : "");
 }
 
 std::string against_depth(const DiagnosedRun& run) {
@@ -368,9 +420,26 @@ std::string against_friction(const DiagnosedRun&) {
 }
 
 std::string against_encoder(const DiagnosedRun& run) {
-  const bool is_filtered = std::holds_alternative<LowPassFilter>(run.impedance()->velocity_filter);
-  return either({"a smaller " + damping_field(run.scenario().rendering), "a finer encoder",
-                 is_filtered ? "a lower cutoff_Hz of device.velocity_filter" : "a low-pass device.velocity_filter"});
+  const auto* filter = std::get_if<LowPassFilter>(&run.impedance()->velocity_filter);
+  constexpr double kUsualCutoff = 300.0;  // divided by the factors of effective(): 30 and 100 Hz
+  const auto smooth = [](Scenario& s, double factor) {
+    auto& device = std::get<ImpedanceDeviceConfig>(s.device);
+    const auto* low_pass = std::get_if<LowPassFilter>(&device.velocity_filter);
+    LowPassFilter smoother = low_pass != nullptr ? *low_pass : LowPassFilter{};
+    smoother.cutoff = (low_pass != nullptr ? low_pass->cutoff : kUsualCutoff) / factor;
+    device.velocity_filter = smoother;
+  };
+  const std::vector<LoopChange> changes = {
+      {"a smaller " + damping_field(run.scenario().rendering),
+       [](Scenario& s, double factor) { scale_damping(s.rendering, 1.0 / factor, 0.0); }},
+      {filter != nullptr ? "a lower cutoff_Hz of device.velocity_filter" : "a low-pass device.velocity_filter",
+       smooth}};
+  // Less damping, and the delay of a filter, may make a stable loop unstable.
+  const bool is_stable = run.is_free() && is_below_limit(run, [](Scenario&) {});
+  std::vector<std::string> remedies =
+      effective(changes, [&](const auto& change) { return !is_stable || is_below_limit(run, change); });
+  remedies.insert(remedies.begin(), "a finer encoder");
+  return either(remedies);
 }
 
 std::string against_saturation(const DiagnosedRun& run) {
@@ -379,14 +448,23 @@ std::string against_saturation(const DiagnosedRun& run) {
   const bool device_binds = device != nullptr && device->force_max && (!rendered || *device->force_max <= *rendered);
   const std::string limit = device_binds ? "a stronger device" : "a larger rendering.limits.max_force_N";
   if (!run.is_free()) return either({"a smaller K", "a motion.position that is less deep", limit});
+  if (is_beyond(unstable_alone(run), 0.5)) return against_unstable_servo(run);
+  if (is_beyond(unstable_loop(run), 0.5)) return against_unstable_loop(run);
   // In equilibrium, the rendered force balances the hand's force at any K. A smaller K therefore helps only against
   // vibration.
   return is_too_stiff(run) || run.vibrates() ? either({"a smaller K", "a smaller hand force", limit})
                                              : either({"a smaller hand force", limit});
 }
 
+std::string against_input_limit(const DiagnosedRun& run) {
+  if (is_beyond(unstable_alone(run), 0.5)) return against_unstable_servo(run);
+  if (is_beyond(unstable_loop(run), 0.5)) return against_unstable_loop(run);
+  return "a smaller hand force, or a larger device.force_limit_N (f_th in section 2.7 of the thesis)";
+}
+
 std::string against_bounces(const DiagnosedRun& run) {
   if (is_beyond(unstable_alone(run), 0.5)) return against_unstable_servo(run);
+  if (is_beyond(unstable_loop(run), 0.5)) return against_unstable_loop(run);
   if (is_too_stiff(run)) return "a smaller K";
   const std::string field = damping_field(run.scenario().rendering);
   return is_beyond(damping_share(run), kMaxDampingShare) ? "a smaller " + field
@@ -399,6 +477,7 @@ std::string against_chatter(const DiagnosedRun& run) {
 
 std::string against_energy(const DiagnosedRun& run) {
   if (is_beyond(unstable_alone(run), 0.5)) return against_unstable_servo(run);
+  if (is_beyond(unstable_loop(run), 0.5)) return against_unstable_loop(run);
   if (const auto* device = run.impedance()) {
     // If the rendered force alone creates no energy, the delay creates it.
     const bool delay_creates = device->delay_samples > 0.0 && is_beyond(created_energy(run), kMaxCreatedEnergy) &&

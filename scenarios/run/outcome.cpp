@@ -30,7 +30,8 @@ class OutcomeObserverImpl final : public OutcomeObserver {
       : scenario_(scenario),
         metrics_(metrics),
         tool_(parts.tool),
-        drag_(dynamic_cast<const DragHand*>(parts.hand.get())) {
+        drag_(dynamic_cast<const DragHand*>(parts.hand.get())),
+        normals_question_(normals_question(scenario.environment, files)) {
     const auto is_unexpected = [&scenario](Outcome outcome) { return !outcome_is_expected(scenario.expect, outcome); };
     const bool may_end = length == RunLength::until_failure && can_fail_early(scenario);
     // After a passage through the surface, the outcome is went_through, or diverges if the run diverges later. The
@@ -248,11 +249,8 @@ class OutcomeObserverImpl final : public OutcomeObserver {
     return inside_ && (inside_->passage().ends_inside || inside_max() > tool_->half_width());
   }
   std::string went_through_text() {
-    const bool is_scan = std::holds_alternative<MeshEnvironment>(scenario_.environment) ||
-                         std::holds_alternative<PointShellEnvironment>(scenario_.environment);
     std::string question = scale_question(scenario_, *tool_, approach_->environment());
-    if (question.empty() && is_scan && inside_->passage().began_inside)
-      question = "are the normals of an open scan inverted (environment.flip_normals)?";
+    if (question.empty() && inside_->passage().began_inside) question = normals_question_;
     const char* const begins = inside_->passage().began_inside      ? "the tool started inside the environment"
                                : position_is_free(scenario_.motion) ? "the tool passed through the surface"
                                                                     : "the script moved the tool through the surface";
@@ -326,11 +324,14 @@ class OutcomeObserverImpl final : public OutcomeObserver {
   std::string standstill_text() {
     const auto s = stuck();
     if (!s) return "";
-    return fmt::format(
-        "the tool hardly moved from {:.4g} s on: it moved by {} while its target moved by {}; at the end it was at {} "
-        "with a force of {:.3g} N",
-        s->since, length_text(s->tool_distance), length_text(s->target_distance), position_text(position_),
-        force_.norm());
+    const char* const text =
+        progress_
+            ? "the tool hardly advanced along its path from {:.4g} s on: it advanced by {} while its target "
+              "advanced by {}; at the end it was at {} with a force of {:.3g} N"
+            : "the tool hardly moved from {:.4g} s on: it moved by {} while its target moved by {}; at the end it "
+              "was at {} with a force of {:.3g} N";
+    return fmt::format(fmt::runtime(text), s->since, length_text(s->tool_distance), length_text(s->target_distance),
+                       position_text(position_), force_.norm());
   }
 
   bool is_stuck() { return stuck() || (progress_ && progress_->is_left_behind()); }
@@ -367,6 +368,7 @@ class OutcomeObserverImpl final : public OutcomeObserver {
   std::optional<Approach> approach_;
   std::optional<Standstill> standstill_;
   const DragHand* drag_;                  ///< null unless the hand drags the tool
+  std::string normals_question_;          ///< normals_question() of the environment
   std::optional<DragProgress> progress_;  ///< progress of the drag; empty without a drag
   // Values in the last observed step.
   double time_ = 0.0;

@@ -52,13 +52,13 @@ const RecorderEntry kRecorders[] = {
     {kSixDofTable, &RecordFields::six_dof,
      [](const RecordedTrial& t) { return six_dof_rows(t.sections.find<SixDofObserver>()->row()); }}};
 
-constexpr double kBytesPerNumber = 12.0;  // an estimate, because numbers have between one and seventeen digits
-constexpr double kContactsPerRow = 30.0;
+constexpr double kBytesPerNumber = 19.0;  // an estimate: most numbers have seventeen digits
+constexpr double kOtherBytes = 20e3;      // an estimate of summary.json and scenario.effective.json
 
 /// Returns the estimated number of lines that a table gets for each recorded step.
 double lines_per_row(const ResultTable& table, const RecordFields& record) {
   const std::string_view file = table.file;
-  if (file == "contacts.csv" || file == "contact_trace.csv") return kContactsPerRow;
+  if (file == "contacts.csv" || file == "contact_trace.csv") return kAssumedContacts;
   return file == "ratios.csv" ? static_cast<double>(record.ratio_iterations.size()) : 1.0;
 }
 
@@ -102,7 +102,7 @@ double expected_output_bytes(const Scenario& scenario) {
   for (const ResultTable& table : tables_with(record))
     row += lines_per_row(table, record) * kBytesPerNumber * static_cast<double>(table.columns.size());
   const double rows = std::ceil(static_cast<double>(scenario.time.steps) / static_cast<double>(record.every));
-  return trial_count(scenario.hand) * rows * row;
+  return trial_count(scenario.hand) * rows * row + kOtherBytes;
 }
 
 }  // namespace hapbench

@@ -42,9 +42,12 @@ std::vector<ResultTable> tables_with(const RecordFields& fields);
 /// Returns descriptions of all tables that a run can record.
 std::vector<ResultTable> record_tables();
 
+/// Number of contacts in each step that expected_output_bytes() assumes if contacts are recorded.
+inline constexpr double kAssumedContacts = 30.0;
+
 /// Returns an estimate of the bytes that a run of the scenario writes, all trials together. Assumes that the run makes
-/// all its steps, that a number takes 12 bytes, and that each step has 30 contacts. If the steps have about 30
-/// contacts, the estimate is within a factor of two. O(1).
+/// all its steps, and that each step has kAssumedContacts contacts. If this is right, the estimate is within a factor
+/// of two. O(1).
 double expected_output_bytes(const Scenario& scenario);
 
 }  // namespace hapbench

@@ -94,8 +94,9 @@ std::vector<Warning> stroke_warnings(const Stroke& stroke, const ToolShape& tool
 
 /// Returns a warning if the tool starts behind the surface. Tests the point `core` on the tool's axis, core_offset()
 /// behind the tip centre: whether `core` lies on the side of its nearest surface point that is opposite to the normal
-/// of this surface point.
-std::optional<Warning> wrong_side_warning(const PointShell& shell, const ToolShape& tool, const ToolPose& pose) {
+/// of this surface point. `normals`: normals_question() of the environment.
+std::optional<Warning> wrong_side_warning(const PointShell& shell, const ToolShape& tool, const ToolPose& pose,
+                                          const std::string& normals) {
   const Vec3 core = pose.position - core_offset(tool) * pose.axis;
   // Find the nearest point of the surface.
   std::size_t nearest = 0;
@@ -114,10 +115,9 @@ std::optional<Warning> wrong_side_warning(const PointShell& shell, const ToolSha
   if (behind <= 0.0 || behind < kBehind * distance) return std::nullopt;
   return Warning{
       "wrong_side", "",
-      fmt::format(
-          "the tool starts {} behind the surface, on the side opposite to its normals: does the tool start inside, or "
-          "are the normals of an open scan inverted (environment.flip_normals)?",
-          length_text(behind))};
+      fmt::format("the tool starts {} behind the surface, on the side opposite to its normals: does the tool start "
+                  "inside{}",
+                  length_text(behind), normals.empty() ? "?" : ", or " + normals)};
 }
 
 /// Returns a warning if the sizes of tool and environment are out of proportion.
@@ -192,7 +192,7 @@ SceneFacts scene_facts(const LoadedScenario& loaded) {
     return facts;
   }
   if (std::holds_alternative<MeshEnvironment>(scenario.environment))
-    facts.is_closed = loaded.files.at(kEnvironmentFile).mesh().open_edges().empty();
+    facts.is_closed = loaded.files.at(kEnvironmentFile).mesh().knows_outside();
 
   // Check the path of a drag.
   Scenario assembled = scenario;
@@ -200,7 +200,7 @@ SceneFacts scene_facts(const LoadedScenario& loaded) {
     assembled.rendering.contact_source = kComputedContacts;  // loads no library; the contacts do not matter here
   const SimulationParts parts = assemble(assembled, loaded.files, shell, {});
   if (const auto* hand = dynamic_cast<const DragHand*>(parts.hand.get())) {
-    const double duration = step * static_cast<double>(scenario.time.steps);
+    const double duration = step * static_cast<double>(scenario.time.steps - 1);  // time of the last step
     warnings.add(short_path_warning(std::get<DragHandFields>(scenario.hand), *hand, duration, tool));
   }
 
@@ -209,7 +209,7 @@ SceneFacts scene_facts(const LoadedScenario& loaded) {
   facts.surface = SceneFacts::Surface{shell->bounds(), shell->size(), gap_between(tool, pose, *shell)};
   const bool has_size = facts.surface->box.min != facts.surface->box.max;  // false for a shell with a single point
   if (has_size) add_size_warnings(warnings, loaded, tool, *facts.surface);
-  warnings.add(wrong_side_warning(*shell, tool, pose));
+  warnings.add(wrong_side_warning(*shell, tool, pose, normals_question(scenario.environment, loaded.files)));
   facts.warnings = warnings.take();
   return facts;
 }

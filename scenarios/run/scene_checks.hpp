@@ -21,7 +21,7 @@ struct SceneFacts {
   };
   std::optional<Surface> surface;
   std::shared_ptr<const ToolShape> tool;
-  std::optional<bool> is_closed;  ///< for a mesh: true if it has no open edges; empty for other environments
+  std::optional<bool> is_closed;  ///< for a mesh: MeshFile::knows_outside(); empty for other environments
   std::vector<Warning> warnings;  ///< warnings about sizes, time step, tool, starting position and path of a drag
 };
 

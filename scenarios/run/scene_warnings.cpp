@@ -29,10 +29,10 @@ std::optional<Warning> short_path_warning(const DragHandFields& fields, const Dr
       "the path of the drag ends after {}, but the hand would move {}: ", length_text(path), length_text(to_cover));
   return Warning{
       "short_path", "",
-      ends + (fields.path
-                  ? "hand.path_m does not continue over the surface; choose its points on or near the surface"
-                  : "there the surface ends or turns against hand.direction; another initial.position_m, a larger "
-                    "hand.smoothing_m, or hand.path_m gives a longer path")};
+      ends + (fields.path ? "hand.path_m does not continue over the surface; choose its points on or near the surface"
+                          : "there the surface ends, turns against hand.direction, or has no further point within "
+                            "hand.smoothing_m; another initial.position_m, a larger hand.smoothing_m, a smaller point "
+                            "spacing, or hand.path_m gives a longer path")};
 }
 
 std::string scale_question(const Scenario& scenario, const ToolShape& tool, const Box& environment) {
@@ -43,6 +43,14 @@ std::string scale_question(const Scenario& scenario, const ToolShape& tool, cons
   if (size >= kTooSmall * 2.0 * tool.half_width() && size <= kTooLarge * tool.reach()) return "";
   if (std::holds_alternative<MeshToolFields>(scenario.tool)) return "are tool.scale and the environment's size right?";
   return size_question(scenario.environment);
+}
+
+std::string normals_question(const Environment& environment, const NamedFiles& files) {
+  if (std::holds_alternative<PointShellEnvironment>(environment))
+    return "are the normals in the file of the point shell reversed?";
+  const bool is_open =
+      std::holds_alternative<MeshEnvironment>(environment) && !files.at(kEnvironmentFile).mesh().knows_outside();
+  return is_open ? "are the normals of an open scan inverted (environment.flip_normals)?" : "";
 }
 
 std::optional<Warning> trace_size_warning(const ContactTrace& trace, const ToolShape& tool) {

@@ -38,6 +38,10 @@ const char* size_question(const Environment& environment);
 /// proportion; otherwise an empty text.
 std::string scale_question(const Scenario& scenario, const ToolShape& tool, const Box& environment);
 
+/// Returns a question about normals that may point to the wrong side, with the place where they are reversed. Empty if
+/// the program knows the outside of the environment.
+std::string normals_question(const Environment& environment, const NamedFiles& files);
+
 /// Returns a warning if the sizes of a contact trace are probably in a wrong unit: a contact is deeper than the tool's
 /// length, or the points span more than kLongestObject.
 std::optional<Warning> trace_size_warning(const ContactTrace& trace, const ToolShape& tool);

@@ -66,6 +66,71 @@ TEST(Advice, DoesNotBlameKForATimeWithoutContact) {
   expect_words(advice(result, "diverged"), {"a hand whose path ends on the surface"}, {"smaller K", "time.step_s"});
 }
 
+/// A tool passes between the points of a surface without touching one: K and the force of the hand are not the cause.
+TEST(Advice, NamesTheSpacingIfTheToolPassesBetweenThePoints) {
+  const auto pressed = [](const char* spacing, const char* K) {
+    return run({"poke_plane",
+                {R"(hand={"type":"push","force_N":1})", R"(device={"type":"ideal"})", "environment.size_m=0.06",
+                 fmt::format("environment.spacing_m={}", spacing), fmt::format("rendering.stiffness_N_per_m={}", K)}});
+  };
+  // With a spacing of 20 mm, the nearest points are 14 mm away from the tool, which is 1 mm wide.
+  for (const char* K : {"2000", "200000"}) {
+    const Result result = pressed("0.02", K);
+    ASSERT_EQ(result.end.outcome, Outcome::went_through);
+    expect_words(advice(result, "sank"), {"a smaller environment.spacing_m (20 mm now)"}, {"larger K", "hand force"});
+  }
+  EXPECT_EQ(pressed("0.0003", "20000").end.outcome, Outcome::completes) << "the remedy helps";
+}
+
+/// A loop that is unstable at any K has one cause: no rule names K or the force of the hand.
+TEST(Advice, NamesTheUnstableLoopInEveryRule) {
+  const Result result = run_of_text(R"({
+    "time": {"step_s": 0.001, "duration_s": 1.5},
+    "environment": {"type": "plane", "size_m": 0.05, "spacing_m": 0.001},
+    "initial": {"position_m": [0, 0, 0.0015]},
+    "tool": {"diameter_m": 0.01, "length_m": 0.1, "tip": "flat"},
+    "hand": {"type": "mass_spring_damper", "mass_kg": 0.1, "stiffness_N_per_m": 300, "damping_N_s_per_m": 3,
+             "target": {"x_m": 0, "y_m": 0, "z_m": {"type": "waypoints", "interpolation": "cosine",
+                                                    "points": [[0, 0.0015], [0.3, -0.004], [1.5, -0.005]]}}},
+    "device": {"type": "impedance", "handle_mass_kg": 0.1, "viscous_N_s_per_m": 0.3, "encoder_step_m": 1e-5,
+               "force_max_N": 10, "delay_samples": 6},
+    "rendering": {"algorithm": "shaped_stiffness", "stiffness_N_per_m": 3000, "damping_N_s_per_m": 60,
+                  "friction": {"mu_s_N_s_per_m": 0, "mu_f_s_per_m": 0}}})");
+  ASSERT_NE(finding(result, "loop"), nullptr);
+  ASSERT_NE(finding(result, "saturated"), nullptr);
+  ASSERT_NE(finding(result, "energy"), nullptr);
+  for (const Diagnosed& found : result.diagnosis.value())
+    expect_words(found.attempt, {"a shorter delay of the device"}, {"smaller K", "smaller hand force"});
+}
+
+/// An oscillation of a contact that has no damping: more damping is the remedy, and a smaller K is not.
+TEST(Advice, NamesTheDampingOfAnUndampedContact) {
+  const auto pressed = [](const char* zeta) {
+    return run({"poke_plane",
+                {R"(hand={"type":"push","force_N":1})", R"(device={"type":"ideal"})",
+                 fmt::format("rendering.damping_ratio={}", zeta),
+                 R"(rendering.friction={"mu_s_N_s_per_m":0,"mu_f_s_per_m":0})"}});
+  };
+  expect_words(advice(pressed("0"), "buzz"), {"a larger rendering.damping_ratio", "undamped"}, {"smaller K"});
+  EXPECT_EQ(finding(pressed("0.1"), "buzz"), nullptr) << "the remedy helps";
+}
+
+/// The force of an encoder step is the rendered damping, with its limit, times the measured velocity of one step. The
+/// same motion has the same number, whether 79 contacts or one render the damping.
+TEST(Advice, MeasuresTheForceOfAnEncoderStepWithTheRenderedDamping) {
+  const auto number = [](const char* damping, const char* limit) {
+    const Result result =
+        run({"tap_wall",
+             {R"(device={"type":"impedance","handle_mass_kg":0.1,"encoder_step_m":3e-5})",
+              "rendering.stiffness_N_per_m=3000", fmt::format("rendering.damping_N_s_per_m={}", damping),
+              fmt::format("rendering.limits.max_damping_N_s_per_m={}", limit)}});
+    const auto* found = finding(result, "encoder");
+    return found != nullptr ? found->value : 0.0;
+  };
+  EXPECT_GT(number("20", "null"), 0.1);
+  EXPECT_EQ(number("100", "20"), number("20", "null"));
+}
+
 /// A shorter time step does not shorten a delay in seconds. A filter of the velocity has no effect without damping.
 TEST(Advice, NamesOnlyRemediesThatHelpTheLoop) {
   const auto edge = [](const char* device, const char* K) {
