@@ -17,6 +17,7 @@
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/program/exit_status.hpp"
 #include "scenarios/program/output.hpp"
+#include "scenarios/program/override_locations.hpp"
 #include "scenarios/program/results_folder.hpp"
 #include "scenarios/run/checked_scenario.hpp"
 #include "scenarios/run/progress_bar.hpp"
@@ -120,7 +121,9 @@ std::string facts_text(const LoadedScenario& loaded, const SceneFacts& facts) {
   text += fmt::format("  run          {} steps of {:.4g} ms = {:.4g} s", scenario.time.steps, 1e3 * scenario.time.step,
                       duration);
   if (const double trials = trial_count(scenario.hand); trials > 1.0) text += fmt::format(", {:.0f} trials", trials);
-  return text + fmt::format("\n  writes       about {}\n", bytes_text(expected_output_bytes(scenario)));
+  const std::string contacts =
+      scenario.record.contacts ? fmt::format(" if each step has {:.0f} contacts", kAssumedContacts) : "";
+  return text + fmt::format("\n  writes       about {}{}\n", bytes_text(expected_output_bytes(scenario)), contacts);
 }
 
 Json box_json(const Box& box) {
@@ -175,6 +178,17 @@ bool is_device_file(const std::filesystem::path& file) {
          (text.json.contains(kTypeField) || text.json.contains("preset"));
 }
 
+/// Returns the warnings about numbers of the device in a file that a scenario with this device would have.
+std::vector<std::string> device_warnings(const std::string& file, const ComparedDevice& device) {
+  const ScenarioText scene = read_scenario_text(find_scenario("tap_wall"));
+  constexpr std::string_view kDevice = "/device";
+  std::vector<std::string> texts;
+  for (const Warning& warning : load_scenario(scene, overrides_on(device, scene, {})).warnings)
+    if (warning.pointer.starts_with(kDevice))
+      texts.push_back(fmt::format("{}: {}: {}", file, warning.pointer.substr(kDevice.size()), warning.text));
+  return texts;
+}
+
 /// Writes the points of the environment. Throws InputError if it has no points or the file cannot be written.
 void write_points(const LoadedScenario& loaded, const std::filesystem::path& file, ProgramContext& context) {
   if (std::holds_alternative<SpringsEnvironment>(loaded.scenario.environment))
@@ -202,7 +216,11 @@ int validate(const ValidateOptions& options, ProgramContext& context) {
       const WaitNotice notice(argument, !options.output.quiet);
       const std::filesystem::path file = find_scenario(argument);
       if (options.points.empty() && is_device_file(file)) {
-        device_of_file(file);  // throws if the device is invalid
+        if (!options.overrides.empty())
+          fail_in_option("--set",
+                         "has no effect on the file of a device; allowed: with scenarios, such as \"hapbench "
+                         "validate SCENARIO --set device.handle_mass_kg=0.1\"");
+        print_warnings(context, device_warnings(argument, device_of_file(file)));
         text += fmt::format("{}: valid, but a device and not a scenario; use it with: {}\n", argument,
                             "hapbench limit tap_wall --device " + shell_file(argument));
         verdict["kind"] = "device";
@@ -221,7 +239,7 @@ int validate(const ValidateOptions& options, ProgramContext& context) {
       text += fmt::format("  points       written to {}\n", options.points);
       verdict["environment"]["points_file"] = options.points;
     } catch (const InputError& error) {
-      print_errors(context, error);
+      print_errors(context, with_override_locations(error, options.overrides));
       const std::vector<std::string> messages = names_of(error.faults(), &InputError::what);
       verdict = {{"file", argument}, {"valid", false}, {"error", error.what()}, {"errors", messages}};
       status = kBadInput;
