@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <optional>
 #include <utility>
@@ -34,18 +35,31 @@ int list_kinds(const OutputOptions& output, ProgramContext& context) {
   return kSuccess;
 }
 
+/// Returns what to change if a run of the scene does not end as intended. Names only options that the kind accepts.
+std::string remedy(const NewOptions& options, const StartKind& kind) {
+  if (kind.source == "stroke")
+    return "the positions of the stroke must be in metres and in the frame of the surface; change the stroke, or the "
+           "surface in the file";
+  const std::string change = kind.scene.contains("hand") ? "change the hand in the file" : "change motion in the file";
+  const PlacementOptions accepted = placement_options(options, kind);
+  if (const std::string placing = accepted.text(); !placing.empty())
+    return fmt::format("another start{} is needed: use {}; or {}", accepted.path ? " or path" : "", placing, change);
+  if (kind.source == "mesh") return "another start is needed: change tool.tip_m and tool.tip_axis; or " + change;
+  return change;
+}
+
 /// Runs the scene. If the run does not end as intended for the scene's kind, returns a warning and the warnings of the
-/// run. `explained`: true if other warnings already explain this outcome; the warnings of the run are then omitted.
-std::vector<std::string> outcome_warnings(const CheckedScenario& scene, bool explained) {
+/// run. Omits the warnings about files, which are already printed. `explained`: true if other warnings already explain
+/// this outcome; all warnings of the run are then omitted. `advice`: what to change.
+std::vector<std::string> outcome_warnings(const CheckedScenario& scene, bool explained, const std::string& advice) {
   const Result run = run_scenario(scene, std::nullopt, false);
   if (outcome_is_expected(scene.scenario().expect, run.end.outcome)) return {};
   std::vector<std::string> warnings;
   if (!explained)
-    for (const Warning& warning : run.warnings) warnings.push_back(warning.located_text());
-  warnings.push_back(fmt::format(
-      "a run of this scene ends as \"{0}\" (hapbench describe {0}): another start or path is needed, such as "
-      "--path with points across the middle of the surface, or --at; or change the hand in the file",
-      outcome_name(run.end.outcome)));
+    for (const Warning& warning : run.warnings)
+      if (std::ranges::count(scene.file_warnings(), warning) == 0) warnings.push_back(warning.located_text());
+  warnings.push_back(fmt::format("a run of this scene ends as \"{0}\" (hapbench describe {0}): {1}",
+                                 outcome_name(run.end.outcome), advice));
   return warnings;
 }
 
@@ -85,7 +99,7 @@ int write_new(const NewOptions& options, ProgramContext& context) {
   loaded.file = out;
   const CheckedScenario scene = checked(std::move(loaded));
   print_warnings(context, with_files(scene.loaded(), scene.file_warnings()));
-  const std::vector<std::string> failure = outcome_warnings(scene, !start.warnings.empty());
+  const std::vector<std::string> failure = outcome_warnings(scene, !start.warnings.empty(), remedy(options, kind));
   // Write the scene, draw it with --preview, and explain its fields.
   write_file_atomically(out, json_text(start.scene));
 

@@ -31,6 +31,17 @@ Vec3 parse_position(const char* option, const std::string& text);
 /// Converts the value of an option, such as "12mm", to a length [m]. Throws InputError with the option's name if the
 /// value is not a length.
 double parse_length(const char* option, const std::string& text);
+/// Options that choose the start or the path, and that `new` accepts.
+struct PlacementOptions {
+  bool at, path, side;
+
+  /// Returns the options as text, such as "--at or --side"; empty if there are none.
+  std::string text() const;
+};
+/// Returns the options that `new` accepts for a kind of scene. --side requires a file (--from).
+PlacementOptions placement_options(const NewOptions& options, const StartKind& kind);
+/// Returns the command line of `hapbench new` with these options and the option `added`, quoted for a shell.
+std::string command_with(const NewOptions& options, const std::string& added);
 /// Throws InputError if the kind requires an option that is missing, if an option does not apply to the kind,
 /// or if a file does not exist.
 void check_options(const NewOptions& options, const StartKind& kind);

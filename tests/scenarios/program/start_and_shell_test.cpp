@@ -251,6 +251,116 @@ TEST_F(NewOnASheet, ComesFromEverySideOfAClosedBody) {
   made_of_cube("drag", "x");
 }
 
+/// Fixture with meshes whose parts are in the way of a tool that starts above them. All files are in millimetres.
+class NewStart : public NewCommand {
+ protected:
+  /// Writes a mesh and runs `hapbench new` with it. Returns the output and the warnings.
+  std::string output_of(const std::string& kind, const TriangleSoup& mesh, const std::vector<std::string>& more = {}) {
+    test::write_plainly(directory_ / "mesh.obj", test::obj_text(mesh));
+    fs::remove(path("made.json"));
+    std::vector<std::string> words = {"new",    kind, "--from", path("mesh.obj"),
+                                      "--unit", "mm", "--out",  path("made.json")};
+    words.insert(words.end(), more.begin(), more.end());
+    const ProgramRun written = hapbench(words);
+    EXPECT_EQ(written.status, 0) << written.err;
+    return written.out + written.err;
+  }
+  /// Returns the distance between the tool and the surface at the start of the written scenario [m].
+  double start_gap() const {
+    const ProgramRun run = hapbench({"validate", path("made.json"), "--json"});
+    EXPECT_EQ(run.status, 0) << run.err;
+    return run.json()[0]["start"]["gap_m"].get<double>();
+  }
+  std::string outcome() const {
+    return hapbench({"run", path("made.json"), "--out", path("run"), "--json"}).json()[0]["outcome"].get<std::string>();
+  }
+  static TriangleSoup box(const Vec3& centre, const Vec3& size) {
+    TriangleSoup soup = test::cube(0.5);
+    for (Vec3& corner : soup.vertices) corner = corner.cwiseProduct(size) + centre;
+    return soup;
+  }
+};
+
+TEST_F(NewStart, AvoidsOtherComponents) {
+  // Two balls, one above the other: a tool over the lower ball would pierce the upper ball.
+  const TriangleSoup ball = test::sphere(5.0, 3), balls = test::together(ball, test::scaled(ball, 1.0, {0, 0, 20}));
+  const std::string over_upper = output_of("mesh", balls);
+  EXPECT_NE(over_upper.find("the tool starts 1 mm above the highest point, at x = 0, y = 0 mm"), std::string::npos)
+      << over_upper;
+  EXPECT_NE(over_upper.find("the mesh has 2 components; the tool has no room over the largest"), std::string::npos);
+  EXPECT_NEAR(Json::parse(test::read_file(directory_ / "made.json"))["initial"]["position_m"][2].get<double>(), 0.0265,
+              1e-6);
+  EXPECT_EQ(outcome(), "completes");
+  for (const char* kind : {"drag", "fidelity"}) {
+    output_of(kind, balls);
+    EXPECT_GE(start_gap(), 0.0005) << kind;
+    EXPECT_EQ(outcome(), "completes") << kind;
+  }
+  // A plate with a post at +x: the path has another direction.
+  const TriangleSoup plate = box({0, 0, -1}, {12, 12, 2});
+  output_of("drag", test::together(plate, box({4, 0, 4}, {2, 3, 8})));
+  EXPECT_NE(Json::parse(test::read_file(directory_ / "made.json"))["hand"]["direction"], (Json{1, 0, 0}));
+  EXPECT_EQ(outcome(), "completes");
+  // A plate under a roof: the tool starts on the roof, or with a warning under the roof if a point under it is given.
+  const TriangleSoup roofed = test::together(plate, box({0, 0, 6}, {12, 12, 1}));
+  output_of("drag", roofed);
+  EXPECT_EQ(outcome(), "completes");
+  const std::string under = output_of("drag", roofed, {"--at", "0,0,0"});
+  EXPECT_NE(under.find("warning: the tool starts in contact: "), std::string::npos) << under;
+  EXPECT_NE(under.find("choose another start with --at, --side or --path"), std::string::npos) << under;
+}
+
+TEST_F(NewStart, StartsFreeOfASteepSurface) {
+  const TriangleSoup ball = test::sphere(10.0, 4);
+  const std::string pressed = output_of("mesh", ball, {"--at", "0.0099,0,0"});
+  EXPECT_NE(pressed.find("warning: --at 0.0099,0,0: a tool that starts 1 mm above this point touches the surface"),
+            std::string::npos)
+      << pressed;
+  EXPECT_NE(pressed.find("choose another --at, or --side=x"), std::string::npos) << pressed;
+  EXPECT_EQ(pressed.find("highest point"), std::string::npos) << pressed;
+  EXPECT_NEAR(start_gap(), 0.001, 3e-5);
+  const std::string dragged = output_of("drag", ball, {"--at", "0,0,-0.01"});
+  EXPECT_NE(dragged.find("the surface at this point does not face side z"), std::string::npos) << dragged;
+  EXPECT_NE(dragged.find("or --side=-z"), std::string::npos) << dragged;
+  EXPECT_GE(start_gap(), 0.0005);
+}
+
+TEST_F(NewStart, WarnsAboutPointsFarFromTheSurface) {
+  const std::string output = output_of("drag", test::sphere(10.0, 4), {"--path", "0,0,0", "--path", "0,0,0.0101"});
+  EXPECT_NE(output.find("--path 0,0,0: the point is 9.9"), std::string::npos) << output;
+  EXPECT_NE(output.find("give points on the surface"), std::string::npos) << output;
+  EXPECT_EQ(output.find("--path 0,0,0.0101"), std::string::npos) << output;
+}
+
+TEST_F(NewStart, AdvisesCommandsThatItAccepts) {
+  // The advised command keeps all options.
+  test::write_plainly(directory_ / "my box.obj", test::obj_text(test::cube(5.0)));
+  std::vector<std::string> drag = {"new",  "drag",       "--from", "my box.obj", "--side=-x",
+                                   "--at", "-0.005,0,0", "--out",  "q.json",     "--quiet"};
+  const ProgramRun refused = hapbench(drag, {.directory = directory_.path()});
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_NE(refused.err.find("\"hapbench new drag --from 'my box.obj' --side=-x --at -0.005,0,0 --out q.json --quiet "
+                             "--unit mm\""),
+            std::string::npos)
+      << refused.err;
+  drag.insert(drag.end(), {"--unit", "mm"});
+  EXPECT_EQ(hapbench(drag, {.directory = directory_.path()}).status, 0);
+  test::write_plainly(directory_ / "stroke.csv",
+                      "time_s,px_m,py_m,pz_m,axis_x,axis_y,axis_z\n0,0,0,0.002,0,0,-1\n0.3,0,0,-0.002,0,0,-1\n");
+  std::vector<std::string> words = {"new", "stroke", "--from", "stroke.csv", "--on", "my box.obj", "--out", "s.json"};
+  EXPECT_NE(hapbench(words, {.directory = directory_.path()})
+                .err.find("\"hapbench new stroke --from stroke.csv --on 'my box.obj' --out s.json --unit mm\""),
+            std::string::npos);
+  // A stroke inside the mesh: the warning names no option that is refused, and each warning is printed once.
+  words.insert(words.end(), {"--unit", "mm"});
+  const ProgramRun inside = hapbench(words, {.directory = directory_.path()});
+  EXPECT_EQ(inside.status, 0) << inside.err;
+  EXPECT_NE(inside.err.find("a run of this scene ends as"), std::string::npos) << inside.err;
+  EXPECT_EQ(inside.err.find("--path"), std::string::npos) << inside.err;
+  EXPECT_EQ(inside.err.find("--at"), std::string::npos) << inside.err;
+  EXPECT_EQ(inside.err.find("the stroke has 2 samples"), inside.err.rfind("the stroke has 2 samples")) << inside.err;
+}
+
 TEST_F(NewOnASheet, PlaysAStrokeBackOverAMesh) {
   // Use a stroke along x, 0.1 mm below the top of the hump, in metres.
   test::write_plainly(
