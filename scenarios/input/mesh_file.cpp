@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <map>
 #include <utility>
 
 #include "scenarios/input/input_error.hpp"
@@ -177,6 +179,33 @@ void warn_of_flat_components(const MeshFindings& found, const Warn& warn) {
                   count, component_text(*first)));
 }
 
+/// Returns how many boundary edges lie within `distance` [m] of another boundary edge, by their midpoints. Counts edges
+/// whose midpoints are in the same cell of one of two grids with cells of twice the distance.
+std::size_t paired_edges(const std::vector<Vec3>& midpoints, double distance) {
+  std::vector<bool> is_paired(midpoints.size(), false);
+  for (const double shift : {0.0, 0.5}) {
+    std::map<std::array<double, 3>, std::size_t> first_in_cell;
+    for (std::size_t i = 0; i < midpoints.size(); ++i) {
+      const Vec3 cell = (midpoints[i] / (2.0 * distance) + Vec3::Constant(shift)).array().floor();
+      const auto [entry, is_new] = first_in_cell.try_emplace({cell.x(), cell.y(), cell.z()}, i);
+      if (!is_new) is_paired[i] = is_paired[entry->second] = true;
+    }
+  }
+  return static_cast<std::size_t>(std::ranges::count(is_paired, true));
+}
+
+/// Returns a clause about boundary edges that lie on each other except for the last digits of their vertices; empty if
+/// few edges do. `size`: size of the surface [m].
+std::string rounding_gaps_text(const std::vector<Vec3>& open_edges, double size) {
+  constexpr double kRounding = 1e-6, kFew = 0.1;  // relative to `size`; fraction of the edges
+  const std::size_t paired = paired_edges(open_edges, kRounding * size);
+  if (static_cast<double>(paired) <= kFew * static_cast<double>(open_edges.size())) return "";
+  return fmt::format(
+      "; {} of these edges lie within {:.2g} mm of another: their vertices differ only in the last digits and are not "
+      "joined: merge such vertices in a mesh editor",
+      paired, 1e3 * kRounding * size);
+}
+
 }  // namespace
 
 std::size_t components_above_speck_size(const MeshFindings& found) {
@@ -218,8 +247,9 @@ std::vector<std::string> MeshFile::warnings(const fs::path& file) const {
     const Vec3 a = 1e3 * box.min, b = 1e3 * box.max;
     warn(fmt::format(
         "the mesh is open: {} boundary edges, within x {:.3g} ... {:.3g}, y {:.3g} ... {:.3g}, z {:.3g} ... {:.3g} mm; "
-        "the surface ends there",
-        found.open_edges.size(), a.x(), b.x(), a.y(), b.y(), a.z(), b.z()));
+        "the surface ends there{}",
+        found.open_edges.size(), a.x(), b.x(), a.y(), b.y(), a.z(), b.z(),
+        rounding_gaps_text(found.open_edges, box.size().norm())));
   }
   // Warn about edges with more than two faces.
   if (!found.non_manifold_edges.empty()) {

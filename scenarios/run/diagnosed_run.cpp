@@ -345,7 +345,10 @@ Number depth_in_half_widths(const DiagnosedRun& run) {
 }
 
 Number softness(const DiagnosedRun& run) {
-  return quotient(1.0, run.metric("ratio_min"));
+  // Along some contact, the rendered stiffness may be 0 or a rounding error. No larger factor is reported.
+  constexpr double kMaxSoftnessReported = 1e9;
+  const Number ratio = run.metric("ratio_min");
+  return ratio ? Number(1.0 / std::max(*ratio, 1.0 / kMaxSoftnessReported)) : std::nullopt;
 }
 
 Number saturation(const DiagnosedRun& run) {

@@ -81,6 +81,10 @@ std::optional<double> scripted_lifts(const Scenario& scenario) {
   const double duration = scenario.time.step * static_cast<double>(scenario.time.steps);
   double lifts = 0.0;
   for (const Profile& script : scripts_of(hand)) lifts = std::max(lifts, turns_of(script, duration));
+  // A tool that tilts to and fro lands twice in a period, once on each side of its tip.
+  if (const auto& orientation = scenario.motion.orientation)
+    for (const Profile* script : {&orientation->tilt, &orientation->azimuth})
+      lifts = std::max(lifts, 2.0 * turns_of(*script, duration));
   return lifts;
 }
 

@@ -542,6 +542,24 @@ TEST_F(MeshFile, WarnsOnceAboutWhatIsOdd) {
             ": faces left out because two of their corners are equal: 1");
 }
 
+/// Vertices that a program rounded in each triangle differ by nanometres: nothing is joined, and the warning names the
+/// cause. The boundary of a surface that is really open has no such partner.
+TEST_F(MeshFile, NamesVerticesThatDifferInTheLastDigits) {
+  const TriangleSoup cube = test::cube();
+  TriangleSoup loose;
+  for (const auto& corners : cube.triangles) {
+    const auto first = static_cast<std::uint32_t>(loose.vertices.size());
+    const double error = 1e-8 * static_cast<double>(first % 7);
+    for (const std::uint32_t corner : corners) loose.vertices.push_back(cube.vertices[corner] + Vec3::Constant(error));
+    loose.triangles.push_back({first, first + 1, first + 2});
+  }
+  const auto warnings = read("loose.obj", test::obj_text(loose)).warnings;
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_NE(warnings[0].find("their vertices differ only in the last digits and are not joined: merge such vertices"),
+            std::string::npos)
+      << warnings[0];
+}
+
 TEST_F(MeshFile, IsResampledToTheSpacing) {
   const std::string text = test::stl_text(test::cube(5.0));
   const double spacing = 0.0005;

@@ -79,9 +79,9 @@ TEST_F(Extends, NamingTheTypeOfAnUntypedObjectKeepsItsFields) {
       "tool": {"type": "cylinder", "length_m": 0.03},
       "rendering": {"friction": {"type": "viscous", "mu_f_s_per_m": 2}}})"))
                         .json;
-  EXPECT_EQ(json["tool"], Json::parse(R"({"type": "cylinder", "diameter_m": 0.004, "length_m": 0.03})"));
+  EXPECT_EQ(json["tool"], Json::parse(R"({"diameter_m": 0.004, "type": "cylinder", "length_m": 0.03})"));
   EXPECT_EQ(json["rendering"]["friction"],
-            Json::parse(R"({"type": "viscous", "mu_s_N_s_per_m": 3, "mu_f_s_per_m": 2})"));
+            Json::parse(R"({"mu_s_N_s_per_m": 3, "type": "viscous", "mu_f_s_per_m": 2})"));
   const Json other = read_scenario_text(write("mine.json", R"({"extends": "untyped.json",
       "tool": {"type": "bur", "shape": "round"}})"))
                          .json;

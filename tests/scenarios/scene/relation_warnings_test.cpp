@@ -45,14 +45,14 @@ TEST(Warnings, NameADampingRatioThatADampingReplaces) {
 /// does not.
 TEST(Warnings, NameAScriptThatIsLongerThanTheRun) {
   const auto script = [](const char* points) {
-    return warnings_with({"time.duration_s=0.1", std::string(R"(hand.target={"x_m":0,"y_m":0,"z_m":)") +
-                                                     R"({"type":"waypoints","points":)" + points + "}}"});
+    return warnings_with({"time.duration_s=0.1",
+                          std::string(R"(hand={"type":"force","z_N":{"type":"waypoints","points":)") + points + "}}"});
   };
-  for (const char* points : {"[[0,0.001],[0.5,-0.001]]", "[[0,0.001],[0.05,0],[0.5,-0.001]]"}) {
+  for (const char* points : {"[[0,-1],[0.5,-2]]", "[[0,-1],[0.05,-2],[0.5,-3]]"}) {
     ASSERT_EQ(script(points).size(), 1u) << points;
-    EXPECT_NE(script(points)[0].find("last waypoint is at 0.5 s, but the run ends at 0.1 s"), std::string::npos);
+    EXPECT_NE(script(points)[0].find("last waypoint is at 0.5 s, but the run ends at 0.1"), std::string::npos);
   }
-  for (const char* points : {"[[0,0.001],[0.1,-0.001]]", "[[0,0.001],[0.05,0],[0.5,0]]"})
+  for (const char* points : {"[[0,-1],[0.1,-2]]", "[[0,-1],[0.05,-2],[0.5,-2]]"})
     EXPECT_TRUE(script(points).empty()) << points;
 }
 
