@@ -62,8 +62,8 @@ typedef struct HapbenchPose {
 
 /* The contacts of a step; n entries in each array. The gradient is the unit vector along which the tool gets deeper. If
  * contact i were the only contact, the penalty force on the tool would be -K depth gradient. A law receives n > 0
- * contacts and writes the weights only. A contact source writes n and all arrays except normals and weights, which are
- * NULL. */
+ * contacts and writes the weights only: its arrays are copies, and a change of n or of another array is a fault. A
+ * contact source writes n and all arrays except normals and weights, which are NULL. */
 typedef struct HapbenchContacts {
   size_t n;
   size_t room;                /* capacity of the arrays */

@@ -5,7 +5,9 @@
 #include <bit>
 #include <cmath>
 #include <cstdio>
+#include <cstring>
 #include <exception>
+#include <iterator>
 #include <limits>
 #include <stdexcept>
 #include <utility>
@@ -56,6 +58,17 @@ HapbenchContacts view_of(ContactBuffer& c) {
           .nz = nullptr,
           .weight = nullptr};
 }
+
+/// Name (of the member of HapbenchContacts) and source of an array of numbers that a law may read but not write.
+struct InputArray {
+  const char* name;
+  AlignedDoubles ContactBuffer::*source;
+};
+constexpr InputArray kInputArrays[] = {{"depth", &ContactBuffer::depth}, {"gx", &ContactBuffer::ux},
+                                       {"gy", &ContactBuffer::uy},       {"gz", &ContactBuffer::uz},
+                                       {"x", &ContactBuffer::x},         {"y", &ContactBuffer::y},
+                                       {"z", &ContactBuffer::z},         {"nx", &ContactBuffer::nx},
+                                       {"ny", &ContactBuffer::ny},       {"nz", &ContactBuffer::nz}};
 
 LawForce force_of(const HapbenchForce& answer) {
   const auto& [xx, xy, xz, yy, yz, zz] = answer.stiffness;
@@ -148,7 +161,8 @@ bool ModuleState::step(const HapbenchPose* pose, HapbenchContacts& contacts, Hap
 }
 
 void ModuleLaw::prepare(std::size_t capacity) {
-  weights_.resize(capacity + 2 * kGuards);
+  numbers_.resize(3 * kGuards + capacity * (1 + std::size(kInputArrays)));
+  indices_.resize(capacity);
   HapbenchRun run = {};
   run.stiffness = K_;
   run.capacity = capacity;
@@ -165,22 +179,66 @@ LawForce ModuleLaw::failed(const char* problem) noexcept {
   return no_force();
 }
 
+HapbenchContacts ModuleLaw::copies_of(const ContactBuffer& contacts) noexcept {
+  const std::size_t n = contacts.size();
+  double* const weights = numbers_.data() + kGuards;
+  double* next = std::fill_n(numbers_.data(), n + 2 * kGuards, std::bit_cast<double>(kUnwritten));
+  double* copies[std::size(kInputArrays)];
+  for (std::size_t i = 0; i < std::size(kInputArrays); ++i) {
+    copies[i] = next;
+    next = std::copy_n((contacts.*kInputArrays[i].source).data(), n, next);
+  }
+  std::copy_n(contacts.index.data(), n, indices_.data());
+  const auto& [depth, gx, gy, gz, x, y, z, nx, ny, nz] = copies;
+  return {.n = n,
+          .room = n,
+          .index = indices_.data(),
+          .depth = depth,
+          .gx = gx,
+          .gy = gy,
+          .gz = gz,
+          .x = x,
+          .y = y,
+          .z = z,
+          .nx = nx,
+          .ny = ny,
+          .nz = nz,
+          .weight = weights};
+}
+
+const char* ModuleLaw::changed_field(const HapbenchContacts& given, const ContactBuffer& contacts) const noexcept {
+  const std::size_t n = contacts.size();
+  if (given.n != n) return "n";
+  if (!std::equal(contacts.index.data(), contacts.index.data() + n, indices_.data())) return "index";
+  const double* copy = numbers_.data() + n + 2 * kGuards;
+  for (const auto& [name, source] : kInputArrays) {
+    if (std::memcmp((contacts.*source).data(), copy, n * sizeof(double)) != 0) return name;
+    copy += n;
+  }
+  return nullptr;
+}
+
 LawForce ModuleLaw::evaluate(ContactBuffer& contacts) noexcept {
   if (contacts.empty()) return {};
-  // Fill the weights, and kGuards elements before and after them, with guard values. Then call the module.
+  // Call the module with copies of the contacts.
   set_weights(contacts, 0.0);
-  const std::size_t n = contacts.size();
-  std::fill_n(weights_.begin(), n + 2 * kGuards, std::bit_cast<double>(kUnwritten));
-  const auto weights = weights_.begin() + kGuards, end = weights + static_cast<std::ptrdiff_t>(n);
-  HapbenchContacts view = view_of(contacts);
-  view.nx = contacts.nx.data(), view.ny = contacts.ny.data(), view.nz = contacts.nz.data();
-  view.weight = &*weights;
+  HapbenchContacts given = copies_of(contacts);
   HapbenchForce answer = {0, {kNaN, kNaN, kNaN}, {kNaN, kNaN, kNaN, kNaN, kNaN, kNaN}};
-  if (!state_.step(nullptr, view, &answer)) return no_force();
-  // Check that the module has not written out of range.
+  if (!state_.step(nullptr, given, &answer)) return no_force();
+  // Check that the module has written the weights only.
+  const std::size_t n = contacts.size();
+  double* const weights = numbers_.data() + kGuards;
+  double* const end = weights + n;
   const auto is_unwritten = [](double number) { return std::bit_cast<std::uint64_t>(number) == kUnwritten; };
-  if (!std::all_of(weights_.begin(), weights, is_unwritten) || !std::all_of(end, end + kGuards, is_unwritten))
+  if (!std::all_of(weights - kGuards, weights, is_unwritten) || !std::all_of(end, end + kGuards, is_unwritten))
     return failed("writes beyond its weights, of which there is one for each contact");
+  if (const char* field = changed_field(given, contacts)) {
+    std::array<char, 160> problem;
+    std::snprintf(problem.data(), problem.size(),
+                  "changes the contacts (%s); allowed: writing the weights, or force and stiffness (HapbenchForce)",
+                  field);
+    return failed(problem.data());
+  }
   // Compute the force from the weights, or take the force of the module. A module that gives a force may leave weights
   // unwritten; each unwritten weight becomes 1 / n.
   gives_weights_ = answer.given == 0;

@@ -11,7 +11,8 @@
 #include "sim/contact/contact_source.hpp"
 
 /// Runs force laws and contact sources that external modules implement through the C interface (hapbench_module.h).
-/// Compared with built-in code, a step costs one more indirect call and a check of the result.
+/// Compared with built-in code, a step costs one more indirect call and a check of the result; a law also receives a
+/// copy of the contacts.
 namespace hapbench {
 
 /// A loaded module: its table of functions and texts, and the name of its file without folders.
@@ -62,8 +63,8 @@ class ModuleState {
   std::array<char, kFaultTextSize> fault_{};
 };
 
-/// A force law from a module. In a step, it passes the contacts to the module without copying them, and allocates
-/// nothing.
+/// A force law from a module. The module receives copies of the contacts, so that it cannot change the contacts that
+/// the run records. Allocates nothing in a step.
 class ModuleLaw final : public SingleSpringLaw {
  public:
   /// `values` are the values of the module's parameters, in their order.
@@ -77,13 +78,20 @@ class ModuleLaw final : public SingleSpringLaw {
   const char* fault() const noexcept override { return state_.fault(); }
 
  private:
+  /// Returns the arrays that the module reads and writes, for one call: copies of the contacts in numbers_ and
+  /// indices_, and unwritten weights.
+  HapbenchContacts copies_of(const ContactBuffer& contacts) noexcept;
+  /// Returns the name of the first field of `given` that the module has changed and that is not the weights; null if
+  /// there is no such field. `given`: the arrays of the call. `contacts`: the contacts from which they were copied.
+  const char* changed_field(const HapbenchContacts& given, const ContactBuffer& contacts) const noexcept;
   LawForce failed(const char* problem) noexcept;
 
   ModuleState state_;
   std::vector<double> values_;
-  /// Buffer for the weights of the contacts, with guard values before and after the weights. A changed guard value
-  /// shows that the module wrote out of range.
-  std::vector<double> weights_;
+  /// Memory of the arrays of one call: guard values, weights, guard values, and then the copies of the other arrays of
+  /// numbers without gaps. A changed guard value shows that the module wrote out of range.
+  std::vector<double> numbers_;
+  std::vector<std::uint32_t> indices_;
 };
 
 /// Contacts from a module, which determines their number, positions, depths and gradients. No depth model is used. The

@@ -60,6 +60,16 @@ void check_mount(const RendererSetup& setup) {
   require(mount.engage_force > 0.0, "engage_force", mount.engage_force, "> 0 [N]");
 }
 
+void check_period(const Scenario& scenario, const RendererSetup& setup) {
+  const double period = scenario.time.step, stale = setup.mount.stale_s;
+  if (period < stale) return;
+  constexpr double kUsualPeriods = 10.0;  // with a period of 1 ms, these are the default of stale_s
+  throw InputError(fmt::format(
+      "mount.stale_s: got {0} s, but the period of the loop (time.step_s) is {1} s: calls would be late, and the force "
+      "would stay 0; allowed: > {1} s, such as {2:.4g} s, or a time.step_s < {0} s, if that is the period of your loop",
+      stale, period, kUsualPeriods * period));
+}
+
 namespace {
 
 /// Throws InputError if the scenario cannot be rendered.

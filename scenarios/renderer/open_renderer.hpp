@@ -28,6 +28,11 @@ struct RendererSetup {
 /// allowed.
 void check_mount(const RendererSetup& setup);
 
+/// Throws InputError if the period of the loop, which is the scenario's time step, is not smaller than stale_s of the
+/// mount: every call would be late, and the renderer would never render a force. A replay does not need this check,
+/// because the times of its calls are recorded.
+void check_period(const Scenario& scenario, const RendererSetup& setup);
+
 /// Opens a renderer. Throws InputError if the scenario cannot be rendered in the mode that `setup` selects.
 /// Precondition: check_mount().
 HapbenchRenderer* new_renderer(const CheckedScenario& checked, const RendererSetup& setup);

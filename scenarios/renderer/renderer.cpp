@@ -71,6 +71,7 @@ HapbenchRenderer* opened_renderer(const HapbenchSetup& setup) {
   const CheckedScenario scenario = checked(load_scenario(scenario_text(setup), overrides));
   const RendererSetup mounted = {setup.mode, setup.flags, setup.mount};
   check_mount(mounted);
+  check_period(scenario.scenario(), mounted);
   return new_renderer(scenario, mounted);
 }
 

@@ -1,4 +1,5 @@
 """Tests force laws written in Python, and plugin modules beside them. Arguments: see python_test.py."""
+import itertools
 import json
 import threading
 import traceback
@@ -44,6 +45,103 @@ class Laws(Scratch):
         np.testing.assert_allclose(
             own.trajectory.fx_N[0], built_in.trajectory.fx_N[0], rtol=1e-13, atol=1e-10
         )
+
+    def test_a_tensor_may_differ_from_its_transpose_by_rounding(self):
+        def by_product(u, w):
+            return (u.T * w) @ u
+
+        def by_einsum(u, w):
+            return np.einsum("i,ij,ik->jk", w, u, u)
+
+        def in_single_precision(u, w):
+            # With the factors 1.1 and 1 / 1.1, opposite entries have different roundings.
+            u, w = u.astype(np.float32), w.astype(np.float32)
+            return np.einsum("i,ij,ik->jk", w, np.float32(1.1) * u, u / np.float32(1.1))
+
+        asymmetry = []
+        for tensor_of in (by_product, by_einsum, in_single_precision):
+
+            @hapbench.force_law("test_rounding")
+            def law(depths, gradients, stiffness):
+                w = depths / depths.sum()
+                S = tensor_of(gradients, w)
+                asymmetry.append(np.abs(S - S.T).max())
+                return -stiffness * gradients.T @ (w * depths), S
+
+            run = hapbench.run("drag_molar", {"rendering.algorithm": "test_rounding"})
+            self.assertEqual(run.outcome, "completes", tensor_of.__name__)
+        self.assertGreater(max(asymmetry), 0.0)
+
+    def test_opposite_entries_of_a_tensor_are_averaged(self):
+        def state_hash(above, below):
+            S = np.eye(3)
+            S[0, 1], S[1, 0] = above, below
+
+            @hapbench.force_law("test_average")
+            def law(depths, gradients, stiffness):
+                return -stiffness * depths @ gradients, S
+
+            damped = {**SHORT, "rendering.damping_ratio": 0.5}
+            return hapbench.run(PEG, {**damped, "rendering.algorithm": "test_average"}).state_hash
+
+        average = state_hash(1e-7, 1e-7)
+        self.assertEqual(state_hash(0.0, 2e-7), average)
+        self.assertEqual(state_hash(2e-7, 0.0), average)
+        self.assertNotEqual(state_hash(0.0, 0.0), average)
+        with self.assertRaisesRegex(ValueError, r"S\[0, 1\] = 0.001 and S\[1, 0\] = 0.0; allowed"):
+            state_hash(1e-3, 0.0)
+
+    def test_a_law_may_change_its_arrays(self):
+        @hapbench.force_law("test_in_place")
+        def law(depths, gradients, points, normals):
+            for array in (depths, gradients, points, normals):
+                array *= 2
+            return 1
+
+        own, built_in = (
+            hapbench.run(PEG, {**SHORT, "rendering.algorithm": name}, record=["contacts"])
+            for name in ("test_in_place", "summation")
+        )
+        self.assertEqual(own.state_hash, built_in.state_hash)
+        np.testing.assert_array_equal(own.contacts.depth_m, built_in.contacts.depth_m)
+
+    def test_many_parameters(self):
+        def law_with(count):
+            names = [f"p{i}" for i in range(count)]
+            values = {}
+            exec(
+                f"def law(depths, {', '.join(names)}):\n    return ({' + '.join(names)}) / {count}",
+                values,
+            )
+            parameters = {name: hapbench.Parameter(0.5, 0, 1) for name in names}
+            return hapbench.force_law("test_many", parameters)(values["law"])
+
+        law_with(1000)
+        run = hapbench.run(
+            PEG,
+            {
+                **SHORT,
+                "rendering.algorithm": "test_many",
+                "rendering.parameters.test_many.p999": 1,
+            },
+            record="contacts",
+        )
+        np.testing.assert_allclose(run.contacts.weight, 0.5005)
+        with self.assertRaisesRegex(ValueError, '"test_many": it has 1001 parameters; allowed'):
+            law_with(1001)
+
+    def test_definitions_that_would_register_nothing_or_ignore_a_parameter(self):
+        with self.assertRaisesRegex(TypeError, "got the function 'law' as the name"):
+
+            @hapbench.force_law
+            def law(depths):
+                return 1
+
+        with self.assertRaisesRegex(TypeError, r"force_law\('test_wrong'\)\(LAW\)"):
+            hapbench.force_law("test_wrong", summation)
+        for name in ("depths", "gradients", "points", "normals", "stiffness"):
+            with self.assertRaisesRegex(ValueError, f"parameter '{name}', which is the name of"):
+                hapbench.force_law("test_wrong", {name: 1.0})
 
     def test_arguments(self):
         seen = {}
@@ -215,6 +313,135 @@ class Laws(Scratch):
             hapbench.load(self.root / "out").state_hash,
             hapbench.run(PEG, {**SHORT, "rendering.algorithm": "summation"}).state_hash,
         )
+
+
+class InARenderer(Scratch):
+    """Tests that an exception of a law in a renderer is a FAULT of this renderer and disturbs nothing else."""
+
+    def touched(self, algorithm):
+        """Returns a function and the new renderer that it calls. The function rearms the renderer with the tool above
+        the plane, then puts the tool into the plane and returns the status."""
+        settings = {"rendering.algorithm": algorithm, "time.step_s": 0.001}
+        renderer = hapbench.Renderer("poke_plane", settings, max_force_N=3, ramp_s=0)
+        times = itertools.count(1_000_000, 1_000_000)
+
+        def touch():
+            for rearm in (True, False, False, False, False, False):
+                renderer.step(next(times), (0, 0, 1e-3), velocity_m_per_s=(0, 0, 0), rearm=rearm)
+            return renderer.step(next(times), (0, 0, -1e-4), velocity_m_per_s=(0, 0, 0))["status"]
+
+        return touch, renderer
+
+    def test_an_exception_is_a_fault_of_this_renderer(self):
+        fails = True
+
+        @hapbench.force_law("test_fails")
+        def fails_at_first(depths):
+            if fails:
+                raise RuntimeError("a mistake\nof mine")
+            return 1 / len(depths)
+
+        @hapbench.force_law("test_good")
+        def good(depths):
+            return 1 / len(depths)
+
+        touch, renderer = self.touched("test_fails")
+        self.assertEqual(touch(), "FAULT")
+        self.assertEqual(
+            renderer.fault,
+            "test_fails (python_laws_test.py) fails in step: RuntimeError: a mistake?of mine",
+        )
+        # Neither another renderer nor a run is affected.
+        self.assertEqual(self.touched("test_good")[0](), "ON")
+        for law in ("mean", "test_good"):
+            run = hapbench.run(PEG, {**SHORT, "rendering.algorithm": law})
+            self.assertEqual(run.outcome, "completes")
+        hapbench.Simulation(PEG, SHORT).advance(10)
+        # REARM ends the FAULT as soon as the law works.
+        self.assertEqual(touch(), "FAULT")
+        fails = False
+        self.assertEqual(touch(), "ON")
+
+    def test_wrong_answers_are_faults(self):
+        hapbench.force_law("test_wrong")(lambda depths: np.nan)
+        touch, renderer = self.touched("test_wrong")
+        self.assertEqual(touch(), "FAULT")
+        self.assertIn('ValueError: force law "test_wrong": the weight is nan', renderer.fault)
+
+    def test_a_law_that_cannot_be_created_or_reset(self):
+        fails = True
+
+        @hapbench.force_law("test_created")
+        class Law:
+            def __init__(self):
+                if fails:
+                    raise LookupError("no table")
+
+            def __call__(self, depths):
+                return 1 / len(depths)
+
+        with self.assertRaisesRegex(LookupError, "no table"):
+            self.touched("test_created")
+        fails = False
+        touch, renderer = self.touched("test_created")
+        self.assertEqual(touch(), "ON")
+        fails = True
+        renderer.step(1, (0, 0, 0))  # the time is wrong: REARM then resets the law
+        self.assertEqual(touch(), "FAULT")
+        self.assertIn("throws in reset: LookupError: no table", renderer.fault)
+        fails = False
+        self.assertEqual(touch(), "ON")
+        self.assertEqual(hapbench.run(PEG, SHORT).outcome, "completes")
+
+    def test_an_interrupt_is_raised(self):
+        @hapbench.force_law("test_interrupted")
+        def law(depths):
+            raise KeyboardInterrupt
+
+        touch, renderer = self.touched("test_interrupted")
+        with self.assertRaises(KeyboardInterrupt):
+            touch()
+        self.assertIn("fails in step: KeyboardInterrupt", renderer.fault)
+        self.assertEqual(hapbench.run(PEG, SHORT).outcome, "completes")
+
+    def test_runs_in_other_threads_go_on(self):
+        begun, let_go = threading.Event(), threading.Event()
+
+        @hapbench.force_law("test_waits")
+        def waits(depths):
+            begun.set()
+            let_go.wait(60)
+            return 1 / len(depths)
+
+        @hapbench.force_law("test_fails")
+        def fails(depths):
+            raise RuntimeError("a mistake")
+
+        outcomes = []
+        thread = threading.Thread(
+            target=lambda: outcomes.append(
+                hapbench.run(PEG, {**SHORT, "rendering.algorithm": "test_waits"}).outcome
+            )
+        )
+        thread.start()
+        try:
+            self.assertTrue(begun.wait(60))
+            self.assertEqual(self.touched("test_fails")[0](), "FAULT")
+        finally:
+            let_go.set()
+            thread.join()
+        self.assertEqual(outcomes, ["completes"])
+
+    def test_a_run_inside_the_law_raises_its_own_errors(self):
+        @hapbench.force_law("test_nested")
+        def law(depths):
+            hapbench.run(PEG, SHORT, progress=lambda *_: 1 // 0)
+            return 1
+
+        touch, renderer = self.touched("test_nested")
+        self.assertEqual(touch(), "FAULT")
+        self.assertIn("ZeroDivisionError", renderer.fault)
+        self.assertEqual(hapbench.run(PEG, SHORT).outcome, "completes")
 
 
 LAW_OF_A_SCRIPT = """import hapbench, numpy, sys, threading, time, types

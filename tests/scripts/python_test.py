@@ -216,6 +216,35 @@ class Errors(Scratch):
             {"/rendering/mass_kg", "/time/step_s"},
         )
 
+    def test_name_the_column_and_the_table(self):
+        run = hapbench.run(PEG, SHORT, record="energy,contacts")
+        self.assertLessEqual({"energy", "contacts"}, set(run.tables))
+        with self.assertRaisesRegex(KeyError, "trajectory has no column 'fz'; it has step, time_s"):
+            run.trajectory.plot("fz")
+        with self.assertRaisesRegex(KeyError, "trajectory has no column 't'"):
+            run.trajectory.plot("fz_N", x="t")
+        texts = hapbench.Table({"x": np.zeros(2), "name": np.array(["a", "b"], dtype=object)})
+        with self.assertRaisesRegex(ValueError, "column 'name' has texts; allowed: x"):
+            texts.plot("name")
+        with self.assertRaisesRegex(hapbench.InputError, "^table: got no columns; allowed: .* px"):
+            hapbench.audit({})
+        with self.assertRaisesRegex(hapbench.InputError, r"^the table has columns of \[2, 3\]"):
+            hapbench.audit({"t": [0, 1, 2], "px": [0, 1]})
+
+    def test_commands_without_json_return_their_text(self):
+        folder = self.root / "run"
+        (run,) = hapbench.command(
+            "run", *words_of(SHORT), "--out", folder, "--", PEG, progress=False
+        )
+        self.assertEqual(run["outcome"], "completes")
+        text = hapbench.command("plot", folder, "--y", "force", "--out", self.root / "a.svg")
+        self.assertIn("a.svg", text)
+        self.assertTrue((self.root / "a.svg").is_file())
+        with self.assertRaisesRegex(hapbench.ScenarioError, "^nowhere: no such folder"):
+            hapbench.command("plot", "nowhere")
+        with self.assertRaisesRegex(hapbench.ScenarioError, 'unknown option "--json"'):
+            hapbench.command("plot", folder, "--json")
+
     def test_of_results(self):
         for folder, message in (
             (self.root / "nothing", "is not a folder"),
@@ -317,6 +346,38 @@ class Loop(Scratch):
             hapbench.Renderer(wall, max_force_N=0)
         with self.assertRaisesRegex(ValueError, "admittance"):
             hapbench.Renderer(wall, max_force_N=5, mode="other")
+        with self.assertRaisesRegex(hapbench.ScenarioError, "stale_s: got 0.01 s, .* is 0.02 s"):
+            hapbench.Renderer(wall, {"time.step_s": 0.02}, max_force_N=5)
+        hapbench.Renderer(wall, {"time.step_s": 0.02}, max_force_N=5, stale_s=0.2)
+
+    def test_wrong_arguments_are_named(self):
+        renderer = hapbench.Renderer("poke_plane", max_force_N=5)
+        origin, still = (0, 0, 0), {"velocity_m_per_s": (0, 0, 0)}
+        for arguments, more, message in (
+            ((1.5, origin), still, r"time_ns: got 1.5; allowed: .*time.monotonic_ns\(\)"),
+            ((-1, origin), still, "time_ns: got -1"),
+            ((1, (0, 0)), still, r"position_m: got \(0, 0\); allowed: 3 numbers"),
+            ((1, "abc"), still, "position_m: got 'abc'"),
+            ((1, origin, (1, 0, 0)), still, r"orientation_wxyz: got \(1, 0, 0\); allowed: 4"),
+            ((1, origin), {"velocity_m_per_s": 3}, "velocity_m_per_s: got 3"),
+            ((1, origin), {"hand_force_N": ("1", 0, 0)}, "hand_force_N: got"),
+        ):
+            with self.assertRaisesRegex(ValueError, message):
+                renderer.step(*arguments, **more)
+        good = np.int64(1), np.zeros((3, 1)), np.array([1, 0, 0, 0])
+        self.assertEqual(renderer.step(*good, **still)["status"], "WAITING")
+        for name, value in (
+            ("max_force_N", "3"),
+            ("scale", None),
+            ("stale_s", (1, 2)),
+            ("world_from_device", (0, 0, 0)),
+            ("handle_from_tip", ((0, 0, 0), (1, 0, 0))),
+        ):
+            with self.assertRaisesRegex(ValueError, f"{name}: got .*; allowed"):
+                hapbench.Renderer("poke_plane", **{"max_force_N": 5, name: value})
+        for steps in (1.5, -1):
+            with self.assertRaisesRegex(ValueError, f"steps: got {steps}; allowed: an integer"):
+                hapbench.Simulation(PEG, SHORT).advance(steps)
 
 
 class Steps(Scratch):

@@ -21,11 +21,11 @@ constexpr HapbenchParameter kParameters[] = {{
     .meaning = "the greatest stiffness in any direction, in units of K",
 }};
 
-class CappedSummation final : public hapbench::ForceLaw {
+class CappedSummation final : public hapbench::ExternalForceLaw {
  public:
-  CappedSummation(double stiffness, const double* values) : ForceLaw(stiffness), limit_(values[0]) {}
+  CappedSummation(double stiffness, const double* values) : ExternalForceLaw(stiffness), limit_(values[0]) {}
 
-  hapbench::LawForce evaluate(hapbench::ContactBuffer& contacts) noexcept override {
+  hapbench::LawForce evaluate(hapbench::ContactBuffer& contacts) override {
     hapbench::set_weights(contacts, 1.0);
     const double stiffest = hapbench::lambda_max(hapbench::stiffness_tensor(contacts));
     hapbench::set_weights(contacts, std::min(1.0, limit_ / stiffest));

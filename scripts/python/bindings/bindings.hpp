@@ -45,28 +45,54 @@ class ContactArray {
   std::size_t rows_ = std::numeric_limits<std::size_t>::max();
 };
 
-/// Stores a Python error, unless an error is already stored, and stops all simulations of this process.
-/// Precondition: the interpreter lock is held.
-void stop_work_by(const pybind11::error_already_set& error);
+/// Keeps Python errors for a caller that reports failures of a law itself, such as a renderer. While an instance
+/// exists, a Python error on its thread is kept in the instance: it stops no simulation, and no other call raises it.
+/// Instances are local variables of nested calls. Precondition of all members: the interpreter lock is held.
+class KeptErrors {
+ public:
+  KeptErrors();
+  ~KeptErrors();
+  KeptErrors(const KeptErrors&) = delete;
+  KeptErrors& operator=(const KeptErrors&) = delete;
 
-/// Returns true if a Python error has stopped all calls and at least one of these calls has not yet returned.
-/// Precondition: the interpreter lock is held.
+  /// Keeps an exception, unless an earlier exception is kept.
+  void keep(const pybind11::object& exception);
+  /// Raises the kept exception, if any.
+  void raise() const;
+  /// Raises the kept exception if it is not derived from the Python class Exception, such as KeyboardInterrupt, because
+  /// a program must not ignore it.
+  void raise_interrupt() const;
+
+ private:
+  KeptErrors* outer_;
+  pybind11::object exception_;
+};
+
+/// Returns true if a Python error has stopped all calls and at least one of these calls has not yet returned. Returns
+/// false while KeptErrors exist on this thread. Precondition: the interpreter lock is held.
 bool is_work_stopped();
 
+/// Handles an error of Python code that hapbench has called. If KeptErrors exist on this thread, the error is kept
+/// there. Otherwise stores the error, unless an error is already stored, and stops all simulations of this process.
+/// Writes the error as text into `fault` (HAPBENCH_FAULT_SIZE characters), unless `fault` is null. Precondition: the
+/// interpreter lock is held.
+void handle_error(const pybind11::error_already_set& error, char* fault) noexcept;
+
 /// Runs `call` while holding the interpreter lock. If is_work_stopped(), returns false and does not run `call`. An
-/// exception of `call` becomes a Python error and stops all work. Returns true if `call` returned without an exception.
+/// exception of `call` becomes a Python error, for which handle_error() is called. Returns true if `call` returned
+/// without an exception.
 template <class Call>
-bool runs_in_python(const Call& call) noexcept {
+bool runs_in_python(const Call& call, char* fault = nullptr) noexcept {
   const pybind11::gil_scoped_acquire held;
   if (is_work_stopped()) return false;
   try {
     call();
     return true;
   } catch (const pybind11::error_already_set& error) {
-    stop_work_by(error);
+    handle_error(error, fault);
   } catch (const std::exception& error) {
     PyErr_SetString(PyExc_ValueError, error.what());
-    stop_work_by(pybind11::error_already_set());
+    handle_error(pybind11::error_already_set(), fault);
   }
   return false;
 }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <csignal>
+#include <cstdio>
 #include <filesystem>
 #include <functional>
 #include <future>
@@ -17,6 +18,7 @@
 #include <tuple>
 #include <utility>
 
+#include "algorithms/module/hapbench_module.h"
 #include "algorithms/registry.hpp"
 #include "bindings/bindings.hpp"
 #include "results/io/atomic_file.hpp"
@@ -55,30 +57,64 @@ constexpr auto kPatience = 2s;
 int active_calls = 0;
 PyObject* python_error = nullptr;
 
+/// Innermost KeptErrors of this thread that no ActiveCall hides; null if there is none.
+thread_local KeptErrors* kept_errors = nullptr;
+
+/// Returns the exception object of an error, with its traceback.
+py::object exception_of(const py::error_already_set& error) {
+  py::object exception = error.value();
+  if (error.trace()) PyException_SetTraceback(exception.ptr(), error.trace().ptr());
+  return exception;
+}
+
+[[noreturn]] void raise_exception(PyObject* exception) {
+  PyErr_SetObject(reinterpret_cast<PyObject*>(Py_TYPE(exception)), exception);
+  throw py::error_already_set();
+}
+
+/// Stores an exception, unless an exception is already stored, and stops all simulations of this process.
+void stop_work_by(py::object exception) {
+  if (python_error == nullptr) python_error = exception.release().ptr();
+  stop_work(SIGINT);
+}
+
+/// Writes the class and the message of an exception into `fault`.
+void write_fault(const py::object& exception, char* fault) noexcept {
+  try {
+    const std::string name = py::str(py::type::of(exception).attr("__name__")), message = py::str(exception);
+    std::snprintf(fault, HAPBENCH_FAULT_SIZE, "%s%s%s", name.c_str(), message.empty() ? "" : ": ", message.c_str());
+  } catch (...) {  // the exception has no message that can be written
+    std::snprintf(fault, HAPBENCH_FAULT_SIZE, "%s", Py_TYPE(exception.ptr())->tp_name);
+  }
+}
+
 /// Label, completed work and total work of a progress report; the total is 0 before the first report.
 using ProgressState = std::tuple<std::string, std::uint64_t, std::uint64_t>;
 
 /// A call from Python that computes. `active_calls` counts the existing objects of this class. A Python error in one
-/// call stops all calls. When the last call ends, the error is cleared and work may start again. Precondition of
-/// constructor and destructor: the interpreter lock is held.
+/// call stops all calls. When the last call ends, the error is cleared and work may start again. An ActiveCall hides
+/// the KeptErrors of its thread, because it raises its errors itself. Precondition of constructor and destructor: the
+/// interpreter lock is held.
 class ActiveCall {
  public:
-  ActiveCall() { ++active_calls; }
+  ActiveCall() : hidden_(std::exchange(kept_errors, nullptr)) { ++active_calls; }
   ~ActiveCall() {
+    kept_errors = hidden_;
     if (--active_calls > 0) return;
     Py_CLEAR(python_error);
     stop_work(0);
   }
   ActiveCall(const ActiveCall&) = delete;
   ActiveCall& operator=(const ActiveCall&) = delete;
+
+ private:
+  KeptErrors* hidden_;
 };
 
 /// Raises the error that stop_work_by() has stored, if any. Preconditions: an ActiveCall exists, and the interpreter
 /// lock is held.
 void raise_python_error() {
-  if (python_error == nullptr) return;
-  PyErr_SetObject(reinterpret_cast<PyObject*>(Py_TYPE(python_error)), python_error);
-  throw py::error_already_set();
+  if (python_error != nullptr) raise_exception(python_error);
 }
 
 /// Runs `work` on a new thread and waits for its end with the interpreter lock released. While supervise() waits, it
@@ -128,7 +164,7 @@ void supervise(const py::object& progress, const std::function<void(const Progre
 void stop_calls_at_exit() {
   if (active_calls == 0) return;
   PyErr_SetNone(PyExc_SystemExit);
-  stop_work_by(py::error_already_set());
+  stop_work_by(exception_of(py::error_already_set()));
   const auto latest = std::chrono::steady_clock::now() + kPatience;
   while (active_calls > 0 && std::chrono::steady_clock::now() < latest) {
     const py::gil_scoped_release released;
@@ -365,16 +401,35 @@ void bind_simulation(py::module_& module) {
 
 }  // namespace
 
-void stop_work_by(const py::error_already_set& error) {
-  if (python_error == nullptr) {
-    python_error = py::object(error.value()).release().ptr();
-    if (error.trace()) PyException_SetTraceback(python_error, error.trace().ptr());
-  }
-  stop_work(SIGINT);
+KeptErrors::KeptErrors() : outer_(std::exchange(kept_errors, this)) {}
+
+KeptErrors::~KeptErrors() {
+  kept_errors = outer_;
+}
+
+void KeptErrors::keep(const py::object& exception) {
+  if (!exception_) exception_ = exception;
+}
+
+void KeptErrors::raise() const {
+  if (exception_) raise_exception(exception_.ptr());
+}
+
+void KeptErrors::raise_interrupt() const {
+  if (exception_ && PyErr_GivenExceptionMatches(exception_.ptr(), PyExc_Exception) == 0) raise();
 }
 
 bool is_work_stopped() {
-  return python_error != nullptr;
+  return kept_errors == nullptr && python_error != nullptr;
+}
+
+void handle_error(const py::error_already_set& error, char* fault) noexcept {
+  const py::object exception = exception_of(error);
+  if (fault != nullptr) write_fault(exception, fault);
+  if (kept_errors != nullptr)
+    kept_errors->keep(exception);
+  else
+    stop_work_by(exception);
 }
 
 bool is_call_active() {

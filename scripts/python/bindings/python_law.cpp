@@ -6,7 +6,9 @@
 #include <cstdio>
 #include <iterator>
 #include <memory>
+#include <numeric>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <thread>
@@ -88,6 +90,7 @@ class PythonLaw {
         argument.number = py::float_(name == "stiffness" ? run.stiffness : values[definition.place_of(name)]);
       }
     }
+    passed_.resize(arguments_.size());
     start();
   }
 
@@ -112,13 +115,12 @@ class PythonLaw {
 
  private:
   py::object call(const HapbenchContacts& contacts) {
-    std::array<PyObject*, 64> arguments;
-    std::size_t count = 0;
-    for (Argument& a : arguments_) {
+    for (std::size_t i = 0; i < arguments_.size(); ++i) {
+      Argument& a = arguments_[i];
       const py::object& shown = a.array ? a.array->filled(contacts.n, columns_of(a.shown, contacts)) : a.number;
-      arguments[count++] = shown.ptr();
+      passed_[i] = shown.ptr();
     }
-    PyObject* result = PyObject_Vectorcall(callable_.ptr(), arguments.data(), count, nullptr);
+    PyObject* result = PyObject_Vectorcall(callable_.ptr(), passed_.data(), passed_.size(), nullptr);
     if (result == nullptr) throw py::error_already_set();
     return py::reinterpret_steal<py::object>(result);
   }
@@ -131,10 +133,31 @@ class PythonLaw {
       throw wrong(py::str("arrays of the shapes {} and {}").format(force.attr("shape"), tensor.attr("shape")), n);
     const double *f = force.data(), *S = tensor.data();
     for (int i = 0; i < 9; ++i) require_finite(S[i], "the stiffness tensor");
-    if (S[1] != S[3] || S[2] != S[6] || S[5] != S[7])
-      throw py::value_error(title() + "got a stiffness tensor that is not symmetric");
-    to = {1, {f[0], f[1], f[2]}, {S[0], S[1], S[2], S[4], S[5], S[8]}};
+    // Replace each pair of opposite entries by its mean. Equal entries keep their bits.
+    const double tolerance = largest_asymmetry(S, n);
+    const auto mean = [&](int row, int column) {
+      const double entry = S[3 * row + column], opposite = S[3 * column + row];
+      if (std::abs(entry - opposite) <= tolerance) return std::midpoint(entry, opposite);
+      throw py::value_error(title() +
+                            std::string(py::str("got a stiffness tensor S that is not symmetric: S[{0}, {1}] = {2} and "
+                                                "S[{1}, {0}] = {3}; allowed: differences by rounding, at most {4:.2g}")
+                                            .format(row, column, entry, opposite, tolerance)));
+    };
+    to = {1, {f[0], f[1], f[2]}, {S[0], mean(0, 1), mean(0, 2), S[4], mean(1, 2), S[8]}};
     for (const double value : to.force) require_finite(value, "the force");
+  }
+
+  /// Returns the largest difference between opposite entries of the stiffness tensor S that rounding explains, for n
+  /// contacts. Both entries are the sum over the contacts of c_i u_ij u_ik, but a law may add and multiply in two
+  /// different orders. In either order, at most n + 2 roundings act on each term, so that the error of an entry is at
+  /// most (n + 2) e times the sum of |c_i u_ij u_ik|, to first order in the unit roundoff e (Higham, Accuracy and
+  /// Stability of Numerical Algorithms, 2nd edition, chapter 3). As |u_ij u_ik| <= 1/2 for a unit vector, this sum is
+  /// at most half the sum of |c_i|, which is trace S for weights >= 0. The entries therefore differ by at most (n + 2)
+  /// e trace S. Here e = 2^-24, because a law may compute in single precision. If terms cancel each other, trace S is
+  /// smaller than the terms, which have the size 1; the factor is therefore at least 1.
+  static double largest_asymmetry(const double* S, std::size_t n) {
+    constexpr double kRoundoff = 0x1p-24;
+    return (static_cast<double>(n) + 2.0) * kRoundoff * std::max(1.0, S[0] + S[4] + S[8]);
   }
 
   using Numbers = py::array_t<double, py::array::c_style | py::array::forcecast>;
@@ -168,6 +191,7 @@ class PythonLaw {
     py::object number = {};
   };
   std::vector<Argument> arguments_;
+  std::vector<PyObject*> passed_;  ///< the arguments of one call, borrowed from arguments_
 };
 
 struct State {
@@ -178,21 +202,20 @@ struct State {
 void* create(const double* values, const char*, const HapbenchRun* run, char* fault) {
   auto state = std::make_unique<State>();
   const auto& definition = *static_cast<const Definition*>(run->data);
-  if (runs_in_python([&] { state->law = std::make_unique<PythonLaw>(definition, values, *run); }))
+  if (runs_in_python([&] { state->law = std::make_unique<PythonLaw>(definition, values, *run); }, fault))
     return state.release();
   state->thread.give_back();
-  std::snprintf(fault, HAPBENCH_FAULT_SIZE, "an error in Python");
   return nullptr;
 }
 
 int step(void* state, const HapbenchPose*, HapbenchContacts* contacts, HapbenchForce* force, char* fault) {
-  if (runs_in_python([&] { static_cast<State*>(state)->law->step(*contacts, *force); })) return 0;
-  std::snprintf(fault, HAPBENCH_FAULT_SIZE, "an error in Python");
-  return 1;
+  return runs_in_python([&] { static_cast<State*>(state)->law->step(*contacts, *force); }, fault) ? 0 : 1;
 }
 
 void reset(void* state) {
-  runs_in_python([state] { static_cast<State*>(state)->law->start(); });
+  std::array<char, HAPBENCH_FAULT_SIZE> fault{};
+  if (!runs_in_python([state] { static_cast<State*>(state)->law->start(); }, fault.data()))
+    throw std::runtime_error(fault.data());  // this function has no other way to report a fault
 }
 
 void destroy(void* given) {
@@ -243,9 +266,13 @@ void add_force_law(const std::string& name, const py::object& callable, bool is_
   const std::shared_ptr<Definition> definition(
       new Definition{name, callable, is_class, parameters, texts, arguments, {}}, destroy_definition);
   fill_table(*definition);
-  AlgorithmEntry entry = law_entry({{definition, &definition->table}, file}, hash_text(hash_of(source)));
-  if (fixed != nullptr) entry.fixed_depth_model = fixed->info->name;
-  add_algorithm(std::move(entry));
+  try {
+    AlgorithmEntry entry = law_entry({{definition, &definition->table}, file}, hash_text(hash_of(source)));
+    if (fixed != nullptr) entry.fixed_depth_model = fixed->info->name;
+    add_algorithm(std::move(entry));
+  } catch (const std::invalid_argument& problem) {
+    throw std::invalid_argument("force law \"" + name + "\": " + problem.what());
+  }
 }
 
 }  // namespace

@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from ._packages import find_packages
+from .errors import InputError
 
 
 def audit(
@@ -23,6 +24,11 @@ def audit(
     act on the object, and their sign is changed. `touch`: force above which a row is in contact [N]; None: any force.
     Raises InputError.
     """
+    if not list(table):
+        raise InputError(
+            "table: got no columns; allowed: columns of numbers with the time, the position of the tool and the force "
+            "on it, such as t, px, py, pz, fx, fy, fz"
+        )
     find_packages()
     from hapbench_audit.audit import audit_log
     from hapbench_audit.log import log_of_table

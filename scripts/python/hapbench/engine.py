@@ -1,5 +1,6 @@
 """Functions that run the commands of the program and return their results in memory."""
 import json
+import operator
 import os
 import shutil
 import sys
@@ -41,19 +42,20 @@ def run(
     scenario: Scenario,
     overrides: Overrides = None,
     *,
-    record: Iterable[str] = (),
+    record: str | Iterable[str] = (),
     progress: Progress = None,
 ) -> Run:
     """Run a scenario and return its Run in memory, with the same numbers as `hapbench run` writes.
 
     `scenario`: a file, the name of a bundled scenario, or a dict; relative paths in a dict start from the working
     directory. `overrides`: fields as in --set, such as {"rendering.stiffness_N_per_m": 4e4}. `record`: what to record
-    in addition to the scenario's own list: "contacts", "energy", "stiffness_tensor", "ideal_trajectory",
-    "force_reference", "six_dof", "timing". `progress`: None for a progress bar if standard error is a terminal, False
-    for no bar, or a function of (label, done, total). Ctrl-C stops the run with KeyboardInterrupt. Raises
-    ScenarioError.
+    in addition to the scenario's own list, a name or a list of names: "contacts", "energy", "stiffness_tensor",
+    "ideal_trajectory", "force_reference", "six_dof", "timing". `progress`: None for a progress bar if standard error is
+    a terminal, False for no bar, or a function of (label, done, total). Ctrl-C stops the run with KeyboardInterrupt.
+    Raises ScenarioError.
     """
-    overrides = {**(overrides or {}), **{f"record.{what}": True for what in record}}
+    recorded = record.split(",") if isinstance(record, str) else record
+    overrides = {**(overrides or {}), **{f"record.{what}": True for what in recorded}}
     with _Scratch() as scratch:
         found = scratch.call(_hapbench.run, scratch.file_of(scenario), _words(overrides), progress)
     summary = json.loads(found["summary"])
@@ -192,11 +194,23 @@ def limit(
 
 def command(*words: object, progress: Progress = None) -> Any:
     """Run a command of the program, such as `hapbench.command("describe", "mean")`, and return the parsed output of
-    --json. Returns None if the command prints nothing. Raises ScenarioError if the program rejects the input.
+    --json. A command without the option --json, such as plot, returns its text. Returns None if the command prints
+    nothing. Raises ScenarioError if the program rejects the input.
     """
-    status, text, messages, errors = _hapbench.command([*map(str, words), "--json"], progress)
+    given = [str(word) for word in words]
+    end = given.index("--") if "--" in given else len(given)  # the words after "--" are no options
+    answer = None
+    try:
+        answer = _hapbench.command([*given[:end], "--json", *given[end:]], progress)
+    except ScenarioError as error:
+        if "--json" in given or 'unknown option "--json"' not in error.problem:
+            raise
+    status, text, messages, errors = answer or _hapbench.command(given, progress)
     _warn(messages + errors, status)
-    return json.loads(text) if text else None
+    try:
+        return json.loads(text) if text else None
+    except ValueError:
+        return Text(text)
 
 
 class Text(str):
@@ -295,6 +309,13 @@ class Simulation(_hapbench.Simulation):
         with _Scratch() as scratch:
             scratch.call(super().__init__, scratch.file_of(scenario), _words(overrides or {}))
 
+    def advance(self, steps: int) -> int:
+        try:
+            return super().advance(steps)
+        except TypeError:
+            _check_arguments(("steps", steps, _is_unsigned, "an integer from 0 to 2**64 - 1"))
+            raise
+
 
 class Renderer(_hapbench.Renderer):
     """The force of a scenario in a haptic loop of your own. This class is the Python interface of hapbench_renderer.h;
@@ -305,14 +326,17 @@ class Renderer(_hapbench.Renderer):
       out["force_N"], out["status"]
 
     `mode`: "impedance" or "admittance". `world_from_device`, `handle_from_tip`: (position [m], quaternion w, x, y, z).
-    `torque`: True to compute out["torque_N_m"]. `allow_modules`: True to load libraries that the scenario names. Raises
-    ScenarioError.
+    `stale_s`: longest time between two calls [s], larger than the period. `torque`: True to compute out["torque_N_m"].
+    `allow_modules`: True to load libraries that the scenario names. Raises ScenarioError.
 
     `step` returns a dict: force_N, torque_N_m, set_position_m, set_velocity_m_per_s, gain, dt_s, call, status
     ("WAITING", "RAMPING", "ON", "CLAMPED", "STALE", "FAULT"), contacts, limited. `period_s` is the time between two
     calls [s], `inspection` describes the scenario that was opened, and `fault` is the reason of the last FAULT.
     `log_header()`, and `log_row()` after each step, return the lines of a log for `hapbench run SCENARIO --replay`.
     Python has no real-time guarantees: for a device, use C or C++.
+
+    If a law in Python raises an exception, the status is FAULT, and `fault` has the text of the exception. If the
+    exception is not derived from Exception, such as KeyboardInterrupt, `step` also raises it.
     """
 
     def __init__(
@@ -335,19 +359,37 @@ class Renderer(_hapbench.Renderer):
         modes = {"impedance": 1, "admittance": 2}
         if mode not in modes:
             raise ValueError(f"mode: got {mode!r}; allowed: {', '.join(modes)}")
-        limits = (max_force_N, max_force_rate_N_per_s, ramp_s, stale_s, engage_force_N)
-        with _Scratch() as scratch:
-            scratch.call(
-                super().__init__,
-                scratch.file_of(scenario),
-                _words(overrides or {}),
-                modes[mode],
-                (1 if allow_modules else 0) | (2 if torque else 0),
-                world_from_device,
-                scale,
-                handle_from_tip,
-                limits,
+        limits = {
+            "max_force_N": max_force_N,
+            "max_force_rate_N_per_s": max_force_rate_N_per_s,
+            "ramp_s": ramp_s,
+            "stale_s": stale_s,
+            "engage_force_N": engage_force_N,
+        }
+        try:
+            with _Scratch() as scratch:
+                scratch.call(
+                    super().__init__,
+                    scratch.file_of(scenario),
+                    _words(overrides or {}),
+                    modes[mode],
+                    (1 if allow_modules else 0) | (2 if torque else 0),
+                    world_from_device,
+                    scale,
+                    handle_from_tip,
+                    tuple(limits.values()),
+                )
+        except TypeError:
+            pose = "(position of 3 numbers, quaternion of 4 numbers)"
+            _check_arguments(
+                ("world_from_device", world_from_device, _is_pose, pose),
+                ("handle_from_tip", handle_from_tip, _is_pose, pose),
+                *(
+                    (name, value, _is_number, "a number")
+                    for name, value in {"scale": scale, **limits}.items()
+                ),
             )
+            raise
 
     def step(
         self,
@@ -363,9 +405,77 @@ class Renderer(_hapbench.Renderer):
         rearm: bool = False,
     ) -> dict[str, Any]:
         """Render the force for one measurement of the handle. The measurement is in the device's frame."""
-        given = [velocity_m_per_s, angular_velocity_rad_per_s, hand_force_N, applied_force_N]
+        given = {
+            "velocity_m_per_s": velocity_m_per_s,
+            "angular_velocity_rad_per_s": angular_velocity_rad_per_s,
+            "hand_force_N": hand_force_N,
+            "applied_force_N": applied_force_N,
+        }
         bits = (16 if clutch else 0) | (32 if rearm else 0)
-        return super().step(time_ns, position_m, orientation_wxyz, given, bits)
+        try:
+            return super().step(time_ns, position_m, orientation_wxyz, list(given.values()), bits)
+        except TypeError:
+            time = "an integer from 0 to 2**64 - 1 [ns], such as time.monotonic_ns()"
+            _check_arguments(
+                ("time_ns", time_ns, _is_unsigned, time),
+                ("position_m", position_m, _is_vector, "3 numbers"),
+                ("orientation_wxyz", orientation_wxyz, _is_quaternion, "4 numbers"),
+                *(
+                    (name, vector, _is_vector, "3 numbers, or None")
+                    for name, vector in given.items()
+                    if vector is not None
+                ),
+            )
+            raise
+
+
+def _check_arguments(*arguments: tuple[str, object, Callable[[object], bool], str]) -> None:
+    """Raises a ValueError for the first argument that is not valid. Called after the compiled module has refused the
+    arguments of a call, because the message of the module names no argument. Each argument is a tuple of its name, its
+    value, a function that returns true if the value is valid, and a text that states which values are valid.
+    """
+    for name, value, is_valid, allowed in arguments:
+        if not is_valid(value):
+            text = repr(value)
+            got = text if len(text) <= 60 else f"{text[:59]}…"
+            raise ValueError(f"{name}: got {got}; allowed: {allowed}") from None
+
+
+def _is_number(value: Any) -> bool:
+    try:
+        return not isinstance(value, str) and isinstance(float(value), float)
+    except (TypeError, ValueError, OverflowError):
+        return False
+
+
+def _is_unsigned(value: Any) -> bool:
+    try:
+        return 0 <= operator.index(value) < 2**64
+    except TypeError:
+        return False
+
+
+def _is_vector(value: Any, size: int = 3) -> bool:
+    try:
+        return (
+            not isinstance(value, (str, bytes))
+            and len(value) == size
+            and all(map(_is_number, value))
+        )
+    except TypeError:
+        return False
+
+
+def _is_quaternion(value: Any) -> bool:
+    return _is_vector(value, 4)
+
+
+def _is_pose(value: Any) -> bool:
+    try:
+        position, orientation = value
+    except (TypeError, ValueError):
+        return False
+    return _is_vector(position) and _is_quaternion(orientation)
 
 
 class _Scratch:

@@ -6,6 +6,10 @@ class InputError(Exception):
     """Invalid input, such as a scenario, an argument or a file. The message is one line that states where the fault is
     and what is allowed."""
 
+    def __str__(self):
+        # The errors of the packages of the commands may have several faults: `lines` then has a text for each fault.
+        return "; ".join(getattr(self, "lines", ())) or super().__str__()
+
 
 class ResultError(InputError):
     """A result file is missing or cannot be parsed."""

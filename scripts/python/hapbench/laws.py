@@ -40,32 +40,30 @@ def force_law(
     The function is called in every step with contact. Its arguments are selected by their names and may be in any
     order: `depths` (n) [m]; `gradients` (n × 3), unit vectors along which a point leaves the tool; `points` (n × 3)
     [m]; `normals` (n × 3), out of the environment; `stiffness`, K of one spring [N/m]; and the `parameters` of the
-    law, as floats. The next call overwrites the arrays: copy the values that you keep.
+    law, as floats. The next call overwrites the arrays: copy the values that you keep. The function may change the
+    arrays: hapbench computes the force of the weights from its own depths and gradients.
 
     The function returns the weights c_i of the springs, either one for each contact or one for all contacts. The force
     is f = -K Σ c_i d_i u_i, with the depths d_i and the gradients u_i, and the stiffness tensor is S = Σ c_i u_i u_iᵀ.
-    Alternatively, the function returns a tuple of the force [N] and the symmetric 3 × 3 tensor S in units of K.
-    Damping and friction are computed with S. If the function returns a tuple, the energy and the moment of the force
-    are computed as if one spring of stiffness K in the middle of the contacts rendered this force.
+    Alternatively, the function returns a tuple of the force [N] and the symmetric 3 × 3 tensor S in units of K. If
+    opposite entries of S differ by rounding, hapbench uses their mean. Damping and friction are computed with S. If the
+    function returns a tuple, the energy and the moment of the force are computed as if one spring of stiffness K in the
+    middle of the contacts rendered this force.
 
     A class can replace the function. Each run then creates an object of the class and calls it, so that a law can have
     a state.
 
-    An exception in the law stops the computation, and the call that started the computation raises it. Registering a
-    second law of the same name replaces the first law. `parameters`: by name, a Parameter or a number; a number is the
-    default of a parameter in the range from 0 (or from the number, if it is negative) to 1e12. `depth_model`: the only
-    depth model for which the law is defined; None for all. The first line of the function's docstring is the summary
-    of the law.
+    An exception in the law stops the computation, and the call that started the computation raises it. In a Renderer,
+    the status becomes FAULT instead. Registering a second law of the same name replaces the first law. `parameters`: by
+    name, a Parameter or a number; a number is the default of a parameter in the range from 0 (or from the number, if it
+    is negative) to 1e12. At most 1000 parameters are allowed, and their names must differ from the inputs above.
+    `depth_model`: the only depth model for which the law is defined; None for all. The first line of the function's
+    docstring is the summary of the law.
     """
+    specified = _specified(name, parameters)
 
     def add(law):
         is_class = inspect.isclass(law)
-        specified = {
-            key: value
-            if isinstance(value, Parameter)
-            else Parameter(float(value), min(0.0, float(value)), 1e12)
-            for key, value in (parameters or {}).items()
-        }
         texts = (
             _summary(law),
             formula or "as written in Python",
@@ -88,6 +86,42 @@ def force_law(
         return law
 
     return add
+
+
+def _specified(name, parameters):
+    """Returns the parameters of a law as a dict from name to Parameter. Raises an error for arguments of force_law that
+    are not a name and a dict, because otherwise nothing would be registered without a notice."""
+    if not isinstance(name, str):
+        raise TypeError(
+            f"force_law: got {_shown(name)} as the name; allowed: a text, as in the line "
+            '@hapbench.force_law("mine") above the law'
+        )
+    if not isinstance(parameters, (Mapping, type(None))):
+        raise TypeError(
+            f"force law {name!r}: got {_shown(parameters)} as the parameters; allowed: a dict. A law that exists "
+            f"is registered by hapbench.force_law({name!r})(LAW)"
+        )
+    specified = {
+        key: value
+        if isinstance(value, Parameter)
+        else Parameter(float(value), min(0.0, float(value)), 1e12)
+        for key, value in (parameters or {}).items()
+    }
+    for key in specified:
+        if key in _ARGUMENTS:
+            raise ValueError(
+                f"force law {name!r}: got a parameter {key!r}, which is the name of an input of every law; "
+                f"allowed: names other than {', '.join(_ARGUMENTS)}"
+            )
+    return specified
+
+
+def _shown(value):
+    """Returns a text of one line for an argument that is not allowed."""
+    if callable(value):
+        return f"the {type(value).__name__} {getattr(value, '__name__', '')!r}"
+    text = repr(value)
+    return text if len(text) <= 60 else f"{text[:59]}…"
 
 
 def _arguments(name, law, specified):

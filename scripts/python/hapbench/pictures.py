@@ -60,6 +60,12 @@ def plot_table(table: "Table", y: Iterable[str], x: str | None, width: str) -> A
     if not of_numbers:
         raise ValueError(f"{table.name} has no column of numbers")
     x = x or ("time_s" if "time_s" in of_numbers else of_numbers[0])
+    for name in (x, *y):
+        table[name]  # raises a KeyError that lists the columns, if there is no column of this name
+        if name not in of_numbers:
+            raise ValueError(
+                f"{table.name}: column {name!r} has texts; allowed: {', '.join(of_numbers)}"
+            )
     others = [name for name in of_numbers if name != x and name != "step"]
     # Without names in `y`, draws all columns that have the same unit as the first column.
     shown = list(y) or [n for n in others if table.units[n] == table.units[others[0]]]

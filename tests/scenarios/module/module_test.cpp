@@ -7,6 +7,8 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
+#include <string_view>
+#include <utility>
 
 #include "algorithms/module/law_module.hpp"
 #include "algorithms/module/module.hpp"
@@ -269,6 +271,48 @@ TEST_F(AModuleLaw, DoesNotWriteBeyondItsWeights) {
   }
 }
 
+TEST_F(AModuleLaw, CannotChangeItsContacts) {
+  static void (*change)(HapbenchContacts&);
+  HapbenchModule table = law_with([](void*, const HapbenchPose*, HapbenchContacts* contacts, HapbenchForce*, char*) {
+    std::fill_n(contacts->weight, contacts->n, 0.25);
+    change(*contacts);
+    return 0;
+  });
+  const auto fault = [](const std::string& field) {
+    return "changes the contacts (" + field + "); allowed: writing the weights, or force and stiffness (HapbenchForce)";
+  };
+  const std::pair<const char*, void (*)(HapbenchContacts&)> changes[] = {
+      {"n", [](HapbenchContacts& c) { --c.n; }},
+      {"index", [](HapbenchContacts& c) { ++c.index[2]; }},
+      {"depth", [](HapbenchContacts& c) { c.depth[0] -= 2e-5; }},
+      {"gx", [](HapbenchContacts& c) { c.gx[0] = 0.5; }},
+      {"gz", [](HapbenchContacts& c) { c.gz[2] = -0.0; }},
+      {"z", [](HapbenchContacts& c) { c.z[2] = kNaN; }},
+      {"nz", [](HapbenchContacts& c) { const_cast<double*>(c.nz)[2] = 0.5; }},
+      {"depth", [](HapbenchContacts& c) { c.weight[c.n + 8] = 0.5; }}};
+  for (const auto& [field, function] : changes) {
+    change = function;
+    EXPECT_EQ(fault_of(table), fault(field));
+  }
+  // The contacts of the run keep their values, also if the module gives the force or reports a fault of its own.
+  table.step = [](void*, const HapbenchPose*, HapbenchContacts* contacts, HapbenchForce* answer, char*) {
+    contacts->depth[0] = 1.0;
+    *answer = {1, {0.0, 0.0, 1.0}, {1.0, 0.0, 0.0, 1.0, 0.0, 1.0}};
+    return script.fault == nullptr ? 0 : 1;
+  };
+  EXPECT_EQ(fault_of(table), fault("depth"));
+  for (const char* own : {static_cast<const char*>(nullptr), ""}) {
+    script.fault = own;
+    ModuleLaw law(module_of(table), kK, {});
+    law.prepare(10);
+    ContactBuffer contacts = test::contacts_of({Vec3::UnitX(), Vec3::UnitY()});
+    const double depth = contacts.depth[0];
+    law.evaluate(contacts);
+    EXPECT_EQ(contacts.depth[0], depth);
+    EXPECT_NE(law.fault(), nullptr);
+  }
+}
+
 TEST_F(AModuleLaw, IsNotAskedAgainAfterAFaultUntilAReset) {
   take_module_faults();
   ModuleLaw law(module_of(kMean), kK, {});
@@ -293,12 +337,53 @@ TEST_F(AModuleLaw, IsNotAskedAgainAfterAFaultUntilAReset) {
   EXPECT_TRUE(law.evaluate(contacts).spring.allFinite());
 }
 
-TEST_F(AModuleLaw, InCppMayThrowInItsConstructor) {
-  struct Refuses final : ForceLaw {
-    Refuses(double stiffness, const double*) : ForceLaw(stiffness) { throw std::runtime_error("no"); }
-    LawForce evaluate(ContactBuffer&) noexcept override { return {}; }
+/// A law in C++ that calls `disturb` in each function, with the name of the function.
+struct DisturbedLaw final : ExternalForceLaw {
+  static inline void (*disturb)(std::string_view function, ContactBuffer* contacts) = nullptr;
+
+  DisturbedLaw(double stiffness, const double*) : ExternalForceLaw(stiffness) { disturb("constructor", nullptr); }
+  void prepare(std::size_t) override { disturb("prepare", nullptr); }
+  void reset() override { disturb("reset", nullptr); }
+  LawForce evaluate(ContactBuffer& contacts) override {
+    set_weights(contacts, 0.25);
+    disturb("evaluate", &contacts);
+    return weighted_force(contacts, K_);
+  }
+};
+
+TEST_F(AModuleLaw, InCppMayThrowAnywhere) {
+  const HapbenchModule table = law_module<DisturbedLaw>({"from_outside", "a", "b", "c", "d"});
+  static std::string_view failing;
+  DisturbedLaw::disturb = [](std::string_view function, ContactBuffer*) {
+    if (function == failing) throw std::runtime_error("no");
   };
-  EXPECT_EQ(fault_of(law_module<Refuses>({"from_outside", "a", "b", "c", "d"})), "throws in create: no");
+  for (const auto& [function, fault] : {std::pair{"no function", ""},
+                                        {"constructor", "throws in create: no"},
+                                        {"prepare", "throws in create: no"},
+                                        {"reset", "throws in reset: no"},
+                                        {"evaluate", "throws in step: no"}}) {
+    failing = function;
+    EXPECT_EQ(fault_of(table), fault) << function;
+  }
+}
+
+TEST_F(AModuleLaw, InCppCannotChangeItsContacts) {
+  const HapbenchModule table = law_module<DisturbedLaw>({"from_outside", "a", "b", "c", "d"});
+  static void (*change)(ContactBuffer&);
+  DisturbedLaw::disturb = [](std::string_view, ContactBuffer* contacts) {
+    if (contacts != nullptr) change(*contacts);
+  };
+  const std::pair<const char*, void (*)(ContactBuffer&)> changes[] = {
+      {"their number", [](ContactBuffer& c) { c.shrink(1); }},
+      {"index", [](ContactBuffer& c) { ++c.index[2]; }},
+      {"depth", [](ContactBuffer& c) { c.depth[1] *= 2.0; }},
+      {"uz", [](ContactBuffer& c) { c.uz[0] = 0.5; }},
+      {"nx", [](ContactBuffer& c) { c.nx[2] = 0.5; }}};
+  for (const auto& [field, function] : changes) {
+    change = function;
+    EXPECT_EQ(fault_of(table),
+              fmt::format("fails in step: it changes the contacts ({}); allowed: writing the weights", field));
+  }
 }
 
 fs::path module(const std::string& name) {

@@ -49,6 +49,10 @@ TEST(OpenRenderer, RefusesWhatItCannotRender) {
   refused("mount.ramp_s", [](Setup& s) { s.mount.ramp_s = 61; });
   refused("mount.stale_s", [](Setup& s) { s.mount.stale_s = 0; });
   refused("mount.engage_force", [](Setup& s) { s.mount.engage_force = kNaN; });
+  refused("mount.stale_s: got 0.001 s, but the period of the loop (time.step_s) is 0.001 s",
+          [](Setup& s) { s.mount.stale_s = kPeriod; });
+  static const char* const kSlow[] = {"time.step_s=0.02", nullptr};
+  refused("allowed: > 0.02 s, such as 0.2 s, or a time.step_s < 0.01 s", [](Setup& s) { s.overrides = kSlow; });
   refused("mount.handle_from_tip.orientation", [](Setup& s) { s.mount.handle_from_tip.orientation[0] = 0; });
   refused("mount.world_from_device.position", [](Setup& s) { s.mount.world_from_device.position[1] = kNaN; });
   refused("/device/type", [](Setup& s) { s.mode = HAPBENCH_ADMITTANCE; });
@@ -76,6 +80,18 @@ TEST(OpenRenderer, ReportsWhatItUsesAndIgnores) {
   EXPECT_EQ(used.find("viscous"), std::string::npos) << text;
   EXPECT_NE(text.find("device.viscous_N_s_per_m", text.find("ignored")), std::string::npos) << text;
   EXPECT_EQ(hapbench_renderer_period(renderer.get()), 0.002);
+}
+
+TEST(OpenRenderer, RendersWithALongPeriodIfTheLongestTimeBetweenCallsIsLonger) {
+  HapbenchSetup setup = setup_of(kPlane);
+  static const char* const kSlow[] = {"time.step_s=0.02", nullptr};
+  setup.overrides = kSlow;
+  setup.mount.stale_s = 0.2;
+  Loop loop(setup);
+  HapbenchOutput output{};
+  for (int i = 0; i < 50; ++i) output = loop.at(0.002, 0.02);
+  EXPECT_EQ(output.status, static_cast<unsigned>(HAPBENCH_ON));
+  EXPECT_GT(loop.at(kInside, 0.02).force[2], 0.05);
 }
 
 /// Checks that a renderer gives the forces of a scripted run. Feeds the poses of the run to the renderer; once the gain
