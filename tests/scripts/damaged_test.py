@@ -281,6 +281,27 @@ class Damaged(Given):
         file.write_bytes(file.read_bytes()[:200])
         self.assert_refuses(folder, f"{file}: line 1: {CUT}")
 
+    def test_a_comparison_or_a_sweep_that_was_stopped(self):
+        """`compare` writes its table last. `sweep` renames the table sweep.csv.part last."""
+        begin = "has no comparison.csv, which"
+        folder = self.copy("compare")
+        (folder / "comparison.csv").unlink()
+        self.assert_warns(folder, f"{folder}: {begin}", "laws may be missing\n", commands=["plot"])
+        (folder / "proxy").mkdir()
+        (folder / "mean" / "summary.json").unlink()
+        self.assert_warns(folder, begin, "laws may be missing: no summary.json in mean, proxy")
+        seeds = self.copy("seeds")
+        (seeds / "comparison.csv").unlink()
+        (seeds / "mean" / "seed_1" / "summary.json").unlink()
+        self.assert_warns(seeds, f"{seeds}: {begin}", "no summary.json in mean/seed_1")
+        # The comparison is found below a folder of several results, too.
+        self.assertIn(f"{folder}: {begin}", called("report", folder.parent)[1])
+        sweep = self.copy("sweep")
+        (sweep / "sweep.csv").rename(sweep / "sweep.csv.part")
+        text = f"{sweep}/sweep.csv.part: the sweep was stopped or has not ended, and runs are"
+        for given in (sweep, sweep / "runs"):
+            self.assert_warns(given, text)
+
     def test_a_byte_order_mark_is_no_text(self):
         for name in ("run", "compare", "seeds", "sweep", "limit", "tune", "converge", "replay"):
             folder = self.copy(name)

@@ -27,6 +27,7 @@ def texts_of(figure):
         ]
         found += ax.get_legend().get_texts() if ax.get_legend() else ()
         for along, limits in ((ax.xaxis, ax.get_xlim()), (ax.yaxis, ax.get_ylim())):
+            found.append(along.offsetText)
             for minor in (False, True):
                 for tick in along.get_minor_ticks() if minor else along.get_major_ticks():
                     if tick.label1.get_visible() and min(limits) <= tick.get_loc() <= max(limits):

@@ -95,6 +95,39 @@ class Limits(Given):
         (limit / "limit_runs.csv").write_text("algorithm,class\nmean,stable\n")
         self.assertIn("is not a table that hapbench wrote", plotted(limit, expected=2))
 
+    def test_a_change_of_class_is_within_the_panel(self):
+        """Adds runs far below the limits: a run that passed through, and a stuck run below it. The panel of classes
+        reaches the first of them. The class of the other run, which is outside, is not in the legend.
+        """
+        words = ("limit", "stability_z_width", "--resolution", 0.5, "--algorithms", "mean")
+        folder = made("far", *words)
+        rows = read_records(folder / "limit.csv")
+        (_, before), (field, over) = self.panel_of_classes(folder), self.fields(rows[0])
+        low = before.get_ylim()[0]
+        runs = read_records(folder / "limit_runs.csv")
+        for value, name in ((low / 10, "went_through"), (low / 1e4, "stuck")):
+            runs.append({**runs[0], over: rows[0][over], field: value, "class": name})
+        with (folder / "limit_runs.csv").open("w", newline="", encoding="utf-8") as out:
+            table = csv.DictWriter(out, list(runs[0]))
+            table.writeheader()
+            table.writerows(runs)
+        figure, after = self.panel_of_classes(folder)
+        self.assertAlmostEqual(after.get_ylim()[0], low / 10 / 1.5)
+        self.assertEqual(after.get_ylim()[1], before.get_ylim()[1])
+        self.assertIn("passed through", legend_labels(figure))
+        self.assertNotIn("stuck", legend_labels(figure))
+        plt.close("all")
+
+    def panel_of_classes(self, folder):
+        figure = draw_study(folder, SHEETS["double"])
+        (ax,) = [ax for ax in figure.axes if ax.get_title("left").startswith("class of the runs")]
+        return figure, ax
+
+    def fields(self, row):
+        """Returns (searched field, field of --over) of a row of limit.csv."""
+        names = list(row)
+        return row["field"], names[names.index("algorithm") - 1]
+
     def test_convergence(self):
         folder = made(
             "converge",
@@ -158,8 +191,11 @@ class Limits(Given):
             1e6 * (float(row["position_error_m"]) + float(row["reference_position_error_m"]))
             for row in hidden
         ]
-        (ax,) = draw_study(folder).axes
+        figure = draw_study(folder)
+        (ax,) = figure.axes
         hollow = [line for line in ax.lines if line.get_markerfacecolor() == "white"]
+        (mark,) = [one for one in figure.legends[0].get_lines() if one.get_mfc() == "white"]
+        self.assertIn(mark.get_marker(), {line.get_marker() for line in hollow})
         drawn = np.concatenate([line.get_ydata() for line in hollow])
         np.testing.assert_allclose(sorted(drawn), sorted(bounds))
         points = np.concatenate(
@@ -462,8 +498,17 @@ class Limits(Given):
             row["feasible"] = "false"
 
         rewrite(folder / "tune_trials.csv", refuse)
-        self.assertEqual(legend_labels(draw_study(folder)), ["mean", "not feasible"])
-        plt.close()
+        figure = draw_study(folder)
+        self.assertEqual(legend_labels(figure), ["mean", "not feasible"])
+        (hollow,) = [mark for mark in figure.legends[0].get_lines() if mark.get_mfc() == "white"]
+        drawn = {
+            (line.get_marker(), line.get_color())
+            for ax in figure.axes
+            for line in ax.lines
+            if line.get_mfc() == "white" and len(line.get_xdata())
+        }
+        self.assertEqual(drawn, {(hollow.get_marker(), hollow.get_color())})
+        plt.close(figure)
 
     def test_the_bounds_of_tune_are_drawn(self):
         bounds = ("--bound", "inside_max_m=4e-3", "--bound", "force_rms_above_30Hz_N=0.5:20")

@@ -3,13 +3,14 @@ import json
 import os
 import shutil
 import tempfile
+import warnings
 from pathlib import Path
 from unittest import mock
 
 import numpy as np
 
-from figure_checks import assert_fits
-from fixture import PROGRAM, SOURCE, hapbench
+from figure_checks import assert_fits, legend_labels
+from fixture import PROGRAM, SOURCE, hapbench, ran
 from pictures_test import Given, drawn, made, make_runs, plotted
 
 from hapbench.columns import header
@@ -17,7 +18,7 @@ from hapbench_pictures.given import given_runs, labels, named
 from hapbench_pictures.panels import looks
 from hapbench_pictures.quantities import SHORT
 from hapbench_pictures.run_plot import draw_runs, legend_of
-from hapbench_style import SHEETS, legend_columns, picture, plt
+from hapbench_style import SHEETS, fix_layout, legend_columns, picture, plt
 
 setUpModule = make_runs
 ALWAYS = (-np.inf, np.inf)
@@ -47,6 +48,24 @@ class Plot(Given):
                 f"picture in {self.root / name}\n",
             )
             self.assertTrue((self.root / name).read_bytes().startswith(start))
+
+    def test_files_of_the_working_folder_are_not_executed(self):
+        """Checks the commands in Python in a folder that has files with the names of modules."""
+        folder = Path(tempfile.mkdtemp(dir=self.root))
+        for name in ("signal", "random", "statistics", "numpy", "matplotlib", "hapbench"):
+            (folder / f"{name}.py").write_text("open('executed', 'w').close()\n1 / 0\n")
+        mesh = self.root / "mesh"
+        for words in (
+            ("plot", mesh, "--y", "force", "--out", "a.svg"),
+            ("report", self.root / "springs", "--out", "a.html"),
+            ("audit", mesh / "trajectory.csv"),
+            ("import", "stroke", "--json"),
+        ):
+            done = ran(PROGRAM, *words, cwd=folder)
+            self.assertNotIn("Traceback", done.stderr)
+            self.assertNotIn("internal error", done.stderr)
+            self.assertIn(done.returncode, (0, 3), done.stderr)
+            self.assertFalse((folder / "executed").exists(), words)
 
     def test_names_with_dollars_are_no_formulas(self):
         figure, ax = plt.subplots()
@@ -114,6 +133,33 @@ class Plot(Given):
         runs = self.variants(*jittered)
         self.assertEqual(len(legend_of(looks(runs, *named(runs)))), 3)
         self.assertEqual([legend_columns(4 * ["x" * n], 7.0) for n in (5, 30, 90)], [4, 2, 1])
+
+    def test_a_name_that_begins_with_an_underscore_is_in_the_legend(self):
+        runs = self.variants({}, {}, {})
+        for run, name in zip(runs, ("_old", "_new", "base")):
+            run.summary["name"] = name
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            figure = draw_runs(runs, [SHORT["force"]], False, ALWAYS)
+        self.assertEqual(legend_labels(figure), ["_old", "_new", "base"])
+        plt.close(figure)
+
+    def test_time_axes_below_each_other_are_aligned(self):
+        """Checks pictures with one and with two cross-sections of scenes: panels below each other with a time axis have
+        the same left and right end."""
+        quantities = [SHORT[name] for name in ("force", "depth", "ratio", "contacts")]
+        for names in (["mesh", "springs"], ["mesh"], ["springs"]):
+            runs = given_runs([self.root / name for name in names])
+            for end in (0.2, 0.25):
+                figure = draw_runs(runs, quantities, True, (0, end))
+                fix_layout(figure)
+                axes = [ax for ax in figure.axes if "tip" not in ax.get_xlabel()]
+                self.assertEqual(len(axes), 4)
+                # In a picture of one run of springs, the first quantity is beside the scene.
+                below = axes[1:] if names == ["springs"] else axes
+                ends = np.array([ax.get_position().intervalx for ax in below])
+                np.testing.assert_allclose(ends, ends[:1].repeat(len(ends), 0), atol=1e-9)
+                plt.close(figure)
 
     def test_new_draws_a_preview(self):
         bur = self.root / "bur.json"

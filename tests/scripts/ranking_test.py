@@ -14,13 +14,17 @@ from fixture import PROGRAM, SOURCE, assert_whole
 from pictures_test import Given, drawn, made, make_root, plotted
 
 from hapbench.columns import read_records
+from hapbench_pictures.__main__ import plot_line
 from hapbench_pictures.bands import band
 from hapbench_pictures.given import given_runs, labels
+from hapbench_pictures.legibility import with_legible_ticks
 from hapbench_pictures.many_runs import between
+from hapbench_pictures.over_axes import Axis, over_axes
+from hapbench_pictures.plot import figure_of
 from hapbench_pictures.ranking_plot import draw_panel, draw_ranking, legend_of
 from hapbench_pictures.ranking_values import FAILURES, Law, Scene, scenes_of
 from hapbench_report.markup import known_number
-from hapbench_style import SHEETS, plt
+from hapbench_style import SETTINGS, SHEETS, plt
 
 LAWS = "mean,shaped_stiffness,summation,least_squares"
 METRICS = "force_max_N,force_step_p99_N,inside_max_m"
@@ -158,6 +162,8 @@ class Rankings(WithRuns):
         marks = sorted(high * float(at[0]) for dot in curves_of(ax, "<") for at in dot)
         np.testing.assert_allclose(marks, [1.0, 1.1])
         plt.close(figure)
+        labels = [label for _, label in legend_of([scene], ["inside_max_m"])]
+        self.assertEqual(labels, ["bound: not larger than its error", "failed runs"])
 
     def test_means_without_common_repetitions_are_said_to_be_so(self):
         """Checks the repetitions of the means. Law "c" fails in each repetition, so it is ignored in both scenes."""
@@ -262,6 +268,45 @@ class Picture(WithRuns):
                 with self.subTest(sheet=name, metrics=metrics):
                     assert_fits(self, draw_ranking(runs, metrics, [self.many], sheet), sheet)
                     plt.close()
+
+    def test_numbers_with_many_digits_and_powers_of_ten_are_legible(self):
+        """Checks metrics that differ by little, and metrics near 1e-9. A law whose runs all failed has a long label,
+        which makes the panels narrow. The power of ten is in the title of the axis."""
+        for first, step, title in (
+            (2.655e-3, 1.7e-5, "[10⁻³ N]"),
+            (1.4e-9, 1e-10, "[10⁻⁹ N]"),
+            (123.4567, 1e-4, "[N]"),
+        ):
+            folder = self.copy("many") / "tap_wall"
+            for i, law in enumerate(LAWS.split(",")):
+                for file in (folder / law).glob("*/summary.json"):
+                    summary = json.loads(file.read_text()) | {"tolerances": {}}
+                    if law == "summation":
+                        is_odd = file.parent.name in ("seed_1", "seed_3")
+                        summary["outcome"] = "went_through" if is_odd else "diverges"
+                    for name in METRICS.split(","):
+                        summary["metrics"][name] = first + i * step
+                    file.write_text(json.dumps(summary))
+            for name, sheet in SHEETS.items():
+                with self.subTest(sheet=name, first=first):
+                    words = [str(folder), "--metric", METRICS, "--width", name]
+                    figure = figure_of(plot_line().parse(words))
+                    assert_fits(self, figure, sheet)
+                    for ax in figure.axes[:2]:
+                        self.assertIn(title, ax.get_xlabel())
+                        (low, high), ticks = ax.get_xlim(), ax.get_xticks()
+                        self.assertGreater(len([at for at in ticks if low <= at <= high]), 1)
+                    plt.close(figure)
+
+    def test_ticks_at_integers_are_legible(self):
+        values = np.arange(1000.0, 13000.0, 1000.0)
+        with plt.rc_context(SETTINGS):
+            figure, axes = SHEETS["double"].panels(1, 3, 2)
+            for ax in axes.flat:
+                curve = [(None, values, values, {})]
+                over_axes(ax, Axis.of("mass [g]", values), Axis.of("force [N]", values), curve)
+        assert_fits(self, with_legible_ticks(figure), SHEETS["double"])
+        plt.close(figure)
 
 
 class Page(WithRuns):

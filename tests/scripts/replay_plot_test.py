@@ -11,7 +11,7 @@ from pictures_test import Given, make_root, plotted
 
 from hapbench_pictures.log_faults import COLUMNS
 from hapbench_pictures.panels import largest_shown
-from hapbench_pictures.replay_plot import Log, draw_logs
+from hapbench_pictures.replay_plot import Log, draw_logs, share_period
 from hapbench_style import SHEETS, plt
 
 setUpModule = make_root
@@ -101,6 +101,69 @@ class Replays(Given):
             is_accepted = not text or "nan" in text or "time_ns" in text
             replayed = ran(PROGRAM, "run", "drag_molar", "--replay", file, "--out", self.root / "r")
             self.assertEqual(replayed.returncode == 2, not is_accepted, replayed.stderr)
+
+    def test_a_wrong_number_of_fields_is_refused(self):
+        """Checks a decimal comma, a field too many, a field too few behind the drawn columns, and two rows in one line.
+        With these rows, columns would contain numbers of other columns. `run --replay` rejects the same logs.
+        """
+        whole = LOG.read_text(encoding="utf-8").splitlines()
+        file, row = self.root / "fields.csv", whole[19]
+        number = next(cell for cell in row.split(",") if "." in cell)
+        for wrong, count in (
+            (row.replace(number, number.replace(".", ",")), 42),
+            (f"{row},0", 42),
+            (row.rpartition(",")[0], 40),
+            (f"{row},{whole[20]}", 82),
+        ):
+            # An empty line is no fault. It counts as a line.
+            file.write_text("\n".join([*whole[:9], "", *whole[9:19], wrong, *whole[20:]]) + "\n")
+            error = plotted(file, expected=2)
+            self.assertIn(f"{file}: line 21: got {count} fields; allowed: 41\n", error)
+            replayed = ran(PROGRAM, "run", "drag_molar", "--replay", file, "--out", self.root / "r")
+            self.assertEqual(replayed.returncode, 2)
+            self.assertIn("line 21", replayed.stderr)
+
+    def test_a_replay_with_another_time_step_has_the_late_calls_of_its_log(self):
+        """The first line of replay.csv has the time step of the scenario that rendered the log again. The period of the
+        loop is in the log, and else is the median of the recorded intervals."""
+        folder = self.root / "other_step"
+        folder.mkdir(exist_ok=True)
+        about, names, *rows = LOG.read_text(encoding="utf-8").splitlines()
+        period = re.search(r'"period_s":([\d.e-]+)', about)[1]
+        late = [row.split(",") for row in rows]
+        for cells in late[20:]:
+            cells[1] = str(int(cells[1]) + int(1e9 * float(period)))  # call 20 is late by a period
+        log = self.root / "late.csv"
+        for file, step in ((log, period), (folder / "replay.csv", "1e-6")):
+            first = about.replace(f'"period_s":{period}', f'"period_s":{step}')
+            file.write_text("\n".join([first, names, *map(",".join, late)]) + "\n")
+        expected = int(Log(log).late.sum())
+        self.assertTrue(Log(log).late[20])
+        self.assertLess(expected, 5)
+        replay = Log(folder / "replay.csv")
+        self.assertAlmostEqual(replay.period / float(period), 1, delta=0.05)
+        np.testing.assert_array_equal(replay.late, Log(log).late)
+        for files in ([folder / "replay.csv"], [folder / "replay.csv", log], [log]):
+            figure = draw_logs(files, SHEETS["single"])
+            self.assertIn(f"late or missing calls: {expected}", legend_labels(figure))
+            plt.close(figure)
+        # If all calls of the loop are late by its own period, a replay of the log has the same late calls.
+        text = log.read_text().replace(f'"period_s":{period}', f'"period_s":{float(period) / 2}')
+        log.write_text(text)
+        replay, recorded = Log(folder / "replay.csv"), Log(log)
+        share_period([replay, recorded])
+        self.assertGreater(recorded.late.sum(), len(rows) / 2)
+        np.testing.assert_array_equal(replay.late, recorded.late)
+
+    def test_a_log_whose_name_begins_with_an_underscore_is_in_the_legend(self):
+        folder = self.root / "underscore"
+        folder.mkdir()
+        text = re.sub('"scenario":"[^"]*"', '"scenario":"_mine"', LOG.read_text(encoding="utf-8"))
+        (folder / "replay.csv").write_text(text)
+        (folder / "loop.csv").write_text(text)
+        figure = draw_logs([folder / "replay.csv", folder / "loop.csv"], SHEETS["single"])
+        self.assertLessEqual({"_mine, replay", "_mine, loop"}, set(legend_labels(figure)))
+        plt.close(figure)
 
     def test_what_is_refused(self):
         folder = self.other()

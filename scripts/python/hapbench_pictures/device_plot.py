@@ -10,6 +10,7 @@ from hapbench_looks import law_name, series
 from hapbench_style import BLACK, GREY, PUBLISHED_LINE, legend_above, legend_height
 
 from .given import axis
+from .legibility import legend_of_names_above
 from .over_axes import Axis, over_axes
 
 # Plot styles of the limits. Variants of a preset, such as "touch[soft]", have the colour of the preset and thinner
@@ -165,7 +166,7 @@ def draw_devices_over(found, sheet):
         ax.set_visible(False)
     for ax in axes[:, 1:].flat:
         ax.set_ylabel("")
-    legend_above(figure, *zip(*entries), columns=None)
+    legend_of_names_above(figure, *zip(*entries))
     return figure
 
 

@@ -9,6 +9,7 @@ from hapbench_report.markup import text
 from hapbench_style import SETTINGS, picture, plt
 
 from .given import axis
+from .legibility import with_legible_ticks
 from .over_axes import Axis, look_of, over_axes, pareto
 from .panels import DARK, LIGHT, RunLook, settings
 
@@ -40,7 +41,7 @@ def on_both_grounds(draw, light, dark, title, words):
     images = []
     for paper, shown, name in ((LIGHT, light, "only-light"), (DARK, dark, "only-dark")):
         with plt.rc_context({**SETTINGS, **settings(paper)}):
-            figure = draw(paper, shown)
+            figure = with_legible_ticks(draw(paper, shown))
             data = base64.b64encode(picture(figure, "svg")).decode()
             plt.close(figure)
         images.append(

@@ -113,9 +113,8 @@ def compared(folder):
     runs, tables = load_runs(folder), [folder / COMPARISON]
     if not tables[0].is_file():
         tables = sorted(folder.glob(f"*/{COMPARISON}"))
-        return runs, [
-            text for table in tables for text in lacking(table, read_records(table), runs)
-        ]
+        texts = [text for table in tables for text in lacking(table, read_records(table), runs)]
+        return runs, texts + unfinished(runs)
     rows = read_records(tables[0])
     if not rows:
         raise InputError(f"{tables[0]}: line 2: missing; allowed: a row for each run")
@@ -144,6 +143,34 @@ def lacking(table, rows, runs):
                 f"{table}: no row of {law}; the runs of {law} in this folder are not drawn"
             )
     return found
+
+
+def unfinished(runs):
+    """Returns a text for each comparison and each sweep that was stopped or still runs. In a comparison, the runs have
+    the folders LAW or LAW/seed_N. A sweep with --keep-runs has them in the folder "runs"."""
+    found = {}
+    for run in runs:
+        law = run.folder.parent if SEED_FOLDER.fullmatch(run.folder.name) else run.folder
+        is_compared = law.name == run.algorithm and law.parent not in found
+        if is_compared and not (law.parent / COMPARISON).is_file():
+            empty = ", ".join(without_summary(law.parent))
+            found[law.parent] = (
+                f'{law.parent}: has no {COMPARISON}, which "hapbench compare" writes last; if compare wrote this '
+                "folder, it was stopped or has not ended, and laws may be missing"
+                + (f": no {SUMMARY} in {empty}" if empty else "")
+            )
+        part = run.folder.parent.parent / f"{SWEEP}.part"
+        if run.folder.parent.name == "runs" and part.is_file():
+            why = "the sweep was stopped or has not ended, and runs are missing"
+            found[part] = f"{part}: {why}; --resume continues it"
+    return list(found.values())
+
+
+def without_summary(folder):
+    """Returns the names of the folders of laws, and of their repetitions, that have no summary of a run."""
+    laws = [path for path in sorted(folder.iterdir()) if path.is_dir()]
+    seeds = [path for law in laws for path in sorted(law.glob("seed_*")) if path.is_dir()]
+    return [str(path.relative_to(folder)) for path in laws + seeds if not any(path.rglob(SUMMARY))]
 
 
 def labels(runs):

@@ -43,6 +43,9 @@ KNOWN_LOOKS = tuple(
 )
 THEORY, FOUND = {"color": PETROL, "lw": 2.6}, {"color": BLACK, "lw": 1.1, "ls": (0, (2, 2))}
 HOLLOW = {"ls": "none", "mfc": "white"}
+# Range of the panels of classes: factor between the limits and the ends of the panel, and factor between a run beyond
+# this range that must be visible and the end of the panel.
+AROUND_LIMITS, EDGE = 20, 1.5
 QUOTED = {"color": BLACK, "ls": "none", "marker": "o", "ms": 4}
 
 
@@ -141,7 +144,7 @@ class Limits:
         runs, rows = (
             [row for row in of if row["algorithm"] == algorithm] for of in (self.runs, self.rows)
         )
-        x, y, limits = self.along(rows), numbers(runs, self.field), numbers(rows, "limit")
+        x, y, quoted = self.along(rows), numbers(runs, self.field), numbers(rows, "quoted_limit")
         marks = [
             (
                 name,
@@ -152,10 +155,32 @@ class Limits:
         ]
         lines = [(label, x, values, style) for label, values, style in self.lines(rows)]
         over_axes(ax, self.axis(), Axis(axis(self.field), y, log=True), lines, marks)
-        ax.plot(x, numbers(rows, "quoted_limit"), **QUOTED)
+        ax.plot(x, quoted, **QUOTED)
+        limits = numbers(rows, "limit")
         limits = limits[np.isfinite(limits)]
         if limits.size:
-            ax.set_ylim(limits.min() / 20, limits.max() * 20)
+            low, high = limits.min() / AROUND_LIMITS, limits.max() * AROUND_LIMITS
+            further = changes_beyond(low, high, self.along(runs), y, [row["class"] for row in runs])
+            further += list(quoted[np.isfinite(quoted)])
+            ax.set_ylim(
+                min([low, *(value / EDGE for value in further)]),
+                max([high, *(value * EDGE for value in further)]),
+            )
+
+
+def changes_beyond(low, high, x, y, classes):
+    """Returns the values of the searched field at which, for a value of --over, the class of the runs changes below
+    `low` or above `high`: the value of the nearest run there whose class differs from the class of the outermost run
+    between `low` and `high`. `x`, `y`, `classes`: value of --over, value of the searched field, and class of each run.
+    """
+    found = []
+    for at in np.unique(x):
+        runs = sorted((value, name) for value, name, of in zip(y, classes, x) if of == at)
+        inside = [name for value, name in runs if low <= value <= high]
+        if inside:
+            found += [value for value, name in runs if value < low and name != inside[0]][-1:]
+            found += [value for value, name in runs if value > high and name != inside[-1]][:1]
+    return found
 
 
 def separated(rows):
@@ -231,8 +256,7 @@ def draw_over(found, sheet=PAGE):
     the runs. Algorithms with the same limits share a panel of classes."""
     groups, has_linear = found.groups(), np.isfinite(linear(found.rows)).any()
     rows, columns = sheet.grid(1 + has_linear + len(groups))
-    entries = class_legend(found)
-    labels = [label for _, label in entries]
+    labels = [label for _, label in class_legend(found)]
     height = sheet.panel(2.5) * rows + 0.3 + legend_height(labels, sheet.width)
     figure, axes = sheet.panels(rows, columns, height)
     limit, *others = axes.flat
@@ -247,8 +271,21 @@ def draw_over(found, sheet=PAGE):
         ax.set_title("\n".join(wrap(f"class of the runs: {names}", 34)), fontsize=7.5)
     for ax in others[len(groups) :]:
         ax.set_visible(False)
+    classes = {look_of_class(row["class"])[0] for row in found.runs}
+    hidden = classes - shown_classes(others[: len(groups)])
+    entries = [entry for entry in class_legend(found) if entry[1] not in hidden]
     legend_above(figure, *zip(*entries), columns=None)
     return figure
+
+
+def shown_classes(panels):
+    """Returns the titles of the classes of runs that have a mark within the limits of one of these panels."""
+    return {
+        marks.get_label()
+        for ax in panels
+        for marks in ax.collections
+        if any(ax.get_ylim()[0] <= y <= ax.get_ylim()[1] for _, y in marks.get_offsets())
+    }
 
 
 def curves(found):

@@ -9,6 +9,7 @@ from hapbench_command import print_warning, write
 from hapbench_style import DPI, SHEETS, picture
 
 from .given import common_folder, given_alone, given_runs, given_sweep
+from .legibility import with_legible_ticks
 from .quantities import chosen
 from .ranking_plot import draw_ranking, is_ranking
 from .replay_plot import draw_logs, given_logs
@@ -42,6 +43,11 @@ def dpi_of(options, file):
 
 def figure_of(options):
     """Returns the figure for the parsed options of `hapbench plot`."""
+    return with_legible_ticks(drawn(options))
+
+
+def drawn(options):
+    """Returns the figure before its tick labels are adjusted."""
     window = window_of(options)  # checked first, because --to FILE is a likely mistake
     logs = given_logs(options.runs)
     if logs:

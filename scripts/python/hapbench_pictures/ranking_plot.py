@@ -12,6 +12,7 @@ from hapbench_looks import look, look_of_class
 from hapbench_report.markup import column, rounded_up
 from hapbench_style import (
     BLACK,
+    LETTER,
     RED,
     SETTINGS,
     SHEET,
@@ -37,6 +38,7 @@ HOLLOW = {"mfc": "none", "mew": 0.6}
 # [inch].
 ROW, FAILED_ROW, MIN_ROW = 0.2, 0.3, 0.14
 AROUND = 0.75  # height of a panel without its rows [inch]
+MIN_AXIS = 0.9  # smallest width of the axis of a panel beside other panels [inch]
 TOLERANCE = "#D9D9D9"
 BOUND = {"marker": "<", "ms": 5, "mfc": "none", "mew": 1.1, "ls": "none", "zorder": 3}
 BOUND_POSITION = 0.93  # position of a bound beyond the axis, as a fraction of the panel's width
@@ -88,6 +90,9 @@ def draw_ranking(runs, names=(), words=(), sheet=SHEET):
 def ranking_figure(scenes, metrics, sheet):
     panels = [(scene, metric) for scene in scenes for metric in metrics]
     columns = len(metrics) if len(metrics) <= sheet.columns else sheet.grid(len(panels))[1]
+    of_labels = LETTER * longest_label(scenes, bool(sheet.height))
+    while columns > 1 and sheet.width / columns - of_labels < MIN_AXIS:
+        columns -= 1
     rows = -(-len(panels) // columns)
     laws = max(len(scene.laws) for scene in scenes)
     fails = any(law.failures for scene in scenes for law in scene.laws)
@@ -106,6 +111,13 @@ def ranking_figure(scenes, metrics, sheet):
         ax.set_visible(False)
     legend_above(figure, *zip(*entries), columns=None)
     return figure
+
+
+def longest_label(scenes, is_compact):
+    """Returns the number of letters of the longest line in the labels of the rows, which label_rows() writes."""
+    laws = [law for scene in scenes for law in scene.laws]
+    names = [len(f"1  {law.label}") for law in laws]
+    return max(names + [len(failures_text(law)) for law in laws if law.failures and not is_compact])
 
 
 def draw_panel(ax, scene, metric, is_compact=False):
@@ -223,23 +235,25 @@ def legend_of(scenes, metrics):
     of = [
         entry for scene in scenes for metric in metrics for entry in scene.entries(metric).values()
     ]
+    drawn = [one for one in of if one.mean is not None and not one.is_unknown]
     laws = [law for scene in scenes for law in scene.laws]
     differ = any(scene.lacks_common_seeds for scene in scenes)
     mean = "mean over the law's runs that did not fail" if differ else "mean"
-    entries = [(Line2D([], [], color=BLACK, **MEAN), mean)]
+    of_mean = (Line2D([], [], color=BLACK, **MEAN), mean)
+    entries = [of_mean] if drawn else []
     if any(one.is_unknown for one in of):
         entries.append((Line2D([], [], color=BLACK, **BOUND), "bound: not larger than its error"))
-    if any(one.spread is not None for one in of):
+    if any(one.spread is not None for one in drawn):
         entries.append(
             (Line2D([], [], color=BLACK, lw=1.2, marker="|", ms=6), "standard deviation over seeds")
         )
-    if has_repetitions(scenes):
+    if drawn and has_repetitions(scenes):
         entries.append((Line2D([], [], color=BLACK, **SINGLE), "single run"))
-    if any(one.others for one in of):
+    if any(one.others for one in drawn):
         marker = Line2D([], [], color=BLACK, **SINGLE | HOLLOW)
         entries.append((marker, "run not in the mean: another law failed"))
-    if any(one.tolerance for one in of if one.mean is not None):
+    if any(one.tolerance for one in drawn):
         entries.append((Patch(color=TOLERANCE), "tolerance of the mean"))
     if any(law.failures for law in laws):
         entries.append((Line2D([], [], **FAILED), "failed runs"))
-    return entries
+    return entries or [of_mean]  # no entry: there is no mark, and a legend needs an entry

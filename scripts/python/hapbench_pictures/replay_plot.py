@@ -13,9 +13,10 @@ from hapbench.errors import InputError
 from hapbench.results import number_or_none
 from hapbench_command import print_warning
 from hapbench_looks import SERIES
-from hapbench_style import GREY, SETTINGS, curve, legend_above, legend_height, plt
+from hapbench_style import GREY, SETTINGS, curve, legend_height, plt
 
 from .given import LOG_HEADER
+from .legibility import legend_of_names_above
 from .log_faults import log_faults
 from .panels import SPANS
 
@@ -60,8 +61,8 @@ def log_of(path):
 
 
 class Log:
-    """A log of a haptic loop: at each call, the time since the first call [s], the quantity that the loop sends to the
-    device, and True if the call is late or the previous call is missing. `faults`: texts about faults of the file.
+    """A log of a haptic loop: number of each call, its time [ns], its time since the first call [s], and the quantity
+    that the loop sends to the device. `period`: period of the loop [s]. `faults`: texts about faults of the file.
     """
 
     def __init__(self, file):
@@ -71,10 +72,21 @@ class Log:
         if not len(rows):
             raise InputError(f"{file}: holds no call")
         self.name = f"{about['scenario']}, {'replay' if file.name == REPLAY else file.stem}"
-        self.call, self.time = rows[:, 0].astype(int), 1e-9 * (rows[:, 1] - rows[0, 1])
+        self.call, self.time_ns = rows[:, 0].astype(int), rows[:, 1]
+        self.time = 1e-9 * (self.time_ns - self.time_ns[0])
         self.faults = log_faults(file, about, names, text, self.call, self.time)
         self.applied, self.period = factor * rows[:, 2:], about["period_s"]
-        self.late = np.append(
+        self.is_replay = file.name == REPLAY
+        steps = np.diff(self.time)[np.diff(self.call) == 1]
+        if self.is_replay and steps.size:
+            # The first line of a replay has the time step of the scenario that rendered the log again, which may differ
+            # from the period of the loop.
+            self.period = float(np.median(steps))
+
+    @property
+    def late(self):
+        """Returns an array that is True for each call that is late or whose previous call is missing."""
+        return np.append(
             False, (np.diff(self.time) > LATE * self.period) | (np.diff(self.call) > 1)
         )
 
@@ -99,26 +111,29 @@ def log_text(file):
 
 
 def log_numbers(file, names, rows, wanted):
-    """Returns the columns `wanted` of a log, one row for each line. Raises InputError for a missing column and for a
-    field that is not a finite number."""
+    """Returns the columns `wanted` of a log, one row for each line that is not empty. Raises InputError for a missing
+    column, for a line with a wrong number of fields, and for a field that is not a finite number.
+    """
     absent = [name for name in wanted if name not in names]
     if absent:
         raise InputError(f"{file}: line 2: no column {absent[0]}; allowed: a log of a loop")
     if not rows.strip():
         raise InputError(f"{file}: holds no call")
     columns = [names.index(name) for name in wanted]
+    lines = [(line, row) for line, row in enumerate(rows.splitlines(), 3) if row.strip()]
+    for line, row in lines:
+        # With a field too many, such as after a decimal comma, columns would contain numbers of other columns.
+        if row.count(b",") != len(names) - 1:
+            got = row.count(b",") + 1
+            raise InputError(f"{file}: line {line}: got {got} fields; allowed: {len(names)}")
     with suppress(ValueError):
         found = np.loadtxt(
             BytesIO(rows), delimiter=",", usecols=columns, ndmin=2, comments=None, encoding="utf-8"
         )
         if np.isfinite(found).all():
             return found
-    for line, row in enumerate(rows.splitlines(), 3):
+    for line, row in lines:
         fields = text_of(row, file, line).split(",")
-        if len(fields) != len(names):
-            raise InputError(
-                f"{file}: line {line}: got {len(fields)} fields; allowed: {len(names)}"
-            )
         for name, column in zip(wanted, columns):
             if not is_finite_number(fields[column]):
                 got = fields[column][:40] or "an empty field"
@@ -132,11 +147,21 @@ def draw_logs(files, sheet):
     """Returns the figure of one or two logs: the quantity that the loop sends to the device over time. For two logs,
     also draws their difference at each call that both logs contain."""
     logs = [read_log(file) for file in files]
+    share_period(logs)
     for text in (text for log in logs for text in log.faults):
         print_warning(text)
     if len({log.title for log in logs}) > 1:
         raise InputError(f"{files[0]}, {files[1]}: one log has forces, the other one positions")
     return figure_of(logs, sheet)
+
+
+def share_period(logs):
+    """Gives a replay the period of the recorded log, if the other log is the log that was replayed."""
+    for replay, recorded in (logs, logs[::-1]) if len(logs) == 2 else ():
+        _, first, second = np.intersect1d(replay.call, recorded.call, return_indices=True)
+        has_equal_times = np.array_equal(replay.time_ns[first], recorded.time_ns[second])
+        if replay.is_replay and not recorded.is_replay and has_equal_times:
+            replay.period = recorded.period
 
 
 def read_log(file):
@@ -154,27 +179,25 @@ def figure_of(logs, sheet):
         height = 0.4 + sheet.panel(2.0) * count + legend_height([*names, ""], sheet.width)
         figure, axes = sheet.panels(count, 1, height, sharex=True)
         above = axes[0, 0]
+        entries = []
         for log, series in zip(logs, SERIES):
             shown = log.applied if is_force else log.applied - log.applied[0]
             norm = np.linalg.norm(shown, axis=1)
-            above.plot(
-                *curve(log.time, norm, norm, SPANS),
-                color=series.colour,
-                ls=series.line,
-                label=log.name,
+            (line,) = above.plot(
+                *curve(log.time, norm, norm, SPANS), color=series.colour, ls=series.line
             )
+            entries.append((line, log.name))
         above.set_ylabel(f"|{title.replace(' [', '| [')}")
         late = np.unique(np.concatenate([log.time[log.late] for log in logs]))
-        for ax in axes.flat:
-            if late.size:
-                label = f"late or missing calls: {late.size}" if ax is above else None
-                mark = {"marker": "v", "ms": 4, "ls": "none", "color": GREY, "clip_on": False}
-                along = ax.get_xaxis_transform()
-                ax.plot(late, np.ones(late.size), label=label, transform=along, **mark)
+        mark = {"marker": "v", "ms": 4, "ls": "none", "color": GREY, "clip_on": False}
+        for ax in axes.flat if late.size else ():
+            (marks,) = ax.plot(late, np.ones(late.size), transform=ax.get_xaxis_transform(), **mark)
+            if ax is above:
+                entries.append((marks, f"late or missing calls: {late.size}"))
         if count == 2:
             draw_difference(axes[1, 0], logs)
         axes[-1, 0].set_xlabel("time [s]")
-        legend_above(figure, *above.get_legend_handles_labels(), columns=None)
+        legend_of_names_above(figure, *zip(*entries))
     return figure
 
 

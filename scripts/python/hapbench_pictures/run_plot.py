@@ -1,6 +1,7 @@
 """Picture of runs: cross-sections of the scenes, and quantities over time."""
 import math
 from collections import Counter
+from functools import partial
 from textwrap import fill
 
 import numpy as np
@@ -11,6 +12,7 @@ from hapbench_report.replay import surface_of
 from hapbench_style import LETTER, LINE, SETTINGS, SHEET, legend_columns, plt
 
 from .given import named
+from .legibility import legend_of_names
 from .panels import (
     AXIS_COLUMNS,
     PATH_COLUMNS,
@@ -100,15 +102,15 @@ def axes_of(figure, rows):
         grid = figure.add_gridspec(len(rows), columns, height_ratios=heights, width_ratios=ratios)
         cells = [grid[i, j] for i, (_, _, of) in enumerate(rows) for j in range(len(of))]
     else:
-        grid = figure.add_gridspec(len(rows), 1, height_ratios=heights)
-        parts = [
-            (
-                grid[i].subgridspec(1, columns, width_ratios=(*of, *(1,) * (columns - len(of)))),
-                len(of),
-            )
-            for i, (_, columns, of) in enumerate(rows)
-        ]
-        cells = [part[0, j] for part, count in parts for j in range(count)]
+        grid, cells = figure.add_gridspec(len(rows), 1, height_ratios=heights), []
+        for i, (_, columns, of) in enumerate(rows):
+            # A panel that fills its row is not in a grid of its own, so that such panels are aligned.
+            if columns == 1:
+                cells.append(grid[i])
+                continue
+            widths = (*of, *(1,) * (columns - len(of)))
+            part = grid[i].subgridspec(1, columns, width_ratios=widths)
+            cells += [part[0, j] for j in range(len(of))]
     return [figure.add_subplot(cell) for cell in cells]
 
 
@@ -234,4 +236,5 @@ def write_title(top, head, runs, entries, columns, sheet):
     top.text(0.01, 1 - 0.06 / head, name, ha="left", va="top", fontsize=9, weight="bold")
     if len(runs) > 1:
         handles = [plt.Line2D([], [], color=one.colour, ls=one.line) for one in entries.values()]
-        top.legend(handles, list(entries), loc="lower left", ncol=columns)
+        legend = partial(top.legend, loc="lower left", ncol=columns)
+        legend_of_names(legend, handles, list(entries))

@@ -134,9 +134,12 @@ def legend_of(drawn, bounds):
         for of in drawn
         if len(of.values)
     ]
-    if any((~of.feasible).any() for of in drawn):
-        hollow = Line2D([], [], ls="none", marker="s", color=GREY, mfc="white")
-        entries.append((hollow, "not feasible"))
+    hollow = [of.name for of in drawn if not of.feasible.all()]
+    if hollow:
+        # The mark of the law if it is the only one, otherwise the mark of the first law in grey.
+        more = {"color": GREY} if len(hollow) > 1 else {}
+        style = look_of(hollow[0], ls="none", ms=4, mfc="white", **more)
+        entries.append((Line2D([], [], **style), "not feasible"))
     if any(of.chosen.any() for of in drawn):
         entries.append((Line2D([], [], **{**CHOICE, "ms": 8}), "choice of each law"))
     if any(bounds):

@@ -140,7 +140,8 @@ def draw_work_precision(files, sheet=SHEET):
         ax.set_ylabel("")
     for ax in list(axes.flat)[len(problems) :]:
         ax.set_visible(False)
-    unresolved = (np.isfinite(error) & (error > 0) & ~is_true(errors, "resolved")).any()
+    is_bound = np.isfinite(error) & (error > 0) & ~is_true(errors, "resolved")
+    unresolved = [row["integrator"] for row, is_one in zip(errors, is_bound) if is_one]
     marks, names = legend_of(
         looks, requested, is_knee.any(), unresolved, cost.max() > 0.1 * REAL_TIME
     )
@@ -164,9 +165,9 @@ def leave_room(ax):
     ax.set_xlim(low * (low / high) ** ROOM[0], high)
 
 
-def legend_of(looks, requested, has_knee, has_unresolved, has_real_time):
+def legend_of(looks, requested, has_knee, unresolved, has_real_time):
     """Returns (handles, labels) of the elements in the picture. `looks`: look of each integrator. `requested`:
-    requested error [µm]."""
+    requested error [µm]. `unresolved`: integrators of the unresolved errors."""
     integrators = list(looks)
     marks = [
         Line2D([], [], marker=looks[name].marker, color=looks[name].colour, ls=looks[name].line)
@@ -178,8 +179,9 @@ def legend_of(looks, requested, has_knee, has_unresolved, has_real_time):
     if has_knee:
         marks.append(Line2D([], [], **KNEE))
         names.append("knee")
-    if has_unresolved:
-        marks.append(Line2D([], [], marker="s", color=GREY, mfc="white", ls="none"))
+    if unresolved:
+        marker = looks[unresolved[0]].marker
+        marks.append(Line2D([], [], marker=marker, color=GREY, mfc="white", ls="none"))
         names.append("bound, not resolved by the reference")
     marks.append(Line2D([], [], **REQUESTED))
     names.append(f"error that is asked for: {requested:g} µm")
