@@ -234,7 +234,85 @@ class Contact(unittest.TestCase):
         self.assertEqual(len(json.loads(written.read_text())["contacts"]), 1)
 
 
+class Tables(unittest.TestCase):
+    """Tables of hapbench.audit(), whose columns are arrays of any type."""
+
+    TABLE = {"t": TIME, "position": DEPTH, "force": NORMAL}
+
+    def test_arrays_of_other_types_are_read(self):
+        expected = audit(self.TABLE | {"contacts": (NORMAL > 0.0).astype(int)})
+        start = np.datetime64("2026-11-30T12:00:00")
+        times = start + np.rint(1e9 * TIME).astype("timedelta64[ns]")
+        for changed in (
+            {"contacts": NORMAL > 0.0},
+            {"position": DEPTH.astype(object)},
+            {"force": [repr(float(value)) for value in NORMAL]},
+            {"t": times},
+        ):
+            found = audit(self.TABLE | {"contacts": NORMAL > 0.0} | changed)
+            self.assertEqual(found["contact_rule"], expected["contact_rule"])
+            self.assertEqual(found["columns"], expected["columns"])
+            for name in ("contacts", "landings", "force_max_N"):
+                self.assertEqual(found["metrics"][name], expected["metrics"][name], changed.keys())
+        vectors = {"position": np.column_stack([ZERO, ZERO, DEPTH])}
+        vectors["load"] = np.column_stack([ZERO, ZERO, NORMAL])
+        found = audit({"t": TIME} | vectors, columns={"force": "load"})
+        self.assertEqual(names_of(found, "force"), ["load_x", "load_y", "load_z"])
+        self.assertEqual(found["energy"]["work_J"], audit(self.TABLE)["energy"]["work_J"])
+
+    def test_a_column_that_cannot_be_read_is_named(self):
+        four = np.zeros((len(TIME), 4))
+        for name, values, problem in (
+            ("position", four, r"column position: got shape \(1200, 4\); allowed: one column"),
+            ("force", ["a"] * len(TIME), "column force: got no numbers; allowed: numbers"),
+            ("t", TIME + 0j, "column t: got complex128 values; allowed: numbers"),
+        ):
+            with self.assertRaisesRegex(InputError, problem):
+                audit(self.TABLE | {name: values})
+        found = audit(self.TABLE | {"velocity": four, "label": ["a"] * len(TIME)})
+        self.assertEqual(found["columns_not_read"], ["velocity", "label"])
+        (warning,) = found["warnings"]
+        self.assertIn("column velocity: got shape (1200, 4)", warning)
+
+    def test_masked_and_missing_values_are_no_numbers(self):
+        hidden = np.arange(len(TIME)) % 100 == 7
+        masked = np.ma.masked_array(np.where(hidden, 9.0, NORMAL), mask=hidden)
+        absent = NORMAL.astype(object)
+        absent[hidden] = None
+        for force in (masked, absent):
+            with self.assertRaisesRegex(
+                InputError, "row 8: .*force: got nan; .*leave such rows out"
+            ):
+                audit(self.TABLE | {"force": force})
+            found = audit(self.TABLE | {"measured": force})
+            self.assertIn("measured: row 8: got nan in column 4", " ".join(found["warnings"]))
+
+
 class Values(unittest.TestCase):
+    def test_options_without_effect_and_shared_columns_are_refused(self):
+        file = scratch_folder(self) / "log.csv"
+        file.write_text(text_of(log("t,x,f,v", DEPTH, NORMAL, ZERO)))
+        for option, word, problem in (
+            ("--set", "held_rows=thin", "--set held_rows: has no effect"),
+            ("--set", "tip_axis=1,0,0", "--set tip_axis: has no effect"),
+            ("--columns", "measured=f", "columns: measured: column 3 f is also named for force"),
+            ("--columns", "velocity=2", "velocity: column 2 x is also named for position"),
+            ("--columns", "velocity=v,measured=v", "column 4 v is also named for velocity"),
+        ):
+            words = ("audit", file, option, word, "--out", file.parent / "out")
+            self.assertIn(problem, hapbench(*words, expected=2))
+        # A column that the user names for another quantity is not read by its usual name.
+        found = audit(log("t,v,f", DEPTH, NORMAL), columns={"position": "v"})
+        self.assertNotIn("velocity", found["columns"])
+
+    def test_the_number_of_columns_is_that_of_the_file(self):
+        file = scratch_folder(self) / "log.csv"
+        text = text_of(log("t,x,f", DEPTH, NORMAL))
+        for line, count in (("end 1", 2), ("1,2,3,0,0,0,0", 7)):
+            file.write_text(text + line.replace(" ", ",") + "\n")
+            error = hapbench("audit", file, "--out", file.parent / "out", expected=2)
+            self.assertIn(f"got {count} values; allowed: 3", error)
+
     def test_impossible_values_are_refused(self):
         file = scratch_folder(self) / "log.csv"
         file.write_text(text_of(log("t,x,f", DEPTH, NORMAL)))

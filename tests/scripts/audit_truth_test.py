@@ -1,6 +1,7 @@
-"""Tests that hapbench.audit() reports nothing false. The logs have jitter, noise, short slides, rests, rigid contacts,
-and forces that are means over the points in contact."""
+"""Tests that hapbench.audit() reports nothing false. The logs have jitter, missing rows, faults of the tracking, noise,
+short slides, rests, rigid contacts, curved surfaces, and forces that are means over the points in contact."""
 import os
+import re
 import unittest
 from unittest import mock
 
@@ -9,7 +10,7 @@ from fixture import PROGRAM
 
 os.environ.setdefault("HAPBENCH_PROGRAM", str(PROGRAM))
 
-from hapbench import audit  # noqa: E402  (finds the program in the environment)
+from hapbench import InputError, audit  # noqa: E402  (finds the program in the environment)
 from hapbench_audit import text  # noqa: E402
 
 T = 1e-3  # interval of the rows [s]
@@ -49,6 +50,22 @@ def log_of(t, z, force, **more):
     return {"t": t, "position": z, "force": force} | more
 
 
+def without(log, lost, seed=3):
+    """Returns the log without a random fraction `lost` of its rows. The first and the last row are kept."""
+    keep = np.random.default_rng(seed).random(len(log["t"])) >= lost
+    keep[[0, -1]] = True
+    return {name: values[keep] for name, values in log.items()}
+
+
+def taps(t):
+    """Returns positions [m] of a tool that taps the surface z < 0 at 6.5 Hz."""
+    return -3.5e-4 + 1.2e-3 * np.sin(13.0 * np.pi * t + 0.3 * np.sin(1.8 * np.pi * t))
+
+
+def warned(found):
+    return " ".join(found["warnings"])
+
+
 def rules_of(found):
     return {one["rule"]: one for one in found["diagnosis"]}
 
@@ -86,6 +103,53 @@ class Clocks(unittest.TestCase):
         self.assertAlmostEqual(clock["rows_per_position"], 5.0, delta=0.05)
         self.assertAlmostEqual(clock["rows_per_force"], 5.0, delta=0.05)
 
+    def test_rounded_times_of_an_even_clock_have_no_missing_rows(self):
+        """Checks clocks of 667 to 900 Hz whose times are rounded to 1 ms, so that each step is 1 or 2 ms. The loop uses
+        its true interval."""
+        for rate, delay in ((667, 0), (800, 3), (900, 2)):
+            t = np.arange(6 * rate) / rate
+            z = presses(t, 4, 0.9) + tremor(t)
+            force = spring(z, 1000.0, 2.0, delay, 1.0 / rate)
+            found = audit(log_of(np.round(t, 3), z, force))
+            self.assertEqual(found["clock"]["rows_missing"], 0)
+            self.assertAlmostEqual(found["clock"]["rate_Hz"] / rate, 1.0, delta=1e-3)
+            low, high = found["stiffness"]["damping_interval"]
+            self.assertTrue(low <= 2.0 <= high, (rate, low, high))
+            self.assertIn("times are rounded: no row counts as missing", warned(found))
+            self.assertEqual(found["metrics"]["contacts_lost_per_s"], 0.0)
+        t = T * np.arange(4000)
+        z = presses(t, 3, 0.9)
+        self.assertGreater(
+            audit(without(log_of(t, z, spring(z, 900.0)), 0.1))["clock"]["rows_missing"], 300
+        )
+
+    def test_rows_in_packets_are_refused(self):
+        """Checks times of arrival of packets of 2 and of 8 rows. The message names the mean rate. A log that pauses
+        after every 40 rows has no packets, because its tool moves during a pause."""
+        t = T * np.arange(4000)
+        z = presses(t, 3, 0.9) + tremor(t)
+        log = log_of(t, z, spring(z, 900.0, 2.0))
+        for size in (2, 8):
+            row = np.arange(len(t))
+            stamps = T * (row - row % size) + 1e-4 * T * (row % size)
+            with self.assertRaisesRegex(InputError, "packets.* k / 1000 of the rows k"):
+                audit(log | {"t": stamps})
+            found = audit(log | {"t": stamps}, columns={"time": "t"})
+            self.assertIn("--set sample_rate_Hz=1000 instead of a column", warned(found))
+        paused = {name: values[np.arange(4000) % 100 < 40] for name, values in log.items()}
+        self.assertGreater(audit(paused)["clock"]["gaps"], 30)
+
+    def test_times_in_days_are_named(self):
+        t = T * np.arange(4000)
+        z = presses(t, 3, 0.9)
+        for start in (46354.25, 740000.5):
+            found = warned(audit(log_of(start + t / 86400.0, z, spring(z, 900.0))))
+            self.assertIn("--scale time=86400 the rate is 1000 Hz", found)
+            self.assertNotIn("time=0.001", found)
+        found = warned(audit(log_of(t, 1e3 * z, spring(z, 900.0))))
+        self.assertIn("--scale position=0.001 is for millimetres", found)
+        self.assertNotIn("--scale time", found)
+
     def test_times_without_order_have_no_missing_rows(self):
         """Checks that no row counts as missing if the time stamps have errors of up to almost half an interval. Times
         between two neighbouring rows are then almost arbitrary."""
@@ -93,6 +157,149 @@ class Clocks(unittest.TestCase):
         t = np.sort(T * (np.arange(3000) + 0.49 * rng.uniform(-1.0, 1.0, 3000)))
         z = presses(t, 2, 0.8)
         self.assertEqual(audit(log_of(t, z, spring(z, 800.0)))["clock"]["rows_missing"], 0)
+
+
+class MissingRows(unittest.TestCase):
+    def test_the_error_contains_the_work_of_the_missing_rows(self):
+        """Checks a passive loop that lost 10 or 30 % of its rows. Holding the force over the missing rows would create
+        energy. With a delay of 4 rows, the loop really creates energy."""
+        t = T * np.arange(8000)
+        z = (1.8e-3 + 1.2e-3 * np.sin(0.8 * np.pi * t)) * np.sin(6.0 * np.pi * t)
+        for delay in (0, 4):
+            full = log_of(t, z, spring(z, 2000.0, 1.2, delay))
+            sums = np.append(0.0, np.cumsum(full["force"][:-1] * np.diff(z)))
+            for lost in (0.1, 0.3):
+                found = audit(without(full, lost))
+                energy = found["energy"]
+                for name, truth in (("work", sums[-1]), ("net_created", sums.max())):
+                    self.assertLessEqual(
+                        abs(energy[f"{name}_J"] - truth), energy[f"{name}_error_J"] + 1e-12
+                    )
+                # The work across a missing row is interpolated. Without delay, the mean error is 0.
+                self.assertAlmostEqual(energy["work_J"], sums[-1], delta=0.1 * abs(sums[-1]))
+                self.assertEqual("energy" in rules_of(found), delay > 0, (delay, lost))
+                self.assertIn("work across them is interpolated", warned(found))
+
+    def test_landings_and_losses_are_in_seconds(self):
+        """Checks taps with times of at least 60 ms without contact. 30 % of the rows are lost."""
+        t = T * np.arange(12000)
+        z = taps(t)
+        full = log_of(t, z, spring(z, 1500.0, 1.5))
+        found, truth = audit(without(full, 0.3)), audit(full)
+        self.assertGreater(truth["metrics"]["landings"], 70)
+        for name in ("contacts", "landings", "contacts_lost_per_s", "contacts_lost_in_spectrum"):
+            self.assertEqual(found["metrics"][name], truth["metrics"][name], name)
+        for name in ("force_mean_in_contact_N", "settled_s", "contact_share"):
+            ratio = found["metrics"][name] / truth["metrics"][name]
+            self.assertAlmostEqual(ratio, 1.0, delta=0.05, msg=name)
+        self.assertEqual(found["buzz"], [])
+
+    def test_rates_do_not_count_the_time_of_missing_rows(self):
+        """Checks force reversals, of which the log shows only those between neighbouring rows."""
+        t = T * np.arange(6000)
+        z = presses(t, 2, 2.0) + tremor(t)
+        force = spring(z, 500.0)
+        force[::7] *= -0.8
+        full = log_of(t, z, force)
+        rates = [
+            audit(one)["metrics"]["force_reversals_per_s"] for one in (full, without(full, 0.3))
+        ]
+        self.assertAlmostEqual(rates[1] / rates[0], 1.0, delta=0.1)
+
+    def test_a_time_of_uncertain_length_is_named(self):
+        t = T * np.arange(3000)
+        z = np.where((t > 0.5) & ((t < 1.0) | (t >= 1.05)), -1e-3, 1e-3)
+        log = log_of(t, z, spring(z, 900.0))
+        keep = np.ones(len(t), bool)
+        self.assertNotIn("leave open", warned(audit(log)))
+        keep[1046:1050] = False
+        found = audit({name: values[keep] for name, values in log.items()})
+        self.assertIn("leave open whether 1 time without contact", warned(found))
+
+
+class Tracking(unittest.TestCase):
+    def setUp(self):
+        t = T * np.arange(8000)
+        z = presses(t, 6, 0.9) + tremor(t)
+        self.log = log_of(t, z, spring(z, 1000.0, 2.0))
+        self.pressed = np.flatnonzero(self.log["force"] > 0.8)[[100, 300, 500, 700]]
+
+    def moved(self, rows, z):
+        positions = self.log["position"].copy()
+        positions[rows] = z
+        return audit(self.log | {"position": positions})
+
+    def test_a_glitch_creates_no_energy(self):
+        truth = audit(self.log)["energy"]
+        for rows, z in ((self.pressed[:1], 0.25), (self.pressed, 1e-3)):
+            found = self.moved(rows, z)
+            self.assertNotIn("energy", rules_of(found))
+            self.assertAlmostEqual(
+                found["energy"]["work_J"],
+                truth["work_J"],
+                delta=found["energy"]["work_error_J"] + 1e-9,
+            )
+            self.assertIn(f"the first: row {rows[0] + 1}, by ", warned(found))
+            self.assertEqual(found["clock"]["rows_missing"], len(rows))
+
+    def test_a_jump_of_the_position_creates_no_energy(self):
+        row = self.pressed[2]
+        found = self.moved(slice(row, row + 200), self.log["position"][row : row + 200] + 0.02)
+        self.assertNotIn("energy", rules_of(found))
+        self.assertIn(
+            f"the position jumps 2 times, first by 20 mm in the row at {T * row:g} s", warned(found)
+        )
+
+    def test_a_vibration_and_a_coarse_encoder_have_no_glitches(self):
+        """Checks an oscillation at half the sampling rate, and a position that moves by one step of its encoder and
+        back."""
+        log = self.log["position"]
+        shaken = log + 5e-4 * (-1.0) ** np.arange(len(log)) * (log < -1e-3)
+        coarse = 5e-4 * np.round(log / 5e-4)
+        coarse[self.pressed] += 5e-4
+        for z in (shaken, coarse):
+            self.assertEqual(audit(self.log | {"position": z})["clock"]["rows_missing"], 0)
+
+    def test_a_velocity_that_contradicts_the_positions_is_not_used(self):
+        speed = np.gradient(self.log["position"], T)
+        plain = audit(self.log)["stiffness"]
+        for factor in (-1.0, 1000.0):
+            found = audit(self.log | {"velocity": factor * speed})
+            (stated,) = re.findall("column 4 velocity is (.*) times the change", warned(found))
+            self.assertAlmostEqual(float(stated) / factor, 1.0, delta=0.01)
+            self.assertEqual(found["stiffness"], plain)
+            self.assertEqual(found["columns_not_read"], ["4 velocity"])
+        noise = np.random.default_rng(1).normal(size=len(speed))
+        found = audit(self.log | {"velocity": noise})
+        self.assertIn("does not follow the changes of the position", warned(found))
+        self.assertIn("velocity", audit(self.log | {"velocity": speed})["columns"])
+
+
+class Measured(unittest.TestCase):
+    def test_sign_and_certainty_of_the_delay(self):
+        t = T * np.arange(8000)
+        z = presses(t, 6, 0.9) + tremor(t)
+        log = log_of(t, z, spring(z, 1000.0, 2.0))
+        late = np.append(np.zeros(5), log["force"][:-5])
+        for factor in (0.8, -1.0):
+            found = audit(log | {"measured": factor * late})
+            self.assertAlmostEqual(found["measured"]["delay_s"], 5 * T, delta=1e-9)
+            self.assertAlmostEqual(found["measured"]["gain"], factor, delta=1e-6)
+            self.assertEqual("has the other sign" in warned(found), factor < 0.0)
+            lossy = audit(without(log | {"measured": factor * late}, 0.1))["measured"]
+            self.assertAlmostEqual(lossy["delay_s"], 5 * T, delta=1e-6)
+        noise = np.random.default_rng(1).normal(size=len(t))
+        noisy = audit(log | {"measured": late + 0.1 * noise})["measured"]
+        self.assertAlmostEqual(noisy["delay_s"], 5 * T, delta=2.1 * T)
+        wave = np.maximum(0.2 + np.sin(20.0 * np.pi * t), 0.0)  # a period of 100 rows
+        waves = log_of(t, -1e-3 * wave, wave) | {"measured": -np.append(np.zeros(5), wave[:-5])}
+        self.assertAlmostEqual(audit(waves)["measured"]["delay_s"], 5 * T, delta=1e-9)
+        for measured, why in ((0.0 * t + 0.3, "is constant"), (noise, "correlates by at most")):
+            found = audit(log | {"measured": measured})
+            self.assertIsNone(found["measured"]["delay_s"])
+            self.assertIn(why, found["measured"]["why"])
+            self.assertTrue(any(why in one for one in found["missing"]))
+            self.assertIn(why, dict(text.measured_rows(found["measured"]))["force"])
 
 
 class Springs(unittest.TestCase):
@@ -167,6 +374,65 @@ class Springs(unittest.TestCase):
         # Friction with a coefficient of 0.4 tilts the force by 22 degrees.
         self.assertGreater(abs(found["stiffness"]["direction"][2]), np.cos(np.radians(1.0)))
 
+    def test_a_force_of_the_other_sign_in_short_contacts(self):
+        t = 1e-2 * np.arange(1200)
+        z = presses(t, 40, 0.12, depth=4e-3, rise=0.06, every=0.28)
+        for interval in (1.0, 0.7):  # contacts of up to 12 and of up to 17 rows
+            log = log_of(interval * t, z, spring(z, 800.0))
+            log = {name: np.interp(interval * t, t, values) for name, values in log.items()}
+            self.assertNotIn("force_by_tool", warned(audit(log)))
+            found = audit(log | {"force": -log["force"]})
+            self.assertIn("--set force_by_tool=true", warned(found))
+
+    def test_an_offset_of_the_force_is_named(self):
+        t = T * np.arange(8000)
+        z = presses(t, 6, 0.6, every=1.2) + tremor(t)
+        force = spring(z, 1000.0, 2.0)
+        noise = 5e-3 * np.random.default_rng(2).normal(size=len(t))
+        for offset in (force + 0.2, force + 0.2 + noise):
+            found = audit(log_of(t, z, offset))
+            (warning,) = [one for one in found["warnings"] if "have an offset?" in one]
+            self.assertNotIn("tap, and press", " ".join(found["missing"]))
+            touch = float(warning.partition("touch_N=")[2].rstrip(")"))
+            spring_of = audit(log_of(t, z, offset), touch=touch)["stiffness"]
+            low, high = spring_of["stiffness_interval"]
+            self.assertTrue(low <= 1000.0 <= high, (low, high))
+        self.assertNotIn("offset", warned(audit(log_of(t, z, force))))
+
+    def test_contacts_without_force_are_named(self):
+        t = T * np.arange(4000)
+        z = presses(t, 4, 0.2, every=0.9)
+        log = log_of(t, z, spring(z, 1000.0))
+        found = warned(audit(log | {"contacts": np.full(len(t), 4.0)}))
+        self.assertIn("column 4 contacts is above 0, the force is nearly 0", found)
+        self.assertIn("--set touch_N=0 ", found)
+        self.assertEqual(audit(log | {"contacts": (z < 0.0).astype(float)})["warnings"], [])
+
+    def test_a_curved_surface_has_no_stiffness(self):
+        """Checks a ball with a radius of 10 mm, with and without friction, and a plane. The tool slides during the
+        presses."""
+        t = T * np.arange(8000)
+        tilt = 0.25 * np.array([np.sin(2.0 * t), np.cos(1.7 * t)])
+        outwards = np.vstack([tilt, np.ones(len(t))]) / np.sqrt(1.0 + np.sum(tilt**2, axis=0))
+        height = presses(t, 8, 0.7, depth=1e-3)
+        push = spring(height, 1000.0, 2.0, 3)
+        names = ("px", "py", "pz", "fx", "fy", "fz")
+        for friction in (0.0, 0.2):
+            position = outwards * (0.01 + height)
+            speed = np.gradient(position, T, axis=1)
+            along = speed - outwards * np.sum(speed * outwards, axis=0)
+            along /= np.linalg.norm(along, axis=0)
+            force = push * (outwards - friction * along)
+            found = audit({"t": t} | dict(zip(names, [*position, *force])), "touch")
+            self.assertIsNone(found["stiffness"])
+            self.assertIsNone(found["device"])
+            self.assertIn("the surface is curved, with a radius of about", found["missing"][0])
+            self.assertAlmostEqual(found["surface_radius_m"], 0.01, delta=2e-3)
+        plane = [*(0.01 * tilt), height, 0.0 * t, 0.0 * t, push]
+        found = audit({"t": t} | dict(zip(names, plane)))
+        self.assertIsNotNone(found["stiffness"])
+        self.assertIsNone(found["surface_radius_m"])
+
     def test_impulses_have_no_stiffness(self):
         """Checks that no stiffness is reported for a rigid contact, which stops the tool within one row. The correction
         of the depth is not a spring."""
@@ -223,6 +489,22 @@ class Diagnosis(unittest.TestCase):
         moving = z + 3.0 * tremor(t, 5e-4)
         cut = np.minimum(spring(moving, 900.0), 1.8)
         self.assertIn("saturated", rules_of(audit(log_of(t, moving, cut))))
+
+    def test_a_rounded_force_is_no_saturation(self):
+        t = T * np.arange(6000)
+        z = -1e-3 * (1.0 - np.cos(np.pi * t)) + 1e-4
+        force = spring(z, 1000.0)
+        self.assertNotIn("saturated", rules_of(audit(log_of(t, z, np.round(force, 2)))))
+        cut = np.minimum(np.round(force, 2), 1.5)
+        self.assertIn("saturated", rules_of(audit(log_of(t, z, cut))))
+
+    def test_the_first_landing_is_no_bounce(self):
+        t = T * np.arange(100)
+        z = np.where(t < 0.02, 1e-3, -1e-3 * np.sin(12.0 * np.pi * (t - 0.02)))
+        self.assertNotIn("bounces", rules_of(audit(log_of(t, z, spring(z, 1000.0)))))
+        t = T * np.arange(3000)
+        z = 1e-3 * np.sin(20.0 * np.pi * t) + 5e-4
+        self.assertIn("bounces", rules_of(audit(log_of(t, z, spring(z, 1000.0)))))
 
     def test_noise_neither_chatters_nor_hammers(self):
         rng = np.random.default_rng(4)
@@ -321,6 +603,20 @@ class Oscillations(unittest.TestCase):
         # Errors of less than 2 % come from noise of the other forces, and from the scalloping loss of the window with
         # zero padding to four times the length.
         self.assertAlmostEqual(strongest["amplitude_N"], 0.3, delta=6e-3)
+
+    def test_the_amplitude_is_the_largest_magnitude_of_the_vector(self):
+        """Checks a lateral force of constant magnitude that rotates, and an oscillation along an oblique line. The
+        normal force of 0 or 1 N shows no resolution."""
+        t = T * np.arange(4000)
+        z = np.where(t < 0.2, 1e-3, -1e-3)
+        touching = (z < 0.0).astype(float)
+        angle = 240.0 * np.pi * t
+        for x, y in ((np.cos(angle), np.sin(angle)), (0.6 * np.cos(angle), 0.8 * np.cos(angle))):
+            log = {"t": t, "x": 1e-6 * np.sin(t), "y": 0.0 * t, "z": z}
+            log |= {"fx": 0.3 * x * touching, "fy": 0.3 * y * touching, "fz": touching}
+            found = audit(log)
+            self.assertAlmostEqual(found["buzz"][0]["amplitude_N"], 0.3, delta=5e-3)
+            self.assertEqual(found["clock"]["force_resolution_N"], 0.0)
 
     def test_an_oscillation_during_slow_motion(self):
         """Checks an oscillation at 60 Hz whose frequency is a multiple of the frequency of a slow motion, 2.5 Hz. Its

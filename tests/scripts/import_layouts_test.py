@@ -626,6 +626,43 @@ class Layouts(Given):
         _, found = self.report(self.PLAIN, "time=t,position=x", scale="time=1e-3")
         self.assertIn("with --scale time=1 the rate is 500 Hz", found["warnings"][0])
 
+    def test_ticks_of_100_ns_are_named(self):
+        """Checks times of .NET, which count from the year 1, of Windows, which count from 1601, and from 0. Times from
+        0 can also be microseconds at a lower rate."""
+        for start, unit in ((637 * 10**15, "1e-07"), (134 * 10**15, "1e-07"), (0, "1e-06")):
+            data = "t,x,y,z\n" + "".join(
+                f"{start + 10_000 * i},{','.join(map(str, row))}\n"
+                for i, row in enumerate(self.POSITIONS.tolist())
+            )
+            refused = self.refusal(data, "time=t,position=x")
+            self.assertIn(f"(--scale time={unit})", refused)
+            text = "for ticks of 100 ns, as of .NET and Unity: --scale time=1e-07, at 1000 Hz"
+            self.assertEqual(text in refused, start == 0, refused)
+            refused = self.refusal(data, "time=t,position=x", scale="time=1e-6")
+            self.assertNotIn("time=1e-09", refused)
+
+    def test_the_rate_of_held_poses_is_the_mean_rate(self):
+        time = 0.001 * np.arange(4000)
+        for rate in (60, 72, 90, 120):
+            held = np.floor(time * rate + 1e-9) / rate
+            _, found = self.report(table("t,x,y,z", time, moved(held)), "time=t,position=x")
+            self.assertEqual(found["rate_Hz"], rate)
+            (stated,) = re.findall(r"measured at ([\d.]+) Hz", " ".join(found["warnings"]))
+            self.assertAlmostEqual(float(stated), rate, delta=0.1)
+
+    def test_a_rounded_clock_has_its_mean_rate(self):
+        time = np.arange(3600) / 900.0
+        data = table("t,x,y,z", np.round(time, 3), moved(time))
+        self.assertEqual(self.report(data, "time=t,position=x")[1]["rate_Hz"], 900.0)
+
+    def test_rows_in_packets_have_their_mean_rate(self):
+        time = 0.001 * np.arange(4000)
+        row = np.arange(len(time))
+        stamps = time - 0.9e-3 * (row % 2)
+        _, found = self.report(table("t,x,y,z", stamps, moved(time)), "time=t,position=x")
+        self.assertEqual(found["rate_Hz"], 1000.0)
+        self.assertIn("the rows arrive in packets", " ".join(found["warnings"]))
+
     def test_times_of_day_are_seconds_since_the_first(self):
         rows = self.PLAIN.partition("\n")[2].splitlines()
         midnight = datetime(2026, 11, 27, 23, 59, 59, 900000)

@@ -25,7 +25,8 @@ NOTES = [
     'Units in names, such as "x [mm]", are applied.',
     "Fields of --set: force_by_tool=true (the log has the force of the tool on the object; audit "
     "reverses its sign), touch_N (a row with a larger force is in contact; default: any force), "
-    'sample_rate_Hz (for a log without times), and those of "hapbench import stroke --help".',
+    'sample_rate_Hz (for a log without times), and those of "hapbench import stroke --help" except held_rows and '
+    "tip_axis.",
     "Energy: the sum of f . dp, with the force of a row held until the next row. Positive work is "
     "energy that the engine gives to the hand; the largest sum from the start to any row is the "
     "net created energy (energy_mJ). If the log begins in contact, the energy stored there is "

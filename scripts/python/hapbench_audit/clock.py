@@ -1,6 +1,8 @@
 """Statistics of the times of a log: rate, jitter and missing rows, and the number of successive rows in which a
 position or a force stays the same."""
 import numpy as np
+from hapbench_import.clock import are_days
+from hapbench_import.text_table import counted
 
 from .log import LONG_INTERVALS
 
@@ -25,7 +27,7 @@ def clock_of(log):
         "jitter_s": float(np.std(usual)) if len(usual) else 0.0,
         "rows_missing": int(missing.sum()),
         "rows_missing_in_a_row": int(missing.max()),
-        "gaps": int((steps > LONG_INTERVALS * interval).sum()),
+        "gaps": int(log.pauses.sum()),
         "rows_per_position": 1.0 if log.held is None else log.held.rows,
         "rows_per_force": 1.0 if log.held_force is None else log.held_force.rows,
         "position_resolution_m": float(log.quantum_m.max()),
@@ -33,12 +35,19 @@ def clock_of(log):
     }
 
 
-def clock_warnings(clock):
+def clock_warnings(log, clock):
     found = []
     if clock["rate_Hz"] > FASTEST_HZ:
         found.append(
-            f"the rate of {clock['rate_Hz']:.4g} Hz is unusually high for a haptic or contact loop: is the time in "
-            "other units? (--scale time=SECONDS_PER_UNIT)"
+            f"the rate of {clock['rate_Hz']:.4g} Hz is unusually high for a haptic or contact loop: "
+            + unit_text(log, clock["rate_Hz"])
+        )
+    if log.is_rounded:
+        tick = float(np.median(np.diff(log.time)))
+        found.append(
+            f"the times are multiples of {1e3 * tick:.4g} ms, and fit an even clock of {clock['rate_Hz']:.4g} Hz whose "
+            f"times are rounded: no row counts as missing. If a loop of {1.0 / tick:.4g} Hz lost these rows at regular "
+            "times, rate, damping and delay are wrong; times with more digits show the difference"
         )
     if clock["jitter_s"] > JITTER * clock["interval_s"]:
         found.append(
@@ -47,9 +56,11 @@ def clock_warnings(clock):
             "assume the mean rate"
         )
     if clock["rows_missing"]:
+        lost = clock["rows_missing"]
         found.append(
-            f"{clock['rows_missing']} rows are missing, at most {clock['rows_missing_in_a_row']} in a row: force steps "
-            "across them are not counted"
+            f"{counted(lost, 'row')} {'is' if lost == 1 else 'are'} missing, at most {clock['rows_missing_in_a_row']} in "
+            "a row: force steps across them are not counted; work across them is interpolated, and its largest error "
+            "is part of +-"
         )
     if clock["gaps"]:
         found.append(
@@ -64,3 +75,19 @@ def clock_warnings(clock):
                 "the rate of the log"
             )
     return found
+
+
+def unit_text(log, rate):
+    """Returns the question whether the times are in other units, with the option that would correct a `rate` [Hz] that
+    is too high."""
+    if are_days(rate, float(log.time[0])):
+        return (
+            "are the times in days, as in spreadsheets and MATLAB? (with --scale time=86400 the rate is "
+            f"{rate / 86400.0:.4g} Hz)"
+        )
+    factor = 1e3 if rate < 1e7 else 1e6
+    scale = factor * log.scales.get("time", 1.0)
+    return (
+        f"is the time in other units? (--scale time=SECONDS_PER_UNIT; with --scale time={scale:g} the rate is "
+        f"{rate / factor:.4g} Hz)"
+    )

@@ -5,8 +5,6 @@ from dataclasses import dataclass
 import numpy as np
 from hapbench_command import fail
 
-from .log import LONG_INTERVALS
-
 SETTLING = 0.05  # duration of a landing [s]; equals the default of metrics.settling_s of a scenario
 # If at least this fraction of the rows has zero force, every row with a non-zero force counts as contact. With fewer
 # such rows, this holds if all other forces have a component in one common direction, as in a single contact. Noise
@@ -35,8 +33,10 @@ class Contacts:
     # number of contacts.
     touch_N: float
     rule: str  # how contact was detected, in words
-    # For each interval between rows, true if it is so long that a contact ends in it.
+    # For each interval between rows, true if a contact ends in it, because it is long or the position jumps in it.
     gap: np.ndarray
+    # Number of times without contact for which missing rows leave open whether they last SETTLING.
+    unclear: int
 
     @property
     def lost(self):
@@ -60,25 +60,27 @@ def contacts_of(log):
     if not in_contact.any() or not size.any():
         problem = "no row has a force" if in_contact.any() else "no row is in contact"
         fail(f"{problem}: {why_no_contact(log, size, threshold)}", log.file)
-    interval = log.interval
-    gap = np.diff(log.time) > LONG_INTERVALS * interval
+    gap = log.pauses | log.jumps
     runs = runs_of(in_contact, gap)
-    settling = round(SETTLING / interval)
-    landings, stretches, before = [], [], -settling - 1
+    landings, stretches, before, unclear = [int(runs[0, 0])], [[0, 1]], 0, 0
     for number, (first, after) in enumerate(runs.tolist()):
-        away = first - before if before >= 0 else settling
-        new = away >= settling and (away > 0 or number == 0)
-        # The time without contact is unknown across a gap of the clock. A gap therefore begins a new sequence.
-        if new or gap[before - 1 : first].any():
-            stretches.append([number, number + 1])
-        else:
-            stretches[-1][1] = number + 1
-        if new:
-            landings.append(first)
+        if number:
+            away = float(log.seconds[before:first].sum())
+            new = first > before and away >= settling_s(log)
+            # The time without contact is unknown across a gap. A gap therefore begins a new sequence.
+            is_cut = bool(gap[before - 1 : first].any())
+            hidden = 0.5 * log.interval * (log.missing[before - 1] + log.missing[first - 1])
+            unclear += not is_cut and abs(away - settling_s(log)) < hidden
+            if new or is_cut:
+                stretches.append([number, number + 1])
+            else:
+                stretches[-1][1] = number + 1
+            if new:
+                landings.append(first)
         before = after
     landing = np.zeros(len(size), bool)
     for first in landings:
-        landing[first : first + settling] = True
+        landing[first : after_landing(log, first)] = True
     return Contacts(
         in_contact,
         runs,
@@ -89,7 +91,19 @@ def contacts_of(log):
         threshold,
         rule,
         gap,
+        unclear,
     )
+
+
+def settling_s(log):
+    """Returns SETTLING as a limit for sums of times of rows [s]: SETTLING in whole rows, less half a row. Rounding
+    errors of such a sum then do not matter."""
+    return (round(SETTLING / log.interval) - 0.5) * log.interval
+
+
+def after_landing(log, first):
+    """Returns the first row that begins at least SETTLING after the start of row `first`."""
+    return int(np.searchsorted(log.starts, log.starts[first] + settling_s(log)))
 
 
 def rows_in_contact(log, size):

@@ -8,7 +8,7 @@ import numpy as np
 from hapbench_command import output_of_program
 
 from .contacts import runs_of
-from .force import CUTOFF, reversals
+from .force import CUTOFF, reversals, seen_rows
 from .normal import main_direction
 from .text import expected_text, hammers
 
@@ -89,20 +89,23 @@ def findings_of(log, contacts, audit):
         saturated_share(log, contacts, audit["stiffness"]),
         "a smaller stiffness, or a larger force limit in engine or device",
     )
-    landings = force["landings"] / max(audit["clock"]["duration_s"], 1e-9)
+    # The first landing is no rebound.
+    landings = max(force["landings"] - 1, 0) / max(audit["clock"]["duration_s"], 1e-9)
     found.add("bounces", landings, "more damping or a smaller stiffness")
     found.add("chatter", reversals, against_chatter(vibration))
     energy = audit["energy"]
     created, error = energy["net_created_J"], energy["net_created_error_J"]
     if created is not None and created > error:
-        found.add("energy", created, against_energy(audit), energy_text(energy))
+        found.add("energy", created, against_energy(audit), energy_text(audit))
     return found.list()
 
 
-def energy_text(energy):
+def energy_text(audit):
+    energy = audit["energy"]
+    causes = "resolution and missing rows" if audit["clock"]["rows_missing"] else "resolution"
     return (
-        f" until {energy['time_of_max_s']:.6g} s (at most {energy['net_created_error_J']:.2g} J of it are the "
-        "resolution of the log)"
+        f" until {energy['time_of_max_s']:.6g} s (at most {energy['net_created_error_J']:.2g} J of it are the {causes} "
+        "of the log)"
     )
 
 
@@ -236,7 +239,9 @@ def motion_at(log, stiffness, row):
     None if `stiffness` is None."""
     delay = 0 if not stiffness else round(stiffness["delay_interval_s"][1] / log.interval)
     held = 1 if log.held is None else round(log.held.rows)
-    steps = np.diff(log.position[max(row - delay - held, 0) : row + 1], axis=0)
+    first = max(row - delay - held, 0)
+    # A step across missing rows is no displacement between successive rows.
+    steps = np.diff(log.position[first : row + 1], axis=0)[log.missing[first:row] == 0]
     if not len(steps):
         return 0.0, None
     moved = float(np.linalg.norm(steps, axis=1).max())
@@ -250,16 +255,16 @@ def reversals_per_s(log, contacts, audit):
     """Returns the number of force reversals() per second of settled contact. A reversal counts only if the forces
     before and after it exceed NOISE times the noise. The noise is the median of `noise_N` over the contacts (see
     evidence_of_rows())."""
-    seconds = audit["metrics"]["settled_s"]
     if audit["metrics"]["force_reversals_per_s"] is None:
         return None
+    seen = seen_rows(log, contacts)
     noises = [
         one["spring"]["noise_N"] for one in audit["contacts"] if "noise_N" in (one["spring"] or {})
     ]
     size = np.linalg.norm(log.force, axis=1)
     is_large = size > (NOISE * float(np.median(noises)) if noises else 0.0)
-    counted = reversals(log)[1:] & is_large[1:] & is_large[:-1] & contacts.settled[1:]
-    return float(counted.sum() / seconds)
+    counted = reversals(log)[1:] & is_large[1:] & is_large[:-1] & seen[1:]
+    return float(counted.sum() / (seen.sum() * log.interval))
 
 
 def encoder_share(audit, mean):
@@ -282,7 +287,7 @@ def against_encoder(audit):
 
 
 def saturated_share(log, contacts, stiffness):
-    """Returns the fraction of the rows in contact that are saturated: the force stays at its largest value in
+    """Returns the fraction of the time in contact that is saturated: the force stays at its largest value in
     consecutive rows, although the tool moves. Returns None for fewer than FLAT saturated rows, because the largest
     force is then no limit. Returns None if the fraction is CONSTANT or more, because the force is then
     constant.
@@ -294,16 +299,21 @@ def saturated_share(log, contacts, stiffness):
     normal = np.array(stiffness["direction"]) if stiffness else main_direction(log.force[rows])
     position, resolution = log.position @ normal, float(np.abs(normal) @ log.quantum_m)
     # Smallest travel [m] of saturated rows. Over a shorter travel, the force of a spring changes by less than the
-    # fraction 1 - AT_LIMIT of its range, or the position changes by at most two steps of its resolution.
-    threshold = max((1.0 - AT_LIMIT) * float(np.ptp(position[rows])), 2.0 * resolution)
+    # fraction 1 - AT_LIMIT of its range, or position or force change by at most two steps of their resolutions.
+    travel, steps = float(np.ptp(position[rows])), 2.0 * float(np.abs(normal) @ log.quantum_N)
+    slope = (
+        stiffness["stiffness_N_per_m"] if stiffness else np.ptp(size[rows]) / max(travel, 1e-300)
+    )
+    threshold = max((1.0 - AT_LIMIT) * travel, 2.0 * resolution, steps / max(slope, 1e-300))
     at = contacts.in_contact & (size >= AT_LIMIT * size.max())
     # A limit cuts off the peaks of the force, so that consecutive rows have the same force.
     flat = at[1:] & at[:-1] & (np.abs(np.diff(size)) <= 1e-6 * size.max())
-    count = 0
+    count, saturated_s = 0, 0.0
     for first, after in runs_of(flat, np.zeros(len(flat) - 1, bool)).tolist():
         if np.ptp(position[first : after + 1]) > threshold:
             count += after - first + 1
-    part = share(float(count), float(len(rows)))
+            saturated_s += float(log.seconds[first : after + 1].sum())
+    part = share(saturated_s, float(log.seconds[rows].sum()))
     return part if count >= FLAT and part < CONSTANT else None
 
 

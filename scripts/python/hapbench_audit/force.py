@@ -5,7 +5,7 @@ import math
 import numpy as np
 from scipy.signal import sosfilt
 
-from .contacts import SETTLING
+from .contacts import SETTLING, after_landing
 
 CUTOFF = 30.0  # cutoff of the high-pass filter [Hz]; equals kVibrationCutoff of the program
 # Smallest total time of settled contact for which its metrics are computed [s].
@@ -79,33 +79,34 @@ def reversals(log):
 
 def force_of(log, contacts):
     """Returns the metrics of the force for the JSON. Force steps and reversals across missing rows are not counted."""
-    interval = log.interval
     size = np.linalg.norm(log.force, axis=1)
     change = np.diff(log.force, axis=0, prepend=log.force[:1])
     step = np.linalg.norm(change, axis=1)
     step[1:][log.missing > 0] = 0.0
     reverses = reversals(log)
-    settled, landing = contacts.settled, contacts.landing
-    settled_s = float(settled.sum() * interval)
-    enough = settled_s >= MIN_SETTLED
-    mean = float(size[settled].mean()) if enough else None
+    settled, landing, seconds = contacts.settled, contacts.landing, log.seconds
+    settled_s = float(seconds[settled].sum())
+    enough = settled_s >= MIN_SETTLED * (1.0 - 1e-9)
+    mean = float(np.average(size[settled], weights=seconds[settled])) if enough else None
+    seen = seen_rows(log, contacts)
+    seen_s = float(seen.sum() * log.interval)
     found = {
         "force_max_N": float(size.max()),
         "force_step_max_N": float(step.max()),
         "force_reversals": int(reverses.sum()),
         "steps_in_contact": int(contacts.in_contact.sum()),
-        "contact_share": float(contacts.in_contact.mean()),
+        "contact_share": float(seconds[contacts.in_contact].sum() / seconds.sum()),
         "landings": len(contacts.landings),
         "landing_force_max_N": float(size[landing].max()) if landing.any() else None,
         "landing_force_step_max_N": float(step[landing].max()) if landing.any() else None,
         "settled_s": settled_s,
         "force_mean_in_contact_N": mean,
         "settled_force_max_N": float(size[settled].max()) if enough else None,
-        "force_step_p99_N": nearest_rank(step[settled], 0.99) if enough else None,
-        "settled_force_step_max_N": float(step[settled].max()) if enough else None,
+        "force_step_p99_N": nearest_rank(step[seen], 0.99) if enough and seen_s else None,
+        "settled_force_step_max_N": float(step[seen].max()) if enough and seen_s else None,
         "force_rms_above_30Hz_N": rms_above_cutoff(log, contacts) if enough else None,
-        "force_reversals_per_s": float(reverses[settled].sum() / settled_s) if enough else None,
-        "steps_above_share_per_s": float((step[settled] > STEP_SHARE * mean).sum() / settled_s)
+        "force_reversals_per_s": per_s(reverses[seen], seen_s) if enough else None,
+        "steps_above_share_per_s": per_s(step[seen] > STEP_SHARE * mean, seen_s)
         if enough
         else None,
         "contacts": len(contacts.runs),
@@ -120,6 +121,17 @@ def force_of(log, contacts):
     return found
 
 
+def seen_rows(log, contacts):
+    """Returns for each row True if it is in settled contact and no row is missing before it, so that the log shows the
+    force step before the row."""
+    return contacts.settled & np.append(True, log.missing == 0)
+
+
+def per_s(flags, seconds):
+    """Returns the number of true flags per second, or None if no time was observed."""
+    return float(flags.sum() / seconds) if seconds else None
+
+
 def nearest_rank(values, fraction):
     return float(np.sort(values)[max(math.ceil(fraction * len(values)) - 1, 0)])
 
@@ -130,7 +142,7 @@ def lost_per_s(log, contacts):
     if not len(contacts.runs):
         return None
     seconds = sum(
-        (contacts.runs[after - 1][1] - contacts.runs[first][0]) * log.interval
+        float(log.seconds[contacts.runs[first][0] : contacts.runs[after - 1][1]].sum())
         for first, after in contacts.stretches
     )
     return contacts.lost / seconds
@@ -165,9 +177,10 @@ def longest_stretch(log, contacts):
         (contacts.runs[first][0], contacts.runs[after - 1][1])
         for first, after in contacts.stretches
     ]
-    first, after = max(spans, key=lambda span: span[1] - span[0])
-    settling = round(SETTLING / log.interval)
-    return (first + settling, after) if after - first > 3 * settling else (first, after)
+    first, after = max(spans, key=lambda span: log.seconds[span[0] : span[1]].sum())
+    whole = round(SETTLING / log.interval) * log.interval
+    is_long = log.seconds[first:after].sum() > 3.0 * whole + 0.5 * log.interval
+    return (after_landing(log, first), after) if is_long else (first, after)
 
 
 def spectrum_of(log, contacts):
@@ -184,7 +197,9 @@ def spectrum_of(log, contacts):
     window = np.hanning(len(force))
     padded = 1 << int(math.ceil(math.log2(4 * len(force))))
     transform = np.fft.rfft(force * window[:, None], padded, axis=0)
-    amplitude = 2.0 * np.linalg.norm(transform, axis=1) / window.sum()
+    # Largest magnitude of the vector of each oscillation over its period: the long half axis of its ellipse.
+    total, linear = np.sum(np.abs(transform) ** 2, axis=1), np.abs(np.sum(transform**2, axis=1))
+    amplitude = 2.0 * np.sqrt(0.5 * (total + linear)) / window.sum()
     rate = (len(times) - 1) / (times[-1] - times[0])
     return np.fft.rfftfreq(padded, 1.0 / rate), amplitude, float(times[-1] - times[0])
 
@@ -261,7 +276,8 @@ def peaks_of(log, contacts, spectrum, mean):
 
 
 def amplitude_at(log, first, after, frequency):
-    """Returns the amplitude [N] of an oscillation at `frequency` [Hz] in the rows from `first` to before `after`. It
+    """Returns the amplitude [N] of an oscillation at `frequency` [Hz] in the rows from `first` to before `after`: the
+    largest magnitude of its vector over a period. It
     follows from a least-squares fit of a sine and a slow quadratic change of the force. The weights are a Hann
     window."""
     time = log.time[first:after] - log.time[first]
@@ -272,4 +288,5 @@ def amplitude_at(log, first, after, frequency):
     found = np.linalg.lstsq(
         weight * np.column_stack(columns), weight * log.force[first:after], rcond=None
     )[0]
-    return math.sqrt(float(np.sum(found[:2] ** 2)))
+    # The long half axis of the ellipse a cos + b sin is the largest singular value of its coefficients.
+    return float(np.linalg.norm(found[:2], 2))

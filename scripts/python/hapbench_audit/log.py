@@ -6,14 +6,17 @@ from functools import cached_property
 from types import SimpleNamespace
 
 import numpy as np
-from hapbench_command import fail, finite_number, quoted, require_name
+from hapbench_command import Faults, fail, finite_number, quoted, require_name
+from hapbench_import.clock import is_rounded, packet_rate, packet_text
 from hapbench_import.columns import ABSENT, UNITS, Names, unit_in, without_unit
 from hapbench_import.holds import Hold, hold_of
 from hapbench_import.options import QUANTITIES, assignments, options_of
-from hapbench_import.recording import EXACT, Recording, open_recording
-from hapbench_import.samples import read_samples
+from hapbench_import.recording import open_recording
+from hapbench_import.samples import MIN_JUMP, read_samples
 from hapbench_import.stroke import resolution_of
 
+from .tables import of_table, quantity_of, recording_of
+from .tracking import without_glitches
 from .usual_columns import extra_columns, with_usual_columns
 
 FEWEST = 20  # smallest number of samples of a log
@@ -24,15 +27,22 @@ LATEST_START = (
 # Unit of a velocity at the end of a column name, as in "vx [mm/s]" and vx_mm_per_s. Group 1: the unit of length.
 SPEED = re.compile(r"(?:^|[\s_\[({<,])([A-Za-zµμ]+)(?:/|_per_| per )s(?:ec)?[\])}>]?$")
 FASTEST = 5.0  # largest plausible speed of a hand [m/s]
+NEAR = 10  # number of rows over which the speed of the tool is computed
 # Largest error of a time step [intervals] at which the number of missing rows in the step is unambiguous. At an error
 # of 0.5, two numbers of missing rows fit equally well.
 CLEAR = 0.25
 SEVERAL = 20  # number of time steps over which the mean interval is measured
 # Largest number of missing rows that are counted between two rows; equals the longest delay of a model [rows].
 MAX_MISSING = 50
+# If the position moves faster than FASTEST in a larger fraction of the log, its unit is probably wrong. In a smaller
+# fraction, it jumps.
+MAX_JUMPS = 0.01
 # At each time stamp, of_mean_clock() shifts the mean clock towards the stamp by at least this fraction of the
 # difference.
 FOLLOWED = 0.05
+COMPARED = 0.05  # duration over which displacement and logged velocity are compared [s]
+# Largest ratio of a logged velocity to the change of the position per second; its inverse is the smallest ratio.
+SIMILAR_SPEED = 2.0
 TOUCH = "touch_N="  # prefix of the field touch_N in --set
 # Quantities that `hapbench import` does not read, and what the audit does without each of them.
 WITHOUT = {
@@ -90,6 +100,37 @@ class Log:
         return missing_rows(np.diff(self.time))
 
     @cached_property
+    def is_rounded(self):
+        """True if the times are those of an even clock, rounded to multiples of about one interval."""
+        steps = np.diff(self.time)
+        return not self.missing.any() and is_rounded(steps, float(np.median(steps)))
+
+    @cached_property
+    def jumps(self):
+        """True for each interval between rows in which the position jumps: it moves by more than MIN_JUMP, and faster
+        than FASTEST, unlike at least the fraction 1 - MAX_JUMPS of the log."""
+        distances = np.linalg.norm(np.diff(self.position, axis=0), axis=1)
+        is_fast = distances > FASTEST * np.diff(self.time)
+        return is_fast & (distances > MIN_JUMP) & (np.mean(is_fast) <= MAX_JUMPS)
+
+    @cached_property
+    def pauses(self):
+        """True for each interval between rows that is longer than LONG_INTERVALS mean intervals."""
+        return np.diff(self.time) > LONG_INTERVALS * self.interval
+
+    @cached_property
+    def seconds(self):
+        """Duration of each row [s]: half of the time step before the row plus half of the time step after it. At the
+        ends of the log and at `pauses`, half a mean interval counts instead."""
+        halves = 0.5 * np.where(self.pauses, self.interval, np.diff(self.time))
+        return np.append(halves, 0.5 * self.interval) + np.append(0.5 * self.interval, halves)
+
+    @cached_property
+    def starts(self):
+        """Time at which each row starts, as the sum of the `seconds` of the rows before it [s]."""
+        return np.cumsum(self.seconds) - self.seconds
+
+    @cached_property
     def counted(self):
         """Row numbers that also count missing rows, but at most MAX_MISSING missing rows in each gap."""
         return np.append(0, np.cumsum(1 + np.minimum(self.missing, MAX_MISSING)))
@@ -132,6 +173,11 @@ def layout_of(options):
     layout = options_of(requested)
     if not any(word.startswith("max_speed") for word in options.set):
         layout.max_speed = float("inf")
+    given = [word.partition("=")[0] for word in options.set]
+    if "held_rows" in given and layout.held_rows != "keep":
+        fail("--set held_rows: has no effect, because the audit uses all rows; allowed: keep")
+    if "tip_axis" in given:
+        fail("--set tip_axis: has no effect on an audit; allowed: no tip_axis")
     layout.held_rows = "keep"
     touch = touch_of(touches[-1]) if touches else None
     return layout, wanted, touch
@@ -159,39 +205,25 @@ def log_of_table(table, columns, scale, force_by_tool, touch):
         **dict.fromkeys(("preset", "decimal", "orientation")),
     )
     layout, wanted, _ = layout_of(requested)
-    log = log_of(recording_of(table), layout, wanted)
+    recording, unread = recording_of(table)
+    # Columns that cannot be read, but have the name of a quantity.
+    named = {name: quantity_of(name, columns) for name in unread}
+    why = {name: f"column {name}: {unread[name]}" for name in unread if named[name]}
+    try:
+        log = log_of(recording, layout, wanted)
+    except Faults as faults:
+        raise Faults([(place, of_table(problem, why)) for place, problem in faults.list]) from None
+    log.notes += [f"{why[name]}; it is not read" for name in why if named[name] not in log.columns]
+    log.columns_not_read += list(unread)
     log.touch = touch
     return log
-
-
-def recording_of(table):
-    """Returns the numeric columns of the table as a Recording."""
-    columns = {str(name): np.asarray(table[name]) for name in table}
-    numeric = {
-        name: (values - values[0] if is_large(values) else values).astype(float)
-        for name, values in columns.items()
-        if values.ndim == 1 and np.issubdtype(values.dtype, np.number)
-    }
-    lengths = {len(values) for values in numeric.values()}
-    if len(lengths) != 1:
-        fail(f"the table has columns of {sorted(lengths)} numbers; allowed: one length")
-    rows = np.rec.fromarrays(list(numeric.values()), names=list(numeric))
-    return Recording("table", list(numeric), rows, range(1, len(rows) + 1), "row")
-
-
-def is_large(values):
-    """Returns True for integers that a double cannot represent exactly, such as nanoseconds since 1970. The caller
-    makes such values relative to the first row."""
-    return (
-        np.issubdtype(values.dtype, np.integer) and len(values) > 0 and abs(int(values[-1])) > EXACT
-    )
 
 
 def log_of(recording, options, wanted):
     """Returns the Log of a recording. `options`: Options of `import stroke`. `wanted`: dict from the quantities of
     EXTRA that the user specified to their columns."""
     recording, axes = with_usual_columns(recording, options)
-    read = read_samples(recording, options)
+    read = without_glitches(read_samples(recording, options))
     samples, kept = read.samples, read.kept
     if len(kept) < FEWEST:
         fail(f"{len(kept)} usable samples; allowed: at least {FEWEST}", recording.file)
@@ -202,6 +234,13 @@ def log_of(recording, options, wanted):
     for quantity in EXTRA:
         found = extra_columns(names, quantity, wanted.get(quantity), axes)
         if not found:
+            continue
+        owners = {part["column"] - 1: other for other, parts in used.items() for part in parts}
+        shared = [column for column in found if column in owners]
+        if shared and quantity in wanted:
+            column = shared[0]
+            names.fail(quantity, f"column {names.title(column)} is also named for {owners[column]}")
+        if shared:
             continue
         scales = [scale_of(quantity, recording, column, read) for column in found]
         values = np.column_stack(
@@ -241,9 +280,61 @@ def log_of(recording, options, wanted):
             f"{read.rows_left_out} bad rows were skipped, the first: "
             f"{read.left_out[0][0]}: {read.left_out[0][1]}"
         )
-    log.quantum_m, log.quantum_N = quanta(log.position), quanta(log.force)
+    log.quantum_m, log.quantum_N = quanta(log.position), quanta_of_force(log.force)
+    refuse_packets(log, "time" in options.named)
+    leave_out_false_velocity(log)
     log.held, log.held_force = held_of(log, log.position), held_of(log, log.force)
     return log
+
+
+def refuse_packets(log, is_named):
+    """Fails if the rows arrive in packets, because their times then give a false rate, missing rows and false
+    velocities. Adds a note instead if `is_named` is true: the user has named the column of times.
+    """
+    rate = packet_rate(log.time, log.position)
+    if rate is None:
+        return
+    text = packet_text(rate)
+    if is_named:
+        log.notes.append(f"{text}. Rate, missing rows, contacts and stiffness are otherwise false")
+        return
+    column = log.columns["time"][0]["name"] or log.columns["time"][0]["column"]
+    fail(f"{text} (--columns time={column} uses the times nevertheless)", log.file)
+
+
+def leave_out_false_velocity(log):
+    """Leaves out logged velocities that contradict the positions, and adds a note about them. Compares the displacement
+    in COMPARED seconds with the integral of the velocity."""
+    if log.velocity is None:
+        return
+    rows = min(max(round(COMPARED / log.interval), 1), len(log.time) // 4)
+    steps = 0.5 * (log.velocity[1:] + log.velocity[:-1]) * np.diff(log.time)[:, None]
+    is_cut = np.append(0, np.cumsum(log.pauses | log.jumps))
+    whole = is_cut[rows:] == is_cut[:-rows]
+    travelled = np.append(np.zeros((1, 3)), np.cumsum(steps, axis=0), axis=0)
+    moved, integral = (
+        (values[rows:] - values[:-rows])[whole] for values in (log.position, travelled)
+    )
+    size, length = float(np.sum(moved**2)), float(np.sum(integral**2))
+    if size <= len(moved) * (3.0 * np.linalg.norm(log.quantum_m)) ** 2 or length == 0.0:
+        return
+    both = float(np.sum(moved * integral))
+    factor, correlation = both / size, both / np.sqrt(size * length)
+    if correlation >= 0.5 and 1.0 / SIMILAR_SPEED <= factor <= SIMILAR_SPEED:
+        return
+    fault = (
+        f"is {factor:.4g} times the change of the position per second"
+        if abs(correlation) >= 0.5
+        else f"does not follow the changes of the position (correlation {correlation:.2g})"
+    )
+    log.notes.append(
+        f"velocity: {log.columns_text('velocity')} {fault}; the audit does not use this quantity: "
+        f"{WITHOUT['velocity']}; allowed: the velocity of the position, in m/s or with a unit in the name of the "
+        'column, as in "vx [mm/s]"'
+    )
+    log.columns_not_read += [f"{part['column']} {part['name']}" for part in log.columns["velocity"]]
+    del log.columns["velocity"]
+    log.velocity = None
 
 
 def scale_of(quantity, recording, column, read):
@@ -290,7 +381,7 @@ def unused_text(quantity, recording, columns, kept, values):
 
 def missing_rows(steps):
     """Returns the number of missing rows in each time step of a clock. Without jitter, each step is a whole number of
-    intervals.
+    intervals. If the times are those of an even clock, rounded to multiples of the smallest step, no row is missing.
 
     There are two models of jitter. In the first model, each interval has an independent error. In the second model,
     each time stamp of a regular clock has an independent error. The errors of the second model do not add up over the
@@ -300,7 +391,7 @@ def missing_rows(steps):
     found = np.maximum(np.rint(steps / interval).astype(int) - 1, 0)
     errors = steps / interval - found - 1.0
     if np.abs(errors).max() <= CLEAR:
-        return found
+        return np.zeros(len(steps), int) if is_rounded(steps, interval) else found
     # Errors of time stamps affect the mean of several steps less than a single step. The median ignores the few groups
     # of steps that contain missing rows.
     several = min(SEVERAL, len(steps))
@@ -360,6 +451,14 @@ def on_axes(values, axes):
     found = np.zeros((len(values), 3))
     found[:, ["xyz".index(axis) for axis in axes]] = values
     return found
+
+
+def quanta_of_force(force):
+    """Returns the resolution of each force component, as quanta() does. A force of zero, as without contact, does not
+    show the distance to the other forces."""
+    return np.array(
+        [resolution_of(column[column != 0.0]) or 0.0 if column.any() else 0.0 for column in force.T]
+    )
 
 
 def quanta(values):

@@ -593,6 +593,10 @@ def springs_of(log, evidences):
     return each, main
 
 
+def has_stiffness(spring):
+    return bool(spring) and "stiffness_N_per_m" in spring
+
+
 def shows_no_spring(each):
     """Returns True if more contacts contradict a spring than have a stiffness. Also returns True if at most the
     fraction UNSURE of the contacts has a stiffness: so few values can be errors of 95 % intervals.

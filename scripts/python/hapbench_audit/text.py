@@ -68,7 +68,7 @@ def contact_rows(audit):
         (
             "contacts",
             f"{metrics['contacts']} in {counted(metrics['landings'], 'landing')}, "
-            f"{100.0 * metrics['contact_share']:.3g} % of the rows",
+            f"{100.0 * metrics['contact_share']:.3g} % of the time",
         ),
         ("in contact", audit["contact_rule"]),
         ("lost", f"{number(metrics['contacts_lost_per_s'])} per second of contact"),
@@ -81,6 +81,8 @@ def energy_rows(energy):
         giver = "the hand gave it to the engine"
     elif energy["work_J"] == 0.0:
         giver = "none"
+    if abs(energy["work_J"]) < energy["work_error_J"]:
+        giver = "its sign is not known"
     rows = [
         ("net created", millijoules(energy["net_created_J"], energy["net_created_error_J"])),
         ("without holding", f"{millijoules(energy['net_created_path_J'])} created along the path"),
@@ -296,6 +298,8 @@ def hammers(metrics):
 def measured_rows(measured):
     if measured is None:
         return []
+    if measured["delay_s"] is None:
+        return [("force", f"not identifiable: {measured['why']}")]
     return [
         (
             "force",

@@ -219,9 +219,9 @@ def with_zeros(recording, count):
         return Recording(
             recording.file, recording.names + added, rows, recording.row_numbers, "row"
         )
-    width = len(recording.names)
-    rows = [row + [b"0"] * count if len(row) == width else row for row in recording.rows]
+    rows = [row + [b"0"] * count for row in recording.rows]
     found = copy(recording)
+    found.added = count
     found.names, found.rows, found.notes = recording.names + added, rows, list(recording.notes)
     return found
 

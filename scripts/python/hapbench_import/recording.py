@@ -45,6 +45,7 @@ class Recording:
         # Table.stated_units and Table.other_headers of a text
         self.stated_units, self.other_headers = [], []
         self.is_binary = isinstance(rows, np.ndarray)
+        self.added = 0  # number of columns, at the end of each row, that the file does not have
         # True if no note about decimal commas is needed, because the user has chosen them or the note already exists.
         self._is_comma_noted = decimal == "comma"
 
@@ -56,7 +57,7 @@ class Recording:
         if self.is_binary:
             return {}
         return {
-            i: f"got {len(row)} values; allowed: {len(self.names)}"
+            i: f"got {len(row) - self.added} values; allowed: {len(self.names) - self.added}"
             for i, row in enumerate(self.rows)
             if len(row) != len(self.names)
         }

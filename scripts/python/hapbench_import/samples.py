@@ -8,7 +8,7 @@ import numpy as np
 from hapbench_command import MAX_FAULTS, Faults, fail
 from scipy.spatial.transform import Rotation
 
-from .clock import require_likely_clock
+from .clock import require_likely_clock, usual_interval
 from .component_columns import Columns
 from .holds import hold_of
 from .options import Options
@@ -325,9 +325,9 @@ def _held_rows(rows, options, notes):
     if held is None:
         return None
     text = f"each pose is repeated in {held.rows:.4g} rows"
-    interval = float(np.median(np.diff(rows.time[usable][held.fresh])))
-    if interval > 0.0:
-        text += f": poses were measured at {1.0 / interval:.4g} Hz"
+    steps = np.diff(rows.time[usable][held.fresh])
+    if float(np.median(steps)) > 0.0:
+        text += f": poses were measured at {1.0 / usual_interval(steps):.4g} Hz"
     if options.held_rows == "keep":
         notes.append(f"{text}, and steps between poses are not motion (--set held_rows=thin)")
         return None

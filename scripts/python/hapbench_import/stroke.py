@@ -7,7 +7,15 @@ from scipy.spatial.transform import Rotation, Slerp
 
 from hapbench_command import MAX_FAULTS, Faults, fail
 
-from .clock import likely_unit
+from .clock import (
+    FASTEST_HZ,
+    are_days,
+    is_rounded,
+    likely_unit,
+    packet_rate,
+    packet_text,
+    usual_interval,
+)
 from .columns import scale_text
 from .component_columns import add_usual_orientation
 from .samples import DOWN, Samples, read_samples
@@ -15,12 +23,9 @@ from .samples import DOWN, Samples, read_samples
 STIFFNESS = 20000.0  # default of rendering.stiffness_N_per_m [N/m]
 MAX_SAMPLES = 1e7
 LONG_INTERVALS = 10.0  # duration in median intervals above which an interval is a gap
-USUAL_RATES = (1.0, 1e5)  # usual rates of recordings [Hz]
+USUAL_RATES = (1.0, FASTEST_HZ)  # usual rates of recordings [Hz]
 LONGEST, SHORTEST = 1.0, 1e-5  # largest and smallest plausible length of a hand's stroke [m]
 FASTEST = 5.0  # largest plausible speed of a hand [m/s]
-# Plausible numbers of days in the time column of a recording whose times are dates: the years 1982 to 2091 as
-# days since 1900, and the same years as days since the year 0.
-DAYS = ((3e4, 7e4), (7e5, 8e5))
 MAX_GAPS = 5  # largest number of gaps that are listed one by one
 MAX_NOT_READ = 12  # largest number of unread columns that the table names
 
@@ -35,7 +40,7 @@ def import_stroke(recording, options):
     rate = (
         options.rate
         if options.rate is not None
-        else usual_rate(clock, is_regular, len(read.samples.time))
+        else usual_rate(read.samples.time, read.samples.position, is_regular)
     )
     stroke = resample(read.samples, rate) if resampled else read.samples
     if not resampled:
@@ -106,12 +111,16 @@ def clock_of(time):
     )
 
 
-def usual_rate(clock, is_regular, samples):
-    """Returns the sampling rate of a recording [Hz]. For an irregular clock, returns the rate of the median interval,
-    rounded to an integer if it is at least 10 Hz."""
+def usual_rate(time, position, is_regular):
+    """Returns the sampling rate of a recording [Hz]. For an irregular clock, returns the rate of the rounded clock, of
+    the packets or of the usual_interval(), rounded to an integer if it is at least 10 Hz."""
+    steps, mean = np.diff(time), (len(time) - 1) / float(time[-1] - time[0])
     if is_regular:
-        return (samples - 1) / clock["duration_s"]
-    rate = 1.0 / clock["interval_s"]["median"]
+        return mean
+    if is_rounded(steps, float(np.median(steps))):
+        rate = mean
+    else:
+        rate = packet_rate(time, position) or 1.0 / usual_interval(steps)
     return rate if rate < 10.0 else float(math.floor(rate + 0.5))
 
 
@@ -433,6 +442,9 @@ def _warnings(read, gaps, found):
             f"the tip's positions span {extent:.4g} m, which is unusual for a hand: is the scale right? "
             "(--scale position=0.001 is for millimetres, position=0.01 for centimetres)"
         )
+    packets = packet_rate(read.samples.time, read.samples.position)
+    if packets:
+        warnings.append(packet_text(packets))
     warnings += _clock_warnings(found)
     if found["tip_direction"][2] > 0.5:
         warnings.append(
@@ -449,7 +461,7 @@ def _clock_warnings(found):
     rate, speed = found["rate_Hz"], found["speed_p99_m_per_s"]
     scale = found["scales"].get("time", 1.0)
     what = f"{rate:.4g} samples per second and a speed of {speed:.3g} m/s"
-    if rate > USUAL_RATES[1] and any(low < found["first_time_s"] < high for low, high in DAYS):
+    if are_days(rate, found["first_time_s"]):
         return [
             f"{what} are unusual: are the times in days, as in spreadsheets and MATLAB? (with --scale time=86400 "
             f"the rate is {rate / 86400:.4g} Hz)"
