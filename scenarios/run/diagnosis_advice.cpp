@@ -318,8 +318,8 @@ std::string against_loss(const DiagnosedRun& run) {
   }
   if (const auto advice = against_instability(run)) return *advice;
   if (!run.has_hand())
-    return "a hand that presses the tool on the surface, or another algorithm: without a hand, only the force of the law "
-           "moves the tool";
+    return "a hand that presses the tool on the surface, or another algorithm: without a hand, only the force of the "
+           "law moves the tool";
   return "a hand whose path ends on the surface";
 }
 

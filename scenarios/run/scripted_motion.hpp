@@ -16,8 +16,8 @@ std::vector<double> script_periods(const Scenario& scenario);
 /// Returns the longest of script_periods() [s]; 0 if no script is periodic.
 double script_period(const Scenario& scenario);
 /// Returns how often a script may lift the tool off a surface: once for each period or waypoint of the script of the
-/// hand's force or target, and twice for each period or waypoint of a script of the orientation. Empty if the number is unknown, because the hand has a tremor or is a
-/// simulated subject.
+/// hand's force or target, and twice for each period or waypoint of a script of the orientation. Empty if the number is
+/// unknown, because the hand has a tremor or is a simulated subject.
 std::optional<double> scripted_lifts(const Scenario& scenario);
 /// Returns true if script_moves_until() is above 0, or if the hand has a tremor. Such a tool may never come to rest.
 /// While the script moves, MotionClassifier therefore judges only the part of the tool's velocity above 30 Hz. After

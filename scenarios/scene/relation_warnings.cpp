@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <functional>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -123,6 +124,22 @@ bool reads(const AlgorithmEntry& algorithm, std::string_view field) {
   return std::ranges::any_of(algorithm.info->parameters, is_field);
 }
 
+/// Warns about a damping and a filter that have no effect. `is_given`: returns true if the file sets the field at a
+/// JSON pointer to another value than the default.
+void warn_of_unread_damping(const Scenario& scenario, const std::function<bool(const std::string&)>& is_given,
+                            std::vector<Warning>& warnings) {
+  for (const char* pointer : {"/rendering/damping_ratio", "/rendering/damping_N_s_per_m"}) {
+    if (scenario.rendering.hunt_crossley && is_given(pointer))
+      warnings.push_back({kNoEffect, pointer, "has no effect together with rendering.damping"});
+  }
+  if (scenario.rendering.damping && !scenario.rendering.hunt_crossley && is_given("/rendering/damping_ratio"))
+    warnings.push_back({kNoEffect, "/rendering/damping_ratio",
+                        "has no effect together with rendering.damping_N_s_per_m, which replaces it"});
+  constexpr const char* kCutoff = "/rendering/angular_velocity_cutoff_Hz";
+  if (is_given(kCutoff) && !scenario.rendering.angular_damping)
+    warnings.push_back({kNoEffect, kCutoff, "has no effect without rendering.angular_damping"});
+}
+
 /// Warns about values in `json` that differ from the defaults and that the rendering does not use: parameters of
 /// other algorithms, damping that rendering.damping replaces, and the filter of an unused angular velocity.
 void warn_of_unread_rendering(const Scenario& scenario, const Json& json, std::vector<Warning>& warnings) {
@@ -153,17 +170,7 @@ void warn_of_unread_rendering(const Scenario& scenario, const Json& json, std::v
         {kNoEffect, pointer,
          fmt::format("has no effect on this algorithm; it is a parameter of {}", fmt::join(names, ", "))});
   }
-  // Warn about a damping and a filter that have no effect.
-  for (const char* pointer : {"/rendering/damping_ratio", "/rendering/damping_N_s_per_m"}) {
-    if (scenario.rendering.hunt_crossley && is_given(pointer))
-      warnings.push_back({kNoEffect, pointer, "has no effect together with rendering.damping"});
-  }
-  if (scenario.rendering.damping && !scenario.rendering.hunt_crossley && is_given("/rendering/damping_ratio"))
-    warnings.push_back({kNoEffect, "/rendering/damping_ratio",
-                        "has no effect together with rendering.damping_N_s_per_m, which replaces it"});
-  constexpr const char* kCutoff = "/rendering/angular_velocity_cutoff_Hz";
-  if (is_given(kCutoff) && !scenario.rendering.angular_damping)
-    warnings.push_back({kNoEffect, kCutoff, "has no effect without rendering.angular_damping"});
+  warn_of_unread_damping(scenario, is_given, warnings);
 }
 
 /// Warns if the bristle (tangential spring and damper) of dry friction is unstable at this time step and mass.

@@ -164,27 +164,8 @@ class MeshParts {
   /// reversed. Any other closed part is reversed if it encloses a negative volume. Only the kMaxEnclosingParts largest
   /// of these other parts are tested for enclosing smaller parts. Returns the number of reversed parts.
   std::size_t orient_outwards(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles) {
-    // Compute the bounding box and the volume of each part.
-    shapes_.assign(count(), Shape{});
+    measure_shapes(vertices, triangles);
     std::vector<Shape>& shapes = shapes_;
-    for (std::size_t t = 0; t < part_.size(); ++t) {
-      ++shapes[part_[t]].triangles;
-      for (const std::uint32_t corner : triangles[t]) shapes[part_[t]].box.add(vertices[corner]);
-    }
-    std::vector<std::size_t> seen(count(), 0);  // number of triangles of each part so far
-    for (std::size_t t = 0; t < part_.size(); ++t) {
-      Shape& shape = shapes[part_[t]];
-      // Sum the volumes of the tetrahedra between the triangles and a corner of the part's box. A distant origin
-      // would lose digits by cancellation.
-      const auto& [i, j, k] = triangles[t];
-      const Vec3 a = vertices[i] - shape.box.min, b = vertices[j] - shape.box.min, c = vertices[k] - shape.box.min;
-      shape.volume += (reversed_[t] ? -1.0 : 1.0) * a.dot(b.cross(c)) / 6.0;
-      shape.area += 0.5 * (b - a).cross(c - a).norm();
-      const std::size_t n = seen[part_[t]]++;
-      for (const std::size_t third : {0u, 1u, 2u})
-        if (n == third * (shape.triangles - 1) / 2) shape.samples[third] = shape.box.min + (a + b + c) / 3.0;
-    }
-
     // Orient the parts from the largest to the smallest. A part inside an outermost part is reversed together with
     // the outermost part.
     std::vector<std::uint32_t> largest_first(count()), outermost;
@@ -241,6 +222,28 @@ class MeshParts {
 
  private:
   std::size_t count() const { return closed_.size(); }
+  /// Computes the bounding box, the volume and the other properties of each part.
+  void measure_shapes(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles) {
+    shapes_.assign(count(), Shape{});
+    std::vector<Shape>& shapes = shapes_;
+    for (std::size_t t = 0; t < part_.size(); ++t) {
+      ++shapes[part_[t]].triangles;
+      for (const std::uint32_t corner : triangles[t]) shapes[part_[t]].box.add(vertices[corner]);
+    }
+    std::vector<std::size_t> seen(count(), 0);  // number of triangles of each part so far
+    for (std::size_t t = 0; t < part_.size(); ++t) {
+      Shape& shape = shapes[part_[t]];
+      // Sum the volumes of the tetrahedra between the triangles and a corner of the part's box. A distant origin
+      // would lose digits by cancellation.
+      const auto& [i, j, k] = triangles[t];
+      const Vec3 a = vertices[i] - shape.box.min, b = vertices[j] - shape.box.min, c = vertices[k] - shape.box.min;
+      shape.volume += (reversed_[t] ? -1.0 : 1.0) * a.dot(b.cross(c)) / 6.0;
+      shape.area += 0.5 * (b - a).cross(c - a).norm();
+      const std::size_t n = seen[part_[t]]++;
+      for (const std::size_t third : {0u, 1u, 2u})
+        if (n == third * (shape.triangles - 1) / 2) shape.samples[third] = shape.box.min + (a + b + c) / 3.0;
+    }
+  }
   /// Adds the triangle beyond a hinge of triangle t to a part and to the `open` triangles, unless it has a part
   /// already.
   void visit_neighbour(std::uint32_t t, const Hinge& hinge, std::uint32_t part, std::vector<std::uint32_t>& open) {

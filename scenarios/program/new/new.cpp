@@ -40,7 +40,7 @@ std::string remedy(const NewOptions& options, const StartKind& kind) {
   if (kind.source == "stroke")
     return "the positions of the stroke must be in metres and in the frame of the surface; change the stroke, or the "
            "surface in the file";
-  const std::string change = kind.scene.contains("hand") ? "change the hand in the file" : "change motion in the file";
+  std::string change = kind.scene.contains("hand") ? "change the hand in the file" : "change motion in the file";
   const PlacementOptions accepted = placement_options(options, kind);
   if (const std::string placing = accepted.text(); !placing.empty())
     return fmt::format("another start{} is needed: use {}; or {}", accepted.path ? " or path" : "", placing, change);

@@ -380,8 +380,9 @@ class Start {
     if (!requested_points_.empty()) return {top};
     const Box box = bounds_of(points);
     std::vector<SurfacePoint> starts = {top, highest_at_center(points, box, diameter_)};
-    for (int i = 0; is_over_largest_ && i < 9; ++i) {
-      const Vec3 shift = 0.25 * box.size().cwiseProduct(Vec3(i % 3 - 1, i / 3 - 1, 0.0));
+    constexpr std::array columns = {-1.0, 0.0, 1.0};
+    for (std::size_t i = 0; is_over_largest_ && i < 9; ++i) {
+      const Vec3 shift = 0.25 * box.size().cwiseProduct(Vec3(columns[i % 3], columns[i / 3], 0.0));
       starts.push_back(highest_at_center(points, {box.min + shift, box.max + shift}, diameter_));
     }
     return starts;
@@ -493,7 +494,7 @@ class Start {
     const auto distance = [&named](const SurfacePoint& point) {
       return point.normal.z() > 0.0 ? distance_between(point.position, named) : std::numeric_limits<double>::infinity();
     };
-    const SurfacePoint facing = *std::ranges::min_element(shell, {}, distance), nearest = nearest_to(named, shell);
+    SurfacePoint facing = *std::ranges::min_element(shell, {}, distance), nearest = nearest_to(named, shell);
     const double limit = near_distance(nearest.position, shell);
     if (distance(facing) <= limit) return facing;
     if (requested_points_.size() > 1) return nearest;
@@ -517,7 +518,7 @@ class Start {
     const auto tip_gap = [&](const Vec3& tip) {
       return distance_between(nearest_to(tip, shell).position, tip) - 0.5 * diameter_;
     };
-    const Vec3 above = start_above(point.position);
+    Vec3 above = start_above(point.position);
     if (tip_gap(above) >= kMinClearance) return above;
     const Vec3 beside = (point.position + (0.5 * diameter_ + kClearance) * point.normal).unaryExpr(&to_micrometres);
     return tip_gap(beside) > tip_gap(above) ? beside : above;

@@ -52,8 +52,9 @@ def work(force, displacement):
 def stored_at(log, contacts, row, spring):
     """Returns the energy [J] that is stored in the spring of a contact at `row`, which is the first row of the contact
     or of the log. If `row` is not in contact, or if the log contains the touch, the energy is 0. The log does not
-    contain the touch if `row` is in contact and is the first row of the log or the first row after a gap (Contacts.gap).
-    Returns None if the log does not contain the touch and the stiffness is unknown."""
+    contain the touch if `row` is in contact and is the first row of the log or the first row after a gap
+    (Contacts.gap). Returns None if the log does not contain the touch and the stiffness is unknown.
+    """
     if not contacts.in_contact[row] or (row > 0 and not contacts.gap[row - 1]):
         return 0.0
     stiffness = (spring or {}).get("stiffness_N_per_m", 0.0)

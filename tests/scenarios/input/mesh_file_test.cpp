@@ -550,7 +550,8 @@ TEST_F(MeshFile, NamesVerticesThatDifferInTheLastDigits) {
   for (const auto& corners : cube.triangles) {
     const auto first = static_cast<std::uint32_t>(loose.vertices.size());
     const double error = 1e-8 * static_cast<double>(first % 7);
-    for (const std::uint32_t corner : corners) loose.vertices.push_back(cube.vertices[corner] + Vec3::Constant(error));
+    for (const std::uint32_t corner : corners)
+      loose.vertices.emplace_back(cube.vertices[corner] + Vec3::Constant(error));
     loose.triangles.push_back({first, first + 1, first + 2});
   }
   const auto warnings = read("loose.obj", test::obj_text(loose)).warnings;
