@@ -59,8 +59,8 @@ def clock_warnings(log, clock):
         lost = clock["rows_missing"]
         found.append(
             f"{counted(lost, 'row')} {'is' if lost == 1 else 'are'} missing, at most {clock['rows_missing_in_a_row']} "
-            "in a row: force steps across them are not counted; work across them is interpolated, and its largest error "
-            "is part of +-"
+            "in a row: force steps across them are not counted; work across them is interpolated, and its largest "
+            "error is part of +-"
         )
     if clock["gaps"]:
         found.append(
