@@ -83,11 +83,13 @@ TEST(FieldLimit, HasNoLinearLimitIfContactsComeAndGo) {
 /// this plane: the linear limit is that of the two directions within the plane, which the runs confirm within the
 /// resolution of the search.
 TEST(FieldLimit, OfAPlanarSceneLeavesOutTheDirectionAcrossThePlane) {
-  const Words scene = {R"(environment={"type":"hole_2d","width_m":0.001,"depth_m":0.005,"spacing_m":0.0001})",
-                       R"(motion={"orientation":{"tilt_rad":{"type":"waypoints","interpolation":"cosine",)"
-                       R"("points":[[0,0],[0.4,-0.18]]}}})",
-                       R"(hand={"type":"impedance","stiffness_N_per_m":300,"damping_N_s_per_m":6,)"
-                       R"("target":{"x_m":0,"y_m":-0.0045,"z_m":0}})",
+  const char* const motion = R"(motion={"orientation":{"tilt_rad":
+    {"type":"waypoints","interpolation":"cosine","points":[[0,0],[0.4,-0.18]]}}})";
+  const char* const hand = R"(hand={"type":"impedance","stiffness_N_per_m":300,"damping_N_s_per_m":6,
+    "target":{"x_m":0,"y_m":-0.0045,"z_m":0}})";
+  const Words scene = {motion,
+                       hand,
+                       R"(environment={"type":"hole_2d","width_m":0.001,"depth_m":0.005,"spacing_m":0.0001})",
                        R"(tool={"diameter_m":0.001,"length_m":0.01,"tip":"round"})",
                        R"(initial={"position_m":[0,-0.003,0]})",
                        R"(time={"step_s":0.0005,"duration_s":1})",
