@@ -79,7 +79,7 @@ typedef struct HapbenchMount {
    * the scenario's device has a limit as well, the smaller limit holds. */
   double max_force, max_force_rate;
   double ramp_s;       /* time in which the force rises from 0 and falls to 0 [s], 0 to 60 */
-  double stale_s;      /* longest time between two calls [s], > 0 */
+  double stale_s;      /* longest time between two calls [s], > the period */
   double engage_force; /* the force begins to rise after four successive rendered forces below this norm [N], > 0 */
 } HapbenchMount;
 

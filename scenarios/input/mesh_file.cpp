@@ -179,8 +179,8 @@ void warn_of_flat_components(const MeshFindings& found, const Warn& warn) {
                   count, component_text(*first)));
 }
 
-/// Returns how many boundary edges lie within `distance` [m] of another boundary edge, by their midpoints. Counts edges
-/// whose midpoints are in the same cell of one of two grids with cells of twice the distance.
+/// Returns about how many boundary edges lie within a few times `distance` [m] of another boundary edge, by their
+/// midpoints: those whose midpoints are in the same cell of one of two grids with cells of twice the distance.
 std::size_t paired_edges(const std::vector<Vec3>& midpoints, double distance) {
   std::vector<bool> is_paired(midpoints.size(), false);
   for (const double shift : {0.0, 0.5}) {
@@ -194,6 +194,16 @@ std::size_t paired_edges(const std::vector<Vec3>& midpoints, double distance) {
   return static_cast<std::size_t>(std::ranges::count(is_paired, true));
 }
 
+/// Returns the diameter of the box around the described components [m].
+double largest_diameter(const MeshFindings& found) {
+  Box box = Box::nothing();
+  for (const MeshComponent& component : found.components) {
+    box.add(component.box.min);
+    box.add(component.box.max);
+  }
+  return box.size().norm();
+}
+
 /// Returns a clause about boundary edges that lie on each other except for the last digits of their vertices; empty if
 /// few edges do. `size`: size of the surface [m].
 std::string rounding_gaps_text(const std::vector<Vec3>& open_edges, double size) {
@@ -201,7 +211,7 @@ std::string rounding_gaps_text(const std::vector<Vec3>& open_edges, double size)
   const std::size_t paired = paired_edges(open_edges, kRounding * size);
   if (static_cast<double>(paired) <= kFew * static_cast<double>(open_edges.size())) return "";
   return fmt::format(
-      "; {} of these edges lie within {:.2g} mm of another: their vertices differ only in the last digits and are not "
+      "; {} of these edges lie within about {:.2g} mm of another: their vertices differ only in the last digits and are not "
       "joined: merge such vertices in a mesh editor",
       paired, 1e3 * kRounding * size);
 }
@@ -249,7 +259,7 @@ std::vector<std::string> MeshFile::warnings(const fs::path& file) const {
         "the mesh is open: {} boundary edges, within x {:.3g} ... {:.3g}, y {:.3g} ... {:.3g}, z {:.3g} ... {:.3g} mm; "
         "the surface ends there{}",
         found.open_edges.size(), a.x(), b.x(), a.y(), b.y(), a.z(), b.z(),
-        rounding_gaps_text(found.open_edges, box.size().norm())));
+        rounding_gaps_text(found.open_edges, largest_diameter(found))));
   }
   // Warn about edges with more than two faces.
   if (!found.non_manifold_edges.empty()) {

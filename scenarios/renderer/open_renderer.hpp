@@ -29,7 +29,7 @@ struct RendererSetup {
 void check_mount(const RendererSetup& setup);
 
 /// Throws InputError if the period of the loop, which is the scenario's time step, is not smaller than stale_s of the
-/// mount: every call would be late, and the renderer would never render a force. A replay does not need this check,
+/// mount: calls would be late, and the renderer would never render a force. A replay does not need this check,
 /// because the times of its calls are recorded.
 void check_period(const Scenario& scenario, const RendererSetup& setup);
 

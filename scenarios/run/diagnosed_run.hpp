@@ -99,14 +99,14 @@ Number pop(const DiagnosedRun& run);
 Number shake(const DiagnosedRun& run);
 Number chatter(const DiagnosedRun& run);
 /// Returns K divided by the largest stable K of the linear loop in contact, rounded to six digits. Has a value only if
-/// the run diverged, lost contact or vibrates, the run has a linear loop, this loop is stable at some K
-/// (unstable_loop() is empty), and unstable_alone() is empty.
+/// the run diverged, lost contact, went through the surface or vibrates, the run has a linear loop, this loop is stable
+/// at some K (unstable_loop() is empty), and unstable_alone() is empty.
 Number stability_limit_ratio(const DiagnosedRun& run);
-/// Returns 1 if the run diverged, lost contact or vibrates, the tool moves freely, and the loop of hand and device is
-/// unstable even without contact, by its eigenvalues; otherwise an empty value.
+/// Returns 1 if the run diverged, lost contact, went through the surface or vibrates, the tool moves freely, and the
+/// loop of hand and device is unstable even without contact, by its eigenvalues; otherwise an empty value.
 Number unstable_alone(const DiagnosedRun& run);
-/// Returns 1 if the run diverged, lost contact or vibrates, the linear loop with a contact is unstable even with a
-/// stiffness of K / 10000, and unstable_alone() is empty; otherwise an empty value.
+/// Returns 1 if the run diverged, lost contact, went through the surface or vibrates, the linear loop with a contact is
+/// unstable even with a stiffness of K / 10000, and unstable_alone() is empty; otherwise an empty value.
 Number unstable_loop(const DiagnosedRun& run);
 /// Returns true if the linear loop with a contact is stable at some stiffness of at least K / 10000 after `change`.
 bool is_stable_at_some_stiffness(const DiagnosedRun& run, const std::function<void(Scenario&)>& change);
@@ -125,8 +125,8 @@ Number coarseness(const DiagnosedRun& run);
 /// three cases: the device is no impedance device, the damping is Hunt-Crossley damping, or no vibration, force step or
 /// force reversal exceeds its threshold.
 Number encoder_force(const DiagnosedRun& run);
-/// Returns the rms of the force [N] that the noise of the measured position causes through the damping B. Empty unless
-/// the device is an impedance device; 0 without noise and for Hunt-Crossley damping.
+/// Returns the rms of the force [N] that the noise of the measured position causes through the rendered damping. Empty
+/// unless the device is an impedance device; 0 without noise and for Hunt-Crossley damping.
 Number position_noise_force(const DiagnosedRun& run);
 /// Returns the rms of the rendered force [N] that the noise of the force sensor of an admittance device causes: white
 /// noise moves a virtual mass on a contact with K and B. Empty for other devices.
@@ -145,7 +145,8 @@ std::string created_by(const DiagnosedRun& run);
 bool stiffer_hand_helps(const DiagnosedRun& run);
 /// Returns B dt / m divided by the largest value of B dt / m at which a step is stable. B is the damping along the
 /// stiffest contact, dt the time step, and m the mass of the handle of an impedance device or otherwise of the tool.
-/// The limit is 2 for a handle, and a property of the integrator for a tool.
+/// The limit is 2 for a handle, and a property of the integrator for a tool. Empty for a device with a delay, a filter
+/// other than the difference, or a transmission, which lower the limit.
 Number damping_share(const DiagnosedRun& run);
 /// Returns the displacement of the tip perpendicular to the force in the last quarter, divided by the tool's half
 /// width. Empty unless three conditions hold: the tool moves freely, the hand force is constant, and the tool is in

@@ -124,8 +124,8 @@ constexpr Rule kRules[] = {
      [](const DiagnosedRun& r) { return share(r.observations.at_input_limit, r.observations.in_contact); },
      against_input_limit},
     {"bounces",
-     "number of landings per second; the first landing, and one landing for each period or waypoint of the hand's "
-     "script, are not counted",
+     "number of landings per second; not counted are the first landing, one landing for each period or waypoint of the "
+     "hand's script, and two for each of a script of the orientation",
      "1/s", 8.0, "the tool bounces: {} landings per second", bounces, against_bounces, no_more, true},
     {"chatter",
      "number of force reversals (by more than 90 degrees from one step to the next) per second in settled contact of a "

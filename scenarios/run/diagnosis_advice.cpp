@@ -380,13 +380,17 @@ std::string against_shaking(const DiagnosedRun& run) {
 }
 
 std::string against_coarseness(const DiagnosedRun& run) {
-  // Half of the spacing gives four times as many points. If the rendered stiffness grows with their number, K must be
-  // smaller by this factor. Stiffness shaping keeps the ratio below 1.5.
+  // Half of the spacing gives four times as many points, or twice as many on the outline of a planar hole. If the
+  // rendered stiffness grows with their number, K must be smaller by this factor. Stiffness shaping keeps the ratio
+  // below 1.5.
   constexpr double kGrowsWithPoints = 1.5;
   const bool grows = is_beyond(run.metric("ratio_max"), kGrowsWithPoints);
-  return fmt::format(
-      "half of {}{}; \"hapbench compare --errors\" shows which metrics depend on it", point_distance(run.loaded)->path,
-      grows ? " and a quarter of K, because the stiffness of this algorithm grows with the number of points" : "");
+  const char* const part = std::holds_alternative<Hole2d>(run.scenario().environment) ? "half" : "a quarter";
+  const std::string of_K =
+      grows ? fmt::format(" and {} of K, because the stiffness of this algorithm grows with the number of points", part)
+            : "";
+  return fmt::format("half of {}{}; \"hapbench compare --errors\" shows which metrics depend on it",
+                     point_distance(run.loaded)->path, of_K);
 }
 
 std::string against_depth(const DiagnosedRun& run) {

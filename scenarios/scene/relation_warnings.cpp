@@ -196,12 +196,14 @@ std::optional<Warning> first_unplayed(const Json& json, const std::string& at, d
   if (!json.is_object()) return std::nullopt;
   if (json.value("type", Json()) == "waypoints") {
     const Json& points = json.at("points");
-    const bool moves = points.size() > 1 && points[points.size() - 2][1] != points.back()[1];
-    if (!moves || points.back()[0].get<double>() <= (1.0 + kUnplayed) * duration) return std::nullopt;
+    // Leave out waypoints at the end with which the script only holds its last value.
+    std::size_t last = points.size() - 1;
+    while (last > 0 && points[last - 1][1] == points[last][1]) --last;
+    if (last == 0 || points[last][0].get<double>() <= (1.0 + kUnplayed) * duration) return std::nullopt;
     return Warning{"unplayed_script", at,
                    fmt::format("the script's last waypoint is at {:.6g} s, but the run ends at {:.6g} s; is "
                                "time.duration_s (or steps) right?",
-                               points.back()[0].get<double>(), duration)};
+                               points[last][0].get<double>(), duration)};
   }
   // Search the fields of any other object.
   for (const auto& field : json.items()) {

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <map>
 #include <numeric>
 #include <optional>
 #include <span>
@@ -256,13 +257,11 @@ class MeshParts {
   /// Marks the parts as open that end at an edge with one triangle or with more than two. A part passes through such an
   /// edge, and does not end there, if its triangles run along the edge equally often in both directions.
   void note_open_parts(std::span<const TriangleSide> edge) {
-    for (const TriangleSide& side : edge) {
-      const std::uint32_t part = part_[side.triangle];
-      std::int64_t balance = 0;
-      for (const TriangleSide& other : edge)
-        if (part_[other.triangle] == part) balance += other.forward != reversed_[other.triangle] ? 1 : -1;
+    std::map<std::uint32_t, std::int64_t> balances;  // of the parts at this edge
+    for (const TriangleSide& side : edge)
+      balances[part_[side.triangle]] += side.forward != reversed_[side.triangle] ? 1 : -1;
+    for (const auto& [part, balance] : balances)
       if (balance != 0) closed_[part] = false;
-    }
   }
   /// Returns the triangles of a part, wound consistently.
   std::vector<Triangle> triangles_of(std::uint32_t part, const std::vector<Triangle>& triangles) const {

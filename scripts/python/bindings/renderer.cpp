@@ -58,7 +58,7 @@ class PythonRenderer {
                    limits[3],
                    limits[4]};
     std::array<char, HAPBENCH_ERROR_SIZE> error{};
-    const KeptErrors errors;
+    KeptErrors errors;
     renderer_.reset(hapbench_renderer_open(&setup, error.data()));
     errors.raise();  // a law whose object cannot be created
     if (!renderer_) throw InputError(error.data());
@@ -77,7 +77,7 @@ class PythonRenderer {
       std::copy(given[i]->begin(), given[i]->end(), vectors[i]);
     }
     // An exception of a law is a FAULT of this renderer. Only an exception such as KeyboardInterrupt is also raised.
-    const KeptErrors errors;
+    KeptErrors errors;
     hapbench_renderer_step(renderer_.get(), &input_, &output_);
     errors.raise_interrupt();
     py::dict result;

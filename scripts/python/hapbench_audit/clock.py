@@ -1,14 +1,11 @@
 """Statistics of the times of a log: rate, jitter and missing rows, and the number of successive rows in which a
 position or a force stays the same."""
 import numpy as np
-from hapbench_import.clock import are_days
+from hapbench_import.clock import FASTEST_HZ, are_days
 from hapbench_import.text_table import counted
 
 from .log import LONG_INTERVALS
 
-# Largest plausible rate of a haptic or contact loop [Hz]. Above this rate, the times of the log are probably not in
-# seconds.
-FASTEST_HZ = 1e5
 # If the standard deviation of the time steps exceeds this fraction of the mean interval, the audit prints a warning.
 JITTER = 0.05
 

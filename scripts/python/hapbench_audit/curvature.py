@@ -41,6 +41,10 @@ def radius_of(log, contacts):
         or by_position < BY_POSITION * total
     ):
         return None
+    # On a convex surface, the force tilts towards the displacement. Dry friction that holds the tool tilts it the other
+    # way, as a concave surface does, so that this log does not decide between the two.
+    if np.trace(slopes) <= 0.0:
+        return None
     curvature = float(np.linalg.norm(slopes, 2))
     heights = []
     for first, after in contacts.runs.tolist():

@@ -74,7 +74,7 @@ def numbers_of(name, given):
         )
     if values.dtype.kind in "mM":  # times with a unit
         values = np.where(
-            np.isnat(values), np.nan, (values - values[:1]) / np.timedelta64(1, "ns") * 1e-9
+            np.isnat(values), np.nan, (values - first_time(values)) / np.timedelta64(1, "ns") * 1e-9
         )
     elif values.dtype.kind in "OSU":
         values = np.vectorize(number_or_nan, otypes=[float])(values)
@@ -84,10 +84,18 @@ def numbers_of(name, given):
         raise ValueError(f"got {values.dtype} values; allowed: numbers")
     if is_large(values):
         values = values - values[0]
-    values = np.where(np.ma.getmaskarray(given), np.nan, values.astype(float))
+    values = values.astype(float)
+    if isinstance(given, np.ma.MaskedArray):
+        values = np.where(np.ma.getmaskarray(given), np.nan, values)
     if values.ndim == 1 or values.shape[1] == 1:
         return {name: values.ravel()}
     return {f"{name}_{axis}": column for axis, column in zip("xyz", values.T)}
+
+
+def first_time(values):
+    """Returns the first time that is not missing; the first if all are missing."""
+    known = values[~np.isnat(values)]
+    return known[0] if known.size else values.flat[0]
 
 
 def number_or_nan(value):

@@ -48,7 +48,7 @@ TEST(Warnings, NameAScriptThatIsLongerThanTheRun) {
     return warnings_with({"time.duration_s=0.1",
                           std::string(R"(hand={"type":"force","z_N":{"type":"waypoints","points":)") + points + "}}"});
   };
-  for (const char* points : {"[[0,-1],[0.5,-2]]", "[[0,-1],[0.05,-2],[0.5,-3]]"}) {
+  for (const char* points : {"[[0,-1],[0.5,-2]]", "[[0,-1],[0.05,-2],[0.5,-3]]", "[[0,-1],[0.5,-2],[0.6,-2]]"}) {
     ASSERT_EQ(script(points).size(), 1u) << points;
     EXPECT_NE(script(points)[0].find("last waypoint is at 0.5 s, but the run ends at 0.1"), std::string::npos);
   }
