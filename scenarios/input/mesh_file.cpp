@@ -211,8 +211,8 @@ std::string rounding_gaps_text(const std::vector<Vec3>& open_edges, double size)
   const std::size_t paired = paired_edges(open_edges, kRounding * size);
   if (static_cast<double>(paired) <= kFew * static_cast<double>(open_edges.size())) return "";
   return fmt::format(
-      "; {} of these edges lie within about {:.2g} mm of another: their vertices differ only in the last digits and are not "
-      "joined: merge such vertices in a mesh editor",
+      "; {} of these edges lie within about {:.2g} mm of another: their vertices differ only in the last digits and "
+      "are not joined: merge such vertices in a mesh editor",
       paired, 1e3 * kRounding * size);
 }
 
