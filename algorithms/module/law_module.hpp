@@ -37,9 +37,9 @@ class ExternalForceLaw {
 
 /// Returns the module table for a class `Law` that is derived from ExternalForceLaw and has the constructor `Law(double
 /// stiffness, const double* values)`; `values` are the values of its parameters. `info.parameters` is not used. An
-/// exception of the law is a fault, which ends the run. As in version 0.3, a law may also be
-/// derived from ForceLaw, in which evaluate, reset and gives_weights are noexcept: an exception of these functions ends
-/// the program.
+/// exception of the law is a fault, which ends the run. As in version 0.3, a law may also be derived
+/// from ForceLaw, in which evaluate, reset and gives_weights are noexcept: an exception of these functions ends the
+/// program.
 ///
 /// The module contains its own copy of hapbench's code and copies the contacts. It may therefore be built with
 /// another compiler, or for another instruction set, than the program that loads it.

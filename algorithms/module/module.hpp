@@ -88,8 +88,9 @@ class ModuleLaw final : public SingleSpringLaw {
 
   ModuleState state_;
   std::vector<double> values_;
-  /// Memory of the arrays of one call: guard values, weights, guard values, and then the copies of the other arrays of
-  /// numbers without gaps. A changed guard value shows that the module wrote out of range.
+  /// Memory of the arrays of one call: guard values, weights, guard values, then the copies of the other arrays of
+  /// numbers without gaps, and an unused gap behind them. A changed guard value shows that the module wrote out of
+  /// range.
   std::vector<double> numbers_;
   std::vector<std::uint32_t> indices_;
 };

@@ -176,13 +176,18 @@ std::vector<std::string> remedies_at_this_stiffness(const DiagnosedRun& run) {
                    [&](const auto& change) { return is_below_limit(run, change); });
 }
 
+/// Returns the advice if the loop is unstable without contact or at any K, so that K is not the cause. Otherwise empty.
+std::optional<std::string> against_instability_at_any_stiffness(const DiagnosedRun& run) {
+  if (is_beyond(unstable_alone(run), 0.5)) return against_unstable_servo(run);
+  if (is_beyond(unstable_loop(run), 0.5)) return against_unstable_loop(run);
+  return std::nullopt;
+}
+
 /// Returns the advice if the linear loop is unstable: without contact, because of K, or at any K. Empty if it is
 /// stable.
 std::optional<std::string> against_instability(const DiagnosedRun& run) {
-  if (is_beyond(unstable_alone(run), 0.5)) return against_unstable_servo(run);
   if (is_too_stiff(run)) return "a smaller K: the rule \"edge\" names the stability limit";
-  if (is_beyond(unstable_loop(run), 0.5)) return against_unstable_loop(run);
-  return std::nullopt;
+  return against_instability_at_any_stiffness(run);
 }
 
 /// Returns the remedies for measured causes of a rough force.
@@ -452,8 +457,7 @@ std::string against_saturation(const DiagnosedRun& run) {
   const bool device_binds = device != nullptr && device->force_max && (!rendered || *device->force_max <= *rendered);
   const std::string limit = device_binds ? "a stronger device" : "a larger rendering.limits.max_force_N";
   if (!run.is_free()) return either({"a smaller K", "a motion.position that is less deep", limit});
-  if (is_beyond(unstable_alone(run), 0.5)) return against_unstable_servo(run);
-  if (is_beyond(unstable_loop(run), 0.5)) return against_unstable_loop(run);
+  if (const auto advice = against_instability_at_any_stiffness(run)) return *advice;
   // In equilibrium, the rendered force balances the hand's force at any K. A smaller K therefore helps only against
   // vibration.
   return is_too_stiff(run) || run.vibrates() ? either({"a smaller K", "a smaller hand force", limit})
@@ -461,14 +465,12 @@ std::string against_saturation(const DiagnosedRun& run) {
 }
 
 std::string against_input_limit(const DiagnosedRun& run) {
-  if (is_beyond(unstable_alone(run), 0.5)) return against_unstable_servo(run);
-  if (is_beyond(unstable_loop(run), 0.5)) return against_unstable_loop(run);
+  if (const auto advice = against_instability_at_any_stiffness(run)) return *advice;
   return "a smaller hand force, or a larger device.force_limit_N (f_th in section 2.7 of the thesis)";
 }
 
 std::string against_bounces(const DiagnosedRun& run) {
-  if (is_beyond(unstable_alone(run), 0.5)) return against_unstable_servo(run);
-  if (is_beyond(unstable_loop(run), 0.5)) return against_unstable_loop(run);
+  if (const auto advice = against_instability_at_any_stiffness(run)) return *advice;
   if (is_too_stiff(run)) return "a smaller K";
   const std::string field = damping_field(run.scenario().rendering);
   return is_beyond(damping_share(run), kMaxDampingShare) ? "a smaller " + field
@@ -480,8 +482,7 @@ std::string against_chatter(const DiagnosedRun& run) {
 }
 
 std::string against_energy(const DiagnosedRun& run) {
-  if (is_beyond(unstable_alone(run), 0.5)) return against_unstable_servo(run);
-  if (is_beyond(unstable_loop(run), 0.5)) return against_unstable_loop(run);
+  if (const auto advice = against_instability_at_any_stiffness(run)) return *advice;
   if (const auto* device = run.impedance()) {
     // If the rendered force alone creates no energy, the delay creates it.
     const bool delay_creates = device->delay_samples > 0.0 && is_beyond(created_energy(run), kMaxCreatedEnergy) &&

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from ._packages import PROGRAM, use_this_python
-from .errors import ScenarioError, ScenarioWarning
+from .errors import ScenarioError, ScenarioWarning, shown
 from .results import Folder, Run, Trial
 from .table import Table
 
@@ -436,9 +436,7 @@ def _check_arguments(*arguments: tuple[str, object, Callable[[object], bool], st
     """
     for name, value, is_valid, allowed in arguments:
         if not is_valid(value):
-            text = repr(value)
-            got = text if len(text) <= 60 else f"{text[:59]}…"
-            raise ValueError(f"{name}: got {got}; allowed: {allowed}") from None
+            raise ValueError(f"{name}: got {shown(value)}; allowed: {allowed}") from None
 
 
 def _is_number(value: Any) -> bool:

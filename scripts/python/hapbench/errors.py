@@ -2,6 +2,12 @@
 import re
 
 
+def shown(value: object) -> str:
+    """Returns the representation of a value that is not allowed, cut to 60 characters."""
+    text = repr(value)
+    return text if len(text) <= 60 else f"{text[:59]}…"
+
+
 class InputError(Exception):
     """Invalid input, such as a scenario, an argument or a file. The message is one line that states where the fault is
     and what is allowed."""

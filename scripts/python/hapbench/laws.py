@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from .engine import _hapbench
+from .errors import shown
 
 Law = TypeVar("Law", bound=Callable[..., Any])
 _ARGUMENTS = ("depths", "gradients", "points", "normals", "stiffness")
@@ -120,8 +121,7 @@ def _shown(value):
     """Returns a text of one line for an argument that is not allowed."""
     if callable(value):
         return f"the {type(value).__name__} {getattr(value, '__name__', '')!r}"
-    text = repr(value)
-    return text if len(text) <= 60 else f"{text[:59]}…"
+    return shown(value)
 
 
 def _arguments(name, law, specified):

@@ -277,9 +277,8 @@ def peaks_of(log, contacts, spectrum, mean):
 
 def amplitude_at(log, first, after, frequency):
     """Returns the amplitude [N] of an oscillation at `frequency` [Hz] in the rows from `first` to before `after`: the
-    largest magnitude of its vector over a period. It
-    follows from a least-squares fit of a sine and a slow quadratic change of the force. The weights are a Hann
-    window."""
+    largest magnitude of its vector over a period. It follows from a least-squares fit of a sine and a slow quadratic
+    change of the force. The weights are a Hann window."""
     time = log.time[first:after] - log.time[first]
     angle = 2.0 * math.pi * frequency * time
     slow = time / time[-1] - 0.5
