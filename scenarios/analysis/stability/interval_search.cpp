@@ -163,6 +163,12 @@ EvaluatedParameters evaluate_scan(int intervals, const IsStable& stable) {
   return evaluated;
 }
 
+std::vector<double> scan_values(const IntervalSearchOptions& options, int intervals) {
+  std::vector<double> values;
+  for (int i = 0; i <= intervals; ++i) values.push_back(options.value_at(static_cast<double>(i) / intervals));
+  return values;
+}
+
 StableInterval find_stable_interval(const IntervalSearchOptions& options, EvaluatedParameters& evaluated,
                                     const IsStable& stable, bool beside) {
   TransitionSearch search(options, evaluated, stable);

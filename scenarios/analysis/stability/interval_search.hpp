@@ -59,6 +59,8 @@ using IsStable = std::function<bool(double t)>;
 
 /// Divides [0, 1] into `intervals` equal intervals and evaluates their end points, from t = 0 to t = 1.
 EvaluatedParameters evaluate_scan(int intervals, const IsStable& stable);
+/// Returns the values at the parameters of evaluate_scan().
+std::vector<double> scan_values(const IntervalSearchOptions& options, int intervals);
 
 /// Bisects the first stable-to-unstable transition above the current value, or above the first stable parameter if the
 /// current value is unstable. Returns an empty interval if no parameter is stable. On input `evaluated` has at least

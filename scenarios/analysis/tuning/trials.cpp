@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
 #include <span>
@@ -161,7 +162,7 @@ void Trials::recall_all() {
 
 // ---- Trials
 
-TuneTrial& Trials::mutable_trial(const TuneSetting& setting, double stiffness) {
+TuneTrial& Trials::stored_trial(const TuneSetting& setting, double stiffness) {
   const auto [entry, is_new] = all_.try_emplace({setting, stiffness});
   TuneTrial& trial = entry->second;
   if (is_new) {
@@ -169,6 +170,11 @@ TuneTrial& Trials::mutable_trial(const TuneSetting& setting, double stiffness) {
     trial.algorithm = algorithm_;
     trial.stiffness = stiffness;
   }
+  return trial;
+}
+
+TuneTrial& Trials::mutable_trial(const TuneSetting& setting, double stiffness) {
+  TuneTrial& trial = stored_trial(setting, stiffness);
   if (requested_.insert(&trial).second) {
     search_runs_ += trial.runs;  // counted as if this search had made the runs
     judge(trial);
@@ -279,20 +285,20 @@ std::optional<Failing> Trials::first_failing(const TuneTrial& trial, std::size_t
                                              const std::function<std::string(std::size_t run)>& more) {
   const double K = trial.stiffness;
   std::vector<std::string> why(count);
-  in_parallel(nullptr, count, [&](std::size_t i) {
+  const std::size_t failing = run_until_failure(nullptr, count, [&](std::size_t i) {
     // Check the linear loop in contact, then run.
     const SceneVariant& variant = variants_[i % variants_.size()];
     const CheckedScenario scene = checked(load(trial.setting, K, variant, more(i)));
     if (unstable_loop(scene.scenario(), trial.contact, K, scene.scenario().rendering.stiffness, over_hands_)) {
       why[i] = "the contact loop is unstable" + with(variant);
-      return;
+      return false;
     }
     const RunStability run = stability_of(scene, shell_, rule_for(scene.scenario(), variant));
     if (!is_stable(run.verdict)) why[i] = verdict_with(run, variant);
+    return is_stable(run.verdict);
   });
-  for (std::size_t i = 0; i < count; ++i)
-    if (!why[i].empty()) return Failing{i, why[i]};
-  return std::nullopt;
+  if (failing == count) return std::nullopt;
+  return Failing{failing, why[failing]};
 }
 
 std::vector<std::optional<TuneFailure>> Trials::vibrations(const TuneSetting& setting,
@@ -325,13 +331,41 @@ std::map<double, TuneFailure> Trials::known_vibrations(const TuneSetting& settin
 }
 
 void Trials::in_parallel(TuneTrial* trial, std::size_t count, const std::function<void(std::size_t)>& job) {
-  runs_ += count;
-  if (trial != nullptr) {
-    trial->runs += count;
-    search_runs_ += count;
-  }
+  if (trial != nullptr)
+    count_runs(*trial, count);
+  else
+    runs_ += count;
   for_each_job(count, {question_.threads, ""}, job);
   report_runs();
+}
+
+std::size_t Trials::run_until_failure(TuneTrial* trial, std::size_t count,
+                                      const std::function<bool(std::size_t)>& holds) {
+  std::atomic<std::size_t> lowest = count;  // lowest job that is known to fail
+  for_each_job(count, {question_.threads, ""}, [&](std::size_t i) {
+    if (i > lowest || holds(i)) return;
+    for (std::size_t known = lowest; i < known && !lowest.compare_exchange_weak(known, i);) {
+    }
+  });
+  const std::size_t needed = std::min(lowest + 1, count);
+  if (trial != nullptr)
+    count_runs(*trial, needed);
+  else
+    runs_ += needed;
+  report_runs();
+  return lowest;
+}
+
+void Trials::in_parallel(std::span<TuneTrial* const> trials, const std::function<void(std::size_t)>& job) {
+  for (TuneTrial* trial : trials) count_runs(*trial, 1);
+  for_each_job(trials.size(), {question_.threads, ""}, job);
+  report_runs();
+}
+
+void Trials::count_runs(TuneTrial& trial, std::size_t count) {
+  runs_ += count;
+  trial.runs += count;
+  if (requested_.contains(&trial)) search_runs_ += count;
 }
 
 MetricValues Trials::metrics_of(const Result& run) const {
@@ -476,72 +510,120 @@ std::optional<TuneFailure> Trials::loop_failure(const TuneTrial& trial, std::siz
   return failure;
 }
 
-/// Runs the variants [first, last) at K and at G K. Records the first failure: a run that is not settled, or an
-/// unstable loop in contact.
+/// Runs a variant at K and stores the result in `motion`. If the run is stable, also linearises its contact. Returns
+/// true if the run is stable.
+bool Trials::is_stable_at_K(const TuneTrial& trial, std::size_t variant, MotionOfVariant& motion) const {
+  const CheckedScenario scene = checked(load(trial.setting, trial.stiffness, variants_[variant]));
+  motion.at_K = stability_of(scene, shell_, rule_for(scene.scenario(), variants_[variant]));
+  if (!is_stable(motion.at_K.verdict)) return false;
+  motion.contact = contact_of(scene, motion.at_K);
+  return true;
+}
+
+/// Runs a variant at G K and stores the result in `motion`. Returns true if the run is stable.
+bool Trials::is_stable_at_GK(const TuneTrial& trial, std::size_t variant, MotionOfVariant& motion) const {
+  const CheckedScenario scene = checked(load(trial.setting, question_.margin * trial.stiffness, variants_[variant]));
+  motion.at_GK = stability_of(scene, shell_, rule_for(scene.scenario(), variants_[variant]));
+  return is_stable(motion.at_GK.verdict);
+}
+
+/// Returns how the motion of a variant fails: a run that is not settled, or an unstable loop in contact; empty if
+/// neither. Precondition: the runs at K and, if that run is stable, at G K were made.
+std::optional<TuneFailure> Trials::motion_failure(const TuneTrial& trial, std::size_t variant,
+                                                  const MotionOfVariant& motion) const {
+  const auto failure = [&](const char* binding, const std::string& where, const RunStability& run) {
+    TuneFailure failed{binding, where + verdict_with(run, variants_[variant])};
+    failed.variant = variant > 0 ? variants_[variant].name : "";
+    failed.family = variants_[variant].family;
+    failed.verdict = run_verdict_name(run.verdict);
+    failed.variant_index = variant;
+    return failed;
+  };
+  if (const RunVerdict at_K = motion.at_K.verdict; !is_stable(at_K)) {
+    TuneFailure failed = failure("settled", "at K: ", motion.at_K);
+    failed.too_soft = at_K >= RunVerdict::thrown_out && at_K <= RunVerdict::went_through;
+    return failed;
+  }
+  if (!is_stable(motion.at_GK.verdict))
+    return failure("margin", fmt::format("at {:g} K: ", question_.margin), motion.at_GK);
+  // For springs in permanent contact, the loop was checked before the runs.
+  return springs_lambda_ ? std::nullopt : loop_failure(trial, variant, motion.contact);
+}
+
+/// Records the motion of a variant in its trial. Has no effect on a trial with an earlier failure.
+void Trials::record(TuneTrial& trial, std::size_t variant, const MotionOfVariant& motion) const {
+  trial.judged = variant + 1;
+  if (variant == 0) {
+    trial.lambda_max = motion.at_K.settled.lambda_max;
+    trial.contact = motion.contact;
+    trial.settled = is_stable(motion.at_K.verdict);
+  }
+  if (!trial.failure) trial.failure = motion_failure(trial, variant, motion);
+}
+
+/// Runs the variants [first, last) at K and at G K, and records their motions up to the first failing run.
 void Trials::judge_motion(TuneTrial& trial, std::size_t first, std::size_t last) {
-  std::vector<RunStability> judged(2 * (last - first));  // verdicts on each variant at K, then at G K
-  std::vector<ContactOfTrial> contacts(last - first);    // contact of each variant at K
-  in_parallel(&trial, judged.size(), [&](std::size_t job) {
-    const double gain = job % 2 != 0 ? question_.margin : 1.0;
-    const CheckedScenario scene = checked(load(trial.setting, gain * trial.stiffness, variants_[first + job / 2]));
-    judged[job] = stability_of(scene, shell_, rule_for(scene.scenario(), variants_[first + job / 2]));
-    if (job % 2 == 0) contacts[job / 2] = contact_of(scene, judged[job]);
+  std::vector<MotionOfVariant> motions(last - first);
+  const std::size_t failing = run_until_failure(&trial, 2 * motions.size(), [&](std::size_t job) {
+    MotionOfVariant& motion = motions[job / 2];
+    return job % 2 == 0 ? is_stable_at_K(trial, first + job / 2, motion)
+                        : is_stable_at_GK(trial, first + job / 2, motion);
   });
+  for (std::size_t i = 0; i < motions.size() && 2 * i <= failing; ++i) record(trial, first + i, motions[i]);
   trial.judged = last;
-  if (first == 0) {
-    trial.lambda_max = judged[0].settled.lambda_max;
-    trial.contact = contacts[0];
+}
+
+void Trials::run_ahead(const TuneSetting& setting, std::span<const double> stiffnesses) {
+  if (is_exhausted()) return;
+  // Each stage runs only trials that have not failed in the stage before.
+  std::vector<TuneTrial*> trials;
+  for (const double K : stiffnesses) {
+    TuneTrial& trial = stored_trial(setting, K);
+    if (trial.judged > 0 || trial.failure) continue;
+    if (springs_lambda_) trial.failure = loop_failure(trial, 0, {});
+    if (!trial.failure) trials.push_back(&trial);
   }
-  for (std::size_t i = first; i < last && !trial.failure; ++i) {
-    const RunStability &at_K = judged[2 * (i - first)], &at_GK = judged[2 * (i - first) + 1];
-    const auto fail = [&](const char* binding, const std::string& where, const RunStability& run) {
-      trial.failure = TuneFailure{binding, where + verdict_with(run, variants_[i])};
-      trial.failure->variant = i > 0 ? variants_[i].name : "";
-      trial.failure->family = variants_[i].family;
-      trial.failure->verdict = run_verdict_name(run.verdict);
-      trial.failure->variant_index = i;
-    };
-    if (!is_stable(at_K.verdict)) {
-      fail("settled", "at K: ", at_K);
-      trial.failure->too_soft = at_K.verdict >= RunVerdict::thrown_out && at_K.verdict <= RunVerdict::went_through;
-      return;
-    }
-    if (i == 0) trial.settled = true;
-    if (!is_stable(at_GK.verdict)) return fail("margin", fmt::format("at {:g} K: ", question_.margin), at_GK);
-    // For springs in permanent contact, evaluate_motion() checked the loop before the runs.
-    if (!springs_lambda_) trial.failure = loop_failure(trial, i, contacts[i - first]);
-  }
+  std::map<const TuneTrial*, MotionOfVariant> motions;
+  for (const TuneTrial* trial : trials) motions[trial];
+  in_parallel(trials, [&](std::size_t i) { is_stable_at_K(*trials[i], 0, motions.at(trials[i])); });
+  std::vector<TuneTrial*> settled = trials;
+  std::erase_if(settled, [&](const TuneTrial* trial) { return !is_stable(motions.at(trial).at_K.verdict); });
+  in_parallel(settled, [&](std::size_t i) { is_stable_at_GK(*settled[i], 0, motions.at(settled[i])); });
+  for (TuneTrial* trial : trials) record(*trial, 0, motions.at(trial));
+  std::erase_if(settled, [](const TuneTrial* trial) { return trial->failure.has_value(); });
+  in_parallel(settled, [&](std::size_t i) { measure(*settled[i]); });
 }
 
 /// Measures metrics and low-vibration numbers in the run of the scene itself. A trial whose force is zero fails.
-void Trials::measure_scene(TuneTrial& trial) {
-  if (trial.is_measured) return;
+void Trials::measure(TuneTrial& trial) const {
   trial.is_measured = true;
-  in_parallel(&trial, 1, [&](std::size_t) {
-    const CheckedScenario scene = checked(load(trial.setting, trial.stiffness));
-    const Result run = run_with_shell(scene, shell_, Diagnose::low_vibration);
-    trial.metrics = metrics_of(run);
-    if (const Metric* depth = find_metric(run.metrics, "inside_max_m"))
-      trial.depth_within = depth->tolerance().value_or(kInfinite);
-    for (const Diagnosed& number : run.low_vibration)
-      trial.largest.insert_or_assign(number.rule, ExtremeValue{number.value, number.says});
-    // Forces below half the resolution of the device are rounded to zero.
-    const auto* device = std::get_if<ImpedanceDeviceConfig>(&scene.scenario().device);
-    const double smallest = device != nullptr ? 0.5 * device->force_step : 0.0;
-    const double largest = number_of(run.metrics, "force_max_N").value_or(0.0);
-    if (!(largest > smallest)) {
-      trial.failure = TuneFailure{
-          "no_force", fmt::format("no force is rendered: the largest force of the law is {:.3g} N", largest)};
-      trial.failure->too_soft = true;
-    }
-    // A run beyond the limit of explicit friction is a numerical artefact: its metrics mean nothing.
-    if (const double steps = number_of(run.metrics, "explicit_friction_rows_beyond").value_or(0.0); steps > 0.0)
-      trial.failure = TuneFailure{
-          "friction",
-          fmt::format("explicit integration of friction is unstable in the run (number of unstable steps: {:g})",
-                      steps)};
-  });
+  const CheckedScenario scene = checked(load(trial.setting, trial.stiffness));
+  const Result run = run_with_shell(scene, shell_, Diagnose::low_vibration);
+  trial.metrics = metrics_of(run);
+  if (const Metric* depth = find_metric(run.metrics, "inside_max_m"))
+    trial.depth_within = depth->tolerance().value_or(kInfinite);
+  for (const Diagnosed& number : run.low_vibration)
+    trial.largest.insert_or_assign(number.rule, ExtremeValue{number.value, number.says});
+  // Forces below half the resolution of the device are rounded to zero.
+  const auto* device = std::get_if<ImpedanceDeviceConfig>(&scene.scenario().device);
+  const double smallest = device != nullptr ? 0.5 * device->force_step : 0.0;
+  const double largest = number_of(run.metrics, "force_max_N").value_or(0.0);
+  if (!(largest > smallest)) {
+    trial.failure =
+        TuneFailure{"no_force", fmt::format("no force is rendered: the largest force of the law is {:.3g} N", largest)};
+    trial.failure->too_soft = true;
+  }
+  // A run beyond the limit of explicit friction is a numerical artefact: its metrics mean nothing.
+  if (const double steps = number_of(run.metrics, "explicit_friction_rows_beyond").value_or(0.0); steps > 0.0)
+    trial.failure = TuneFailure{
+        "friction",
+        fmt::format("explicit integration of friction is unstable in the run (number of unstable steps: {:g})", steps)};
   for (const auto& [name, bound] : question_.limits) note_extremes(trial, name, {&trial.metrics, 1}, variants_);
+}
+
+/// Measures the scene itself unless this was done before.
+void Trials::measure_scene(TuneTrial& trial) {
+  if (!trial.is_measured) in_parallel(&trial, 1, [&](std::size_t) { measure(trial); });
 }
 
 /// Measures in all variants the metrics for which the user has set limits.
@@ -575,9 +657,7 @@ void Trials::refine(TuneTrial& trial, Refinement refinement) {
     else
       trial.error.erase(name);
   }
-  runs_ += runs;
-  search_runs_ += runs;
-  trial.runs += runs;
+  count_runs(trial, runs);
   report_runs();
 }
 

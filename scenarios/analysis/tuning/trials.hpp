@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <set>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -62,7 +63,8 @@ struct TuneLimits {
 ///   searches;
 /// - a trial is evaluated only as far as a caller needs it (Need). The results equal the results of a complete
 ///   evaluation, except that TuneTrial::binding and `why` of an infeasible trial may lack a later failure or the error;
-/// - runs() counts every simulation.
+/// - runs() does not depend on the number of threads: it counts simulations up to the first failing one, and not the
+///   simulations that other threads had already begun.
 class Trials {
  public:
   /// `question` and `algorithm` must outlive this object.
@@ -99,6 +101,11 @@ class Trials {
 
   /// Returns the trial of a setting at K [N/m]. Runs it first if necessary.
   const TuneTrial& trial_at(const TuneSetting& setting, double stiffness);
+  /// Runs the scene itself with a setting at several stiffnesses [N/m] on all threads, so that trial_at() needs no
+  /// further run of the scene itself. First runs each K, then G K where the run at K is settled, and then measures the
+  /// trials that have not failed. The runs count for a search when it requests the trial. Does nothing if the search is
+  /// exhausted.
+  void run_ahead(const TuneSetting& setting, std::span<const double> stiffnesses);
   /// Returns true if a setting is feasible at K [N/m].
   bool feasible(const TuneSetting& setting, double K) { return trial_at(setting, K).feasible(); }
   /// Returns true if a setting at K [N/m] is infeasible and a larger K may keep its constraints.
@@ -193,17 +200,31 @@ class Trials {
     double from, to;
     std::string constraint, reason;
   };
+  /// The runs of a variant in a trial. `at_GK` is only used if the run at K is stable.
+  struct MotionOfVariant {
+    RunStability at_K, at_GK;
+    ContactOfTrial contact;  ///< contact of the run at K; empty if this run is not stable
+  };
 
   LoadedScenario load(const TuneSetting& setting, double stiffness, const SceneVariant& variant,
                       const std::string& more = {}) const;
   void in_parallel(TuneTrial* trial, std::size_t count, const std::function<void(std::size_t)>& job);
+  std::size_t run_until_failure(TuneTrial* trial, std::size_t count, const std::function<bool(std::size_t)>& holds);
+  void in_parallel(std::span<TuneTrial* const> trials, const std::function<void(std::size_t)>& job);
+  void count_runs(TuneTrial& trial, std::size_t count);
   MetricValues metrics_of(const Result& run) const;
   ContactOfTrial contact_of(const CheckedScenario& scene, const RunStability& run) const;
   std::optional<std::string> unstable_loop(Scenario scenario, const ContactOfTrial& contact, double K, double highest,
                                            bool over_hands) const;
   std::optional<TuneFailure> loop_failure(const TuneTrial& trial, std::size_t variant,
                                           const ContactOfTrial& contact) const;
+  bool is_stable_at_K(const TuneTrial& trial, std::size_t variant, MotionOfVariant& motion) const;
+  bool is_stable_at_GK(const TuneTrial& trial, std::size_t variant, MotionOfVariant& motion) const;
+  std::optional<TuneFailure> motion_failure(const TuneTrial& trial, std::size_t variant,
+                                            const MotionOfVariant& motion) const;
+  void record(TuneTrial& trial, std::size_t variant, const MotionOfVariant& motion) const;
   void judge_motion(TuneTrial& trial, std::size_t first, std::size_t last);
+  void measure(TuneTrial& trial) const;
   void measure_scene(TuneTrial& trial);
   void measure_variants(TuneTrial& trial);
   void refine(TuneTrial& trial, Refinement refinement);
@@ -218,6 +239,7 @@ class Trials {
   void evaluate(TuneTrial& trial, Need need);
   void judge(TuneTrial& trial, Need need = Need::feasibility);
   const Refutation* refutation_of(const TuneTrial& trial) const;
+  TuneTrial& stored_trial(const TuneSetting& setting, double stiffness);
   TuneTrial& mutable_trial(const TuneSetting& setting, double stiffness);
 
   const TuneQuestion& question_;

@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "scenarios/analysis/stability/interval_search.hpp"
 #include "scenarios/analysis/tuning/explanation.hpp"
@@ -18,10 +19,10 @@ namespace {
 /// TunedLaw::trials has these points for plots. Stiffnesses outside of the searched range are left out.
 void evaluate_along_stiffness(Trials& trials, const TuneTrial& choice) {
   const Range around{choice.stiffness / 30.0, choice.stiffness * 30.0, true}, whole = trials.ranges().stiffness;
-  for (int i = 0; i <= kScanIntervals; ++i) {
-    const double K = around.value_at(static_cast<double>(i) / kScanIntervals);
-    if (K > whole.from && K < whole.to / trials.question().margin) trials.evaluate_and_measure(choice.setting, K);
-  }
+  std::vector<double> stiffnesses = scan_values({.range = around}, kScanIntervals);
+  std::erase_if(stiffnesses, [&](double K) { return !(K > whole.from && K < whole.to / trials.question().margin); });
+  trials.run_ahead(choice.setting, stiffnesses);
+  for (const double K : stiffnesses) trials.evaluate_and_measure(choice.setting, K);
 }
 
 /// Searches with the current limits until a choice passes its verification. The choice is the stiffest feasible trial;

@@ -188,6 +188,7 @@ bool TuneSearch::improve(const TuneSetting& setting) {
       return false;
     }
   }
+  trials_.run_ahead(setting, scan_values(options, kScanIntervals));
   const auto holds = [&](double t) { return trials_.feasible(setting, options.value_at(t)); };
   EvaluatedParameters scan = evaluate_scan(kScanIntervals, holds);
   keep_highest_neighbours(scan);
