@@ -200,6 +200,24 @@ class Pages(unittest.TestCase):
             [(str(manual.file), link) for manual in MANUALS for link in broken_links(manual)], []
         )
 
+    def test_tables_are_tables(self):
+        """A table whose rows were wrapped with the paragraphs is shown as a paragraph."""
+        for manual in MANUALS:
+            code = {number for number, _ in manual.code()}
+            width = None  # number of cells of the table that contains the line before
+            for number, line in enumerate(manual.text.splitlines(), 1):
+                row = "" if number in code else line.strip()
+                with self.subTest(file=manual.file, line=number):
+                    if re.search(r"\|\s*:?-{3,}", row):
+                        self.assertRegex(row, r"^\|(\s*:?-+:?\s*\|)+$")
+                    if row.startswith("|"):
+                        cells = len(re.findall(r"(?<!\\)\|", row))
+                        self.assertTrue(row.endswith("|"))
+                        self.assertEqual(width or cells, cells)
+                        width = cells
+                    else:
+                        width = None
+
     def test_the_first_page_keeps_its_size(self):
         lines = text_of("README.md").splitlines()
         self.assertLessEqual(len(lines), 70)
