@@ -70,6 +70,9 @@ struct AlgorithmEntry {
   AlgorithmOrigin origin = {};  ///< empty for a built-in algorithm
   /// Keeps alive the texts to which `info` and `algorithm_parameters` of an external algorithm point.
   std::shared_ptr<const void> texts = {};
+
+  /// Returns false for a built-in algorithm.
+  bool is_external() const noexcept { return texts != nullptr; }
 };
 
 /// Function for AlgorithmEntry::make_law. Creates an object of the class `Law` from the configuration.

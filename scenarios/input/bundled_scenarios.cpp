@@ -45,7 +45,8 @@ fs::path find_scenario(const std::string& argument, const fs::path& directory) {
   std::error_code error;
   fs::path file = directory / argument;
   if (fs::exists(file, error)) {
-    if (is_mesh_name(file) && !fs::is_directory(file, error))
+    if (fs::is_directory(file, error)) throw InputError(argument + ": is a directory; allowed: a scenario file");
+    if (is_mesh_name(file))
       throw InputError(fmt::format("{}: is a mesh; allowed: a scenario; \"hapbench new mesh --from {}\" writes one",
                                    argument, shell_file(argument)));
     return file;

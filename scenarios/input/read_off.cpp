@@ -72,18 +72,26 @@ Counts read_counts(std::size_t length, MeshLines& lines) {
 /// colours, and tokens after the corners of a face. Warns about other text after a position.
 MeshFaces read_entries(const Counts& counts, MeshLines& lines) {
   MeshFaces faces;
+  std::size_t numbers = 3;  // largest number of tokens in the line of a vertex
   for (std::size_t i = 0; i < counts.vertices; ++i) {
     const bool has_line = lines.next();
     const bool is_edges = has_line && i == 0 && !counts.has_edges && lines.words().size() == 1 &&
                           whole_number(lines.words()[0]).has_value();
     if (!has_line || (is_edges && !lines.next())) lines.fail_at_end(i, counts.vertices, "vertices");
     faces.add_vertex(lines.position(0), lines.line());
+    numbers = std::max(numbers, lines.words().size());
     for (std::size_t k = 3; k < lines.words().size(); ++k)
       if (!finite_number(lines.words()[k])) lines.note_ignored(k);
   }
   lines.warn_of_ignored(faces.warnings);
   for (std::size_t i = 0; i < counts.faces; ++i) {
-    if (!lines.next()) lines.fail_at_end(i, counts.faces, "faces");
+    const bool has_line = lines.next();
+    if (!has_line && numbers >= 6)
+      lines.fail(
+          fmt::format("the file ends after {} of its {} faces, and a line with a vertex has {} numbers; allowed: "
+                      "each vertex in a line of its own",
+                      i, counts.faces, numbers));
+    if (!has_line) lines.fail_at_end(i, counts.faces, "faces");
     const std::size_t count = lines.count(0, "corners");
     if (count < 3 || lines.words().size() <= count)
       lines.fail(fmt::format("face {}: got {} corners and {} vertices; allowed: at least 3, and as many vertices", i,

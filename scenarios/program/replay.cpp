@@ -101,18 +101,42 @@ void warn_of_passage(const ProgramContext& context, const std::string& what, con
                                          what, text)});
 }
 
-/// Returns a sentence on the difference between the scenario and the recorded scenario; empty if they are the same.
-std::string other_scenario_note(const CheckedScenario& scenario, const LoopLog& log) {
-  const std::string hash = scenario_hash(effective_scenario(scenario.scenario(), fs::current_path()), scenario.files());
-  const bool has_other_period = scenario.scenario().time.step != log.scenario.period;
+std::string hash_of(const CheckedScenario& scenario) {
+  return scenario_hash(effective_scenario(scenario.scenario(), fs::current_path()), scenario.files());
+}
+
+/// Returns a sentence on the difference between a scenario, whose hash is `hash`, and the recorded scenario; empty if
+/// they are the same.
+std::string other_scenario_note(const Scenario& scenario, const std::string& hash, const LoopLog& log) {
+  const bool has_other_period = scenario.time.step != log.scenario.period;
   if (hash == log.scenario.hash && !has_other_period) return "";
   std::string text =
       fmt::format("the log was recorded with another scenario ({}, hash {}; here {}, hash {}): forces may differ",
-                  log.scenario.name, log.scenario.hash, scenario.scenario().name, hash);
+                  log.scenario.name, log.scenario.hash, scenario.name, hash);
   if (has_other_period)
     text += fmt::format(". The recorded time step is {0} s, here it is {1} s: --set time.step_s={0}",
-                        log.scenario.period, scenario.scenario().time.step);
+                        log.scenario.period, scenario.time.step);
   return text;
+}
+
+std::string other_scenario_note(const CheckedScenario& scenario, const LoopLog& log) {
+  return other_scenario_note(scenario.scenario(), hash_of(scenario), log);
+}
+
+/// The same for a comparison of laws: a scenario that differs from the recorded scenario only in its law is the same.
+/// `loaded`: the scenario before a law is chosen.
+std::string other_scenario_note(const LoadedScenario& loaded, const LoopLog& log) {
+  std::vector<std::string> hashes = {hash_of(checked(loaded))};
+  for (const std::string& name : algorithm_names()) {
+    LoadedScenario other = loaded;
+    other.scenario = with_algorithm(std::move(other.scenario), name);
+    try {
+      hashes.push_back(hash_of(checked(std::move(other))));
+    } catch (const InputError&) {  // the scenario rejects this law, which therefore recorded no log
+    }
+  }
+  const auto recorded = std::ranges::find(hashes, log.scenario.hash);
+  return other_scenario_note(loaded.scenario, recorded == hashes.end() ? hashes.front() : *recorded, log);
 }
 
 /// Returns sentences on the calls of the log and on the comparison of the outputs. `period`: time step of the scenario
@@ -177,6 +201,8 @@ int compare_replays(const std::string& given, const std::string& log_file, const
     scenarios.push_back(checked(std::move(loaded)));
   }
   Report report(options, "compare_replay", "compare_" + file.stem().string() + "_replay", context);
+  if (const std::string other = other_scenario_note(load_scenario(file, options.overrides), log); !other.empty())
+    print_warnings(context, {fmt::format("{}: {}", log_file, other)});
   std::vector<ReplayRow> rows;
   for (const CheckedScenario& scenario : scenarios) {
     const std::string& algorithm = scenario.scenario().rendering.algorithm;

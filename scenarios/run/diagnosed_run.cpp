@@ -356,6 +356,12 @@ Number saturation(const DiagnosedRun& run) {
                   static_cast<double>(run.observations.in_contact));
 }
 
+Number inward_share(const DiagnosedRun& run) {
+  const auto& inward = run.observations.inward;
+  if (!inward) return std::nullopt;
+  return quotient(static_cast<double>(*inward), static_cast<double>(run.observations.in_contact));
+}
+
 Number bounces(const DiagnosedRun& run) {
   const Number landings = run.metric("landings"), lifts = scripted_lifts(run.scenario());
   if (!landings || !lifts || !run.is_free()) return std::nullopt;

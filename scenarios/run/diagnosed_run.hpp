@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -44,6 +45,9 @@ struct DiagnosedRun {
   }
   /// Returns a metric's value; empty if the run does not have the metric or it has no value.
   Number metric(std::string_view name) const { return number_of(result.metrics, name); }
+  bool has_warning(std::string_view kind) const {
+    return std::ranges::find(result.warnings, kind, &Warning::kind) != result.warnings.end();
+  }
   bool is_free() const { return position_is_free(scenario().motion); }
   bool has_springs() const { return std::holds_alternative<SpringsEnvironment>(scenario().environment); }
   bool has_hand() const { return !std::holds_alternative<NoHandFields>(scenario().hand); }
@@ -75,7 +79,7 @@ Number ended(const DiagnosedRun& run) {
 /// numbers.
 inline constexpr double kMaxBuzz = 0.1, kMaxLimitRatio = 0.8, kMaxEncoderForce = 0.1, kMaxReduction = 0.1,
                         kMaxChatter = 10.0, kMaxDampingShare = 0.5, kMaxSoftness = 3.0, kMaxCoarseness = 1.15,
-                        kMaxSaturation = 0.01, kMaxCreatedEnergy = 1e-3;
+                        kMaxSaturation = 0.01, kMaxInward = 0.5, kMaxCreatedEnergy = 1e-3;
 /// Threshold for shake() [m/s]. It is ten times kMaxVibration, because shake() includes the landing: a landing at speed
 /// v contributes v sqrt(2.6 ms / duration of the run).
 inline constexpr double kMaxShake = 1e-2;
@@ -155,6 +159,9 @@ Number drift(const DiagnosedRun& run);
 Number depth_in_half_widths(const DiagnosedRun& run);
 Number softness(const DiagnosedRun& run);
 Number saturation(const DiagnosedRun& run);
+/// Returns the fraction of the steps in contact in which the spring force of an external law points into the surface;
+/// empty for a built-in law and without contact.
+Number inward_share(const DiagnosedRun& run);
 /// Returns the number of landings per second [1/s]. Does not count the first landing, nor one landing for each time at
 /// which the hand's script may have lifted the tool (scripted_lifts()).
 Number bounces(const DiagnosedRun& run);

@@ -298,6 +298,7 @@ std::string against_sinking(const DiagnosedRun& run) {
                          : "another motion.position: the script starts inside the environment";
   if (step_exceeds_half_width(run)) return kShorterStep;
   if (!run.is_free()) return "another motion.position, because the script moves the tool there";
+  if (is_beyond(inward_share(run), kMaxInward)) return "another sign of the law's force (rule \"inward\")";
   if (run.observations.in_contact == 0) return against_untouched_surface(run);
   if (is_too_stiff(run)) return against_sinking_when_unstable(run);
   if (const auto advice = against_instability(run)) return *advice;
@@ -329,6 +330,8 @@ std::string against_loss(const DiagnosedRun& run) {
 }
 
 std::string against_standstill(const DiagnosedRun& run) {
+  // The hand may have reached the end of its path, which is shorter than intended. Its motion then ends there.
+  if (run.has_warning("short_path")) return "a longer path of the drag: the warning \"short_path\" names where it ends";
   // A tool that ends without a rendered force is held by the device or led by the hand; the law has no effect.
   const bool is_rendered = !run.observations.last_force.isZero(0.0);
   std::vector<std::string> remedies;
@@ -449,6 +452,11 @@ std::string against_encoder(const DiagnosedRun& run) {
       effective(changes, [&](const auto& change) { return !is_stable || is_below_limit(run, change); });
   remedies.insert(remedies.begin(), "a finer encoder");
   return either(remedies);
+}
+
+std::string against_inward_force(const DiagnosedRun&) {
+  return "the opposite sign of the force in the law: the force of a spring of stiffness K at a contact is -K times depth "
+         "times gradient";
 }
 
 std::string against_saturation(const DiagnosedRun& run) {

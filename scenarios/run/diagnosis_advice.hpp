@@ -30,6 +30,7 @@ std::string against_sums(const DiagnosedRun& run);
 std::string against_damping(const DiagnosedRun& run);
 std::string against_friction(const DiagnosedRun& run);
 std::string against_encoder(const DiagnosedRun& run);
+std::string against_inward_force(const DiagnosedRun& run);
 std::string against_saturation(const DiagnosedRun& run);
 std::string against_input_limit(const DiagnosedRun& run);
 std::string against_bounces(const DiagnosedRun& run);

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <variant>
 
+#include "algorithms/registry.hpp"
 #include "device_model/impedance_device.hpp"
 #include "scenarios/scene/scenario.hpp"
 
@@ -20,6 +21,13 @@ std::optional<double> force_limit(const Scenario& scenario) {
   return limit;
 }
 
+/// Returns the sum of the depths of the contacts, each along its outward direction [m].
+Vec3 outward_depth(const ContactBuffer& contacts) noexcept {
+  Vec3 sum = Vec3::Zero();
+  for (std::size_t i = 0; i < contacts.size(); ++i) sum -= contacts.depth[i] * contacts.gradient(i);
+  return sum;
+}
+
 }  // namespace
 
 DiagnosisObserver::DiagnosisObserver(const Scenario& scenario)
@@ -27,6 +35,8 @@ DiagnosisObserver::DiagnosisObserver(const Scenario& scenario)
   // The steps of a quarter are stored; on_step must not allocate.
   observations_.last_forces.reserve(std::min(kMaxForces, static_cast<std::size_t>(scenario.time.steps) / 4 + 1));
   if (std::holds_alternative<ImpedanceDeviceConfig>(scenario.device)) observations_.created_by_motors = 0.0;
+  const AlgorithmEntry* law = find_algorithm(scenario.rendering.algorithm);
+  if (law != nullptr && law->is_external()) observations_.inward = 0;
 }
 
 void DiagnosisObserver::on_step(const StepRecord& record) noexcept {
@@ -54,6 +64,7 @@ void DiagnosisObserver::add_contact(const StepRecord& record) noexcept {
   // Behind the surface, a tool that was thrown through it can touch where no equilibrium is near.
   if (outcome_ == nullptr || !outcome_->has_passed()) observations_.last_contact = contact_state(record);
   if (force_limit_ && f.norm() >= kAtLimit * *force_limit_) ++observations_.at_force_limit;
+  if (observations_.inward && record.force.spring.dot(outward_depth(*record.rendered)) < 0.0) ++*observations_.inward;
   if (input_limit_ && record.hand.input.norm() >= kAtLimit * *input_limit_) ++observations_.at_input_limit;
   if (!was_in_contact_) return;
   const Vec3 moved = record.tool.pose.position - observations_.tip, normal = record.force.spring.stableNormalized();

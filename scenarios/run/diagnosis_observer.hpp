@@ -23,6 +23,9 @@ struct RunObservations {
   std::uint64_t at_force_limit = 0;
   /// Number of steps in contact whose hand force reaches the input limit of the device.
   std::uint64_t at_input_limit = 0;
+  /// Number of steps in contact in which the spring force of an external law points into the surface: against the sum
+  /// of the depths along the outward directions of their contacts. Empty for a built-in law.
+  std::optional<std::uint64_t> inward = {};
   /// Path length of the tip in contact [m]. Motion along the spring force is left out: a vibration normal to the
   /// surface is no path.
   double path_in_contact = 0.0;

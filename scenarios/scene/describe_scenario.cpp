@@ -226,7 +226,7 @@ static void describe_extends(Fields& f) {
          "and expect). null and an object of another type replace the base's field",
          Presence::omitted);
   if (!f.reads() || !f.given(kExtends)) return;
-  fail_at(member(f.at(), kExtends), "got the field in a scenario that is not in a file; allowed: in scenario files");
+  fail_at(member(f.at(), kExtends), "got a base scenario outside of a file; allowed: only in a scenario file");
 }
 
 void describe(Fields& f, Scenario& scenario) {

@@ -45,6 +45,10 @@ void apply_override(Json& json, const std::string& text) {
   constexpr std::size_t kMaxPathDepth = 64;  // functions that process JSON recurse once for each level
   if (keys.size() > kMaxPathDepth)
     fail_in_option("--set", fmt::format("got a path of more than {0} keys; allowed: at most {0}", kMaxPathDepth));
+  if (std::ranges::any_of(keys, &std::string_view::empty))
+    fail_in_option("--set", fmt::format("got the path \"{}\"; allowed: names with one dot between them, such as "
+                                        "rendering.stiffness_N_per_m",
+                                        path));
   // Follow the path, creating objects where they are missing.
   Json* node = &json;
   for (const std::string_view& key : keys) {

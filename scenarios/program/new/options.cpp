@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "scenarios/input/input_error.hpp"
+#include "scenarios/input/mesh_file.hpp"
 #include "scenarios/input/shell_words.hpp"
 #include "scenarios/input/text_lines.hpp"
 
@@ -90,6 +91,9 @@ void check_options(const NewOptions& options, const StartKind& kind) {
   if (kind.source.empty() && !from.empty())
     fail_in_option("--from", fmt::format(R"(got "{}"; "{}" starts from no file)", from, name));
   require_file("--from", from);
+  if (kind.source == "stroke" && is_mesh_name(from))
+    fail_in_option("--from", fmt::format("got {}, a mesh; allowed: a recorded stroke; --on {} plays it over the mesh",
+                                         from, shell_file(from)));
   require(options.on.empty() || name == "stroke", "--on", "for stroke");
   require(options.path.empty() || (accepted.path && options.path.size() > 1 && options.at.empty()), "--path",
           "for drag, bur and fidelity, two points or more, and without --at");

@@ -27,7 +27,8 @@ static int step(void* state, const HapbenchPose* pose, HapbenchContacts* contact
     for (;;) {
     }
   }
-  for (size_t i = 0; i < contacts->n; ++i) contacts->weight[i] = is("nan") ? NAN : 1.0 / (double)contacts->n;
+  for (size_t i = 0; i < contacts->n; ++i)
+    contacts->weight[i] = (is("nan") ? NAN : is("inward") ? -1.0 : 1.0) / (double)contacts->n;
   if (!is("error") && !is("error without status")) return 0;
   snprintf(fault, HAPBENCH_FAULT_SIZE, "the oven\n is \xff cold");
   return is("error") ? 42 : 0;

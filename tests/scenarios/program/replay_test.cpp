@@ -164,6 +164,22 @@ TEST_F(Replay, WarnsOfAToolThatPassedThroughTheSurface) {
   EXPECT_TRUE(unknown.json()["went_through"].is_null()) << unknown.err;
 }
 
+TEST_F(Replay, AComparisonNamesAnotherScenario) {
+  // The scenario of the log, also with a law that is not compared, is the recorded one. Every other field is not.
+  const auto warned = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> words = {"compare", scene, "--replay", log, "--algorithms", "mean,proxy", "--out", out};
+    words.insert(words.end(), more.begin(), more.end());
+    const auto run = hapbench(words);
+    EXPECT_EQ(run.status, 0) << run.err;
+    return run.err;
+  };
+  const std::string other = "the log was recorded with another scenario";
+  EXPECT_EQ(warned({}).find(other), std::string::npos);
+  EXPECT_EQ(warned({"--set", "rendering.algorithm=summation"}).find(other), std::string::npos);
+  EXPECT_NE(warned({"--set", "rendering.stiffness_N_per_m=12345"}).find(other), std::string::npos);
+  EXPECT_NE(warned({"--set", "time.step_s=0.0007"}).find("The recorded time step is"), std::string::npos);
+}
+
 TEST_F(Replay, RefusesWhatHasNoMeaning) {
   const auto refused = [](const std::vector<std::string>& arguments, const char* words) {
     const auto run = hapbench(arguments);

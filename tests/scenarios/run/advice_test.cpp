@@ -82,6 +82,24 @@ TEST(Advice, NamesTheSpacingIfTheToolPassesBetweenThePoints) {
   EXPECT_EQ(pressed("0.0003", "20000").end.outcome, Outcome::completes) << "the remedy helps";
 }
 
+/// A drag whose path ends early is not held by friction: only a longer path helps.
+TEST(Advice, NamesTheEndOfTheDragsPath) {
+  const auto dragged = [](const char* spacing) {
+    return run_of_text(fmt::format(R"({{
+      "time": {{"step_s": 0.001, "duration_s": 1}},
+      "environment": {{"type": "plane", "size_m": 0.012, "spacing_m": {}}},
+      "initial": {{"position_m": [-0.003, 0, 0.0011]}},
+      "tool": {{"diameter_m": 0.002, "length_m": 0.02, "tip": "round"}},
+      "hand": {{"type": "drag", "force_N": 1, "direction": [1, 0, 0], "speed_m_per_s": 0.006, "tilt_rad": 0.2}},
+      "rendering": {{"algorithm": "shaped_stiffness", "stiffness_N_per_m": 20000, "damping_ratio": 0.7}}}})",
+                                   spacing));
+  };
+  const Result result = dragged("0.0008");
+  ASSERT_EQ(result.end.outcome, Outcome::not_dragged);
+  expect_words(advice(result, "stuck"), {"a longer path", "short_path"}, {"friction", "stiffer hand", "algorithms"});
+  EXPECT_EQ(dragged("0.0004").end.outcome, Outcome::completes) << "the remedy of the warning helps";
+}
+
 /// A loop that is unstable at any K has one cause: no rule names K or the force of the hand.
 TEST(Advice, NamesTheUnstableLoopInEveryRule) {
   const Result result = run_of_text(R"({

@@ -123,6 +123,19 @@ TEST(Diagnosis, EachRuleFindsItsFaultAndIsSilentWithout) {
     EXPECT_NE(finding(faulty, "fault"), nullptr);
     EXPECT_EQ(faulty.diagnosis->size(), 1u) << "advice about step and K does not fit a fault of the law";
   }
+  {
+    const Scene molar = {"mesh_molar", {"rendering.algorithm=hostile"}};
+    EXPECT_EQ(finding(run(molar), "inward"), nullptr);
+    const test::EnvironmentVariable inward("HOSTILE", "inward");
+    const Result pulled = run(molar);
+    const Diagnosed* found = finding(pulled, "inward");
+    ASSERT_NE(found, nullptr);
+    EXPECT_EQ(found->value, 1.0) << "every step in contact";
+    const Diagnosed* sank = finding(pulled, "sank");
+    ASSERT_NE(sank, nullptr);
+    EXPECT_EQ(sank->attempt.find("K"), std::string::npos) << "no K helps: " << sank->attempt;
+    tested.insert("inward");
+  }
   for (const Pair& pair : all) {
     const Diagnosed* found = finding(run(pair.with), pair.rule);
     EXPECT_NE(found, nullptr) << pair.rule << " in " << pair.with.name;

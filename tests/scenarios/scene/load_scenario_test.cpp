@@ -232,8 +232,11 @@ TEST_F(Override, DelayInSecondsIsTheSceneSamples) {
 
 TEST_F(Override, IsCheckedLikeTheFile) {
   const std::pair<const char*, const char*> kRefusals[] = {
-      {"rendering..iterations=1", "/rendering/: unknown field"},
-      {".=1", "/: unknown field"},
+      {"rendering..iterations=1",
+       "--set: got the path \"rendering..iterations\"; allowed: names with one dot between them"},
+      {".=1", "--set: got the path \".\""},
+      {"tool.=1", "--set: got the path \"tool.\""},
+      {"extends=tap_wall", "/extends: got a base scenario outside of a file; allowed: only in a scenario file"},
       {"rendering.mass_kg=heavy", "/rendering/mass_kg: got \"heavy\"; allowed: a number > 0"},
       {"rendering.mass_kg=1e999", "/rendering/mass_kg: got \"1e999\""},
       {"seed.x=1", "/seed: got {\"x\":1}; allowed: an integer"},
