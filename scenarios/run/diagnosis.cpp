@@ -87,8 +87,8 @@ constexpr Rule kRules[] = {
      "settled contact",
      "1", kMaxReduction,
      "the force jumps by {} times its mean when the set of contacts kept by rendering.reduction changes",
-     [](const DiagnosedRun& r) { return r.of_mean_force("reduction_force_step_max_N"); },
-     [](const DiagnosedRun&) { return std::string("rendering.reduction null"); }, no_more, false, true},
+     [](const DiagnosedRun& r) { return r.of_mean_force("reduction_force_step_max_N"); }, against_reduction, no_more,
+     false, true},
     {"facets",
      "spacing of the surface's points, divided by the spacing at which four points are in contact, for a tool that "
      "moves along the surface",

@@ -200,7 +200,7 @@ std::vector<std::string> against_measured_causes(const DiagnosedRun& run) {
   if (is_beyond(unstable_loop(run), 0.5)) remedies.push_back(against_unstable_loop(run));
   if (is_beyond(encoder_force(run), kMaxEncoderForce)) remedies.push_back(against_encoder(run));
   if (is_beyond(run.of_mean_force("reduction_force_step_max_N"), kMaxReduction))
-    remedies.emplace_back("rendering.reduction null");
+    remedies.push_back(against_reduction(run));
   if (run.tool != nullptr && is_beyond(coarseness(run), kMaxCoarseness)) remedies.push_back(against_coarseness(run));
   if (noise_explains_vibration(run, position_noise_force(run)))
     remedies.emplace_back("a velocity filter against device.position_noise_m");
@@ -385,6 +385,11 @@ std::string against_pops(const DiagnosedRun& run) {
 
 std::string against_shaking(const DiagnosedRun& run) {
   return against_roughness(run, "the smallest vibration", "vibration_power_above_30Hz_m2_per_s2");
+}
+
+std::string against_reduction(const DiagnosedRun&) {
+  return "rendering.reduction null, if settled_force_step_max_N is smaller without the reduction (contacts that begin or "
+         "end change the kept set, too)";
 }
 
 std::string against_coarseness(const DiagnosedRun& run) {

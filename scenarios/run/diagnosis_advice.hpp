@@ -23,6 +23,7 @@ std::string against_unstable_loop(const DiagnosedRun& run);
 std::string against_buzz(const DiagnosedRun& run);
 std::string against_pops(const DiagnosedRun& run);
 std::string against_shaking(const DiagnosedRun& run);
+std::string against_reduction(const DiagnosedRun& run);
 std::string against_coarseness(const DiagnosedRun& run);
 std::string against_depth(const DiagnosedRun& run);
 std::string against_softness(const DiagnosedRun& run);
