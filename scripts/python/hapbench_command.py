@@ -105,7 +105,8 @@ class CommandLine(Arguments):
 
     def parse(self, words):
         """Returns the parsed arguments. The word after an option that takes a value is this value, even if the word
-        begins with "-". Positional arguments may stand before, between and after options."""
+        begins with "-". Positional arguments, which are files or folders, may stand before, between and after options.
+        After "--", all words are positional arguments."""
         if not {"-h", "--help"}.isdisjoint(words):
             self.print_help()
             self.exit()
@@ -118,6 +119,12 @@ class CommandLine(Arguments):
                 joined[-1] += f"={word}"
             else:
                 joined.append(word)
+        if "--" in joined:
+            # argparse takes a file whose name begins with "-" for an option, even after "--".
+            at = joined.index("--")
+            joined[at:] = [
+                f"./{word}" if word.startswith("-") else word for word in joined[at + 1 :]
+            ]
         return self.parse_intermixed_args(joined)
 
     def error(self, message):

@@ -101,6 +101,13 @@ class Command(Given):
         )
         self.assertEqual((self.root / "a.csv").read_bytes(), (self.root / "b.csv").read_bytes())
 
+    def test_a_file_name_may_begin_with_a_dash(self):
+        self.write(STRAIGHT, "-rec.csv")
+        columns = ("--columns", "time=1,position=2", "--out", "s.csv")
+        done = ran(PROGRAM, "import", "stroke", *columns, "--", "-rec.csv", cwd=self.root)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertTrue((self.root / "s.csv").exists())
+
     def test_presets_and_devices_may_come_from_a_pipe(self):
         for name, text in (
             ("preset", '\ufeff{"columns": {"time": 1, "position": 2}}'),

@@ -117,10 +117,10 @@ TEST(TraceClock, IsNamedIfTheTraceEndsEarlyOrHasAnotherRate) {
   EXPECT_TRUE(contains(trace_warning(times(0, 0.0005, 20)), "the trace ends before the run"));
   EXPECT_TRUE(contains(trace_warning(times(0, 0.004, 25)), "rendering.contacts.every=8"));
   EXPECT_TRUE(contains(trace_warning(times(0, 0.000125, 800)), "the trace is faster than the run"));
-  EXPECT_TRUE(contains(trace_warning(times(1.7e9, 0.0005, 200)), "subtract the first time"));
+  EXPECT_TRUE(contains(trace_warning(times(1.7e9, 0.0005, 200)), "subtract the time at which the recording began"));
   EXPECT_FALSE(contains(trace_warning(times(1.7e9, 0.0005, 200)), "seconds")) << "its unit is right";
   EXPECT_TRUE(
-      contains(trace_warning(times(1.7e18, 0.5e6, 200)), "subtract the first time; its clock seems to be in nano"));
+      contains(trace_warning(times(1.7e18, 0.5e6, 200)), "from the times of the trace; its clock seems to be in nano"));
   EXPECT_TRUE(contains(trace_warning({}), "the trace has no rows"));
 }
 
