@@ -109,10 +109,10 @@ std::optional<double> delay_margin(Trials& trials, const TuneTrial& choice, cons
 TuneMargins margins_of(Trials& trials, const TuneTrial& choice) {
   TuneMargins margins;
   margins.gain = gain_margin(trials, choice);
-  const Scenario scenario = trials.load(choice.setting, choice.stiffness).scenario;
+  const Scenario scenario = trials.trial_runs().load(choice.setting, choice.stiffness).scenario;
   margins.delay_samples = delay_margin(trials, choice, scenario);
-  margins.damping_ratio =
-      smallest_damping_ratio(trials.loops_in_contact(scenario, choice.contact, trials.over_hands()));
+  margins.damping_ratio = smallest_damping_ratio(
+      trials.trial_runs().loops_in_contact(scenario, choice.contact, trials.trial_runs().over_hands()));
   return margins;
 }
 

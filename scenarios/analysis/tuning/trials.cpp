@@ -8,35 +8,13 @@
 #include <limits>
 #include <span>
 
-#include "scenarios/analysis/stability/limit_question.hpp"
-#include "scenarios/analysis/stability/run_stability.hpp"
 #include "scenarios/batch/jobs.hpp"
-#include "scenarios/run/checked_scenario.hpp"
 #include "scenarios/run/diagnosis.hpp"
-#include "scenarios/run/scene_loop.hpp"
-#include "scenarios/scene/environments.hpp"
 
 namespace hapbench {
 namespace {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
-
-/// Returns " (NAME)" of a variant; empty for the scene itself.
-std::string with(const SceneVariant& variant) {
-  return variant.overrides.empty() ? "" : fmt::format(" ({})", variant.name);
-}
-
-std::string verdict_with(const RunStability& run, const SceneVariant& variant) {
-  return std::string(run_verdict_name(run.verdict)) + with(variant);
-}
-
-/// Returns the rule for a run of a variant. The variants "hands" only test the stability of the loop: in these
-/// variants a tool at rest is stable, even if it rests because a softer hand is too weak to move it along.
-StabilityRule rule_for(const Scenario& scenario, const SceneVariant& variant) {
-  StabilityRule rule = rule_of(scenario);
-  rule.judges_progress = variant.family != "hands";
-  return rule;
-}
 
 /// Returns how the run of the scene itself vibrates in a trial: its verdict, or the first rule of low vibration that it
 /// violates; empty if neither, as far as the trial was evaluated. `rules`: the rules with their thresholds.
@@ -51,28 +29,6 @@ std::optional<TuneFailure> vibration_of(const TuneTrial& trial, const std::map<s
   return std::nullopt;
 }
 
-/// Stores the largest and the smallest value of a limited metric over the variants in the trial. Stores no value if the
-/// metric has no value in one of the runs.
-void note_extremes(TuneTrial& trial, const std::string& name, std::span<const MetricValues> metrics,
-                   std::span<const SceneVariant> variants) {
-  trial.largest.erase(name);
-  trial.smallest.erase(name);
-  for (std::size_t i = 0; i < metrics.size(); ++i) {
-    const auto value = value_in(metrics[i], name);
-    if (!value) {
-      trial.largest.erase(name);
-      trial.smallest.erase(name);
-      trial.missing[name] = name + " has no value" + with(variants[i]);
-      return;
-    }
-    const ExtremeValue here{*value, fmt::format("{} {:.4g}{}", name, *value, with(variants[i]))};
-    ExtremeValue& largest = trial.largest.try_emplace(name, here).first->second;
-    ExtremeValue& smallest = trial.smallest.try_emplace(name, here).first->second;
-    if (*value > largest.value) largest = here;
-    if (*value < smallest.value) smallest = here;
-  }
-}
-
 /// Returns the factor > 1 by which a value is beyond a limit: far / near, or the next number above 1 if rounding gives
 /// a smaller quotient. Infinite if `far` or `near` is not above 0. Precondition: far > near.
 double ratio_beyond(double far, double near) {
@@ -85,48 +41,9 @@ double ratio_beyond(double far, double near) {
 Trials::Trials(const TuneQuestion& question, const std::string& algorithm)
     : question_(question),
       algorithm_(algorithm),
-      ranges_(tune_ranges(question, algorithm)),
-      over_hands_(std::ranges::find(question.families, "hands") != question.families.end()),
-      limits_{question.limits, question.allow_vibration},
-      variants_({{"the scene's own run"}}) {
+      trial_runs_(question, algorithm),
+      limits_{question.limits, question.allow_vibration} {
   for (const Diagnosed& rule : diagnosis_rules(/*low_vibration=*/true)) rules_[rule.rule] = rule.threshold;
-  // Build the surface, and collect the variants and the largest stiffness eigenvalue of springs in permanent contact.
-  const LoadedScenario own = load({}, ranges_.stiffness.from);
-  shell_ = make_shell(own.scenario, own.files);
-  for (const std::string& family : question_.families) {
-    for (SceneVariant& variant : scene_variants(own, family)) {
-      variant.family = family;
-      variants_.push_back(std::move(variant));
-    }
-  }
-  if (has_permanent_springs(own.scenario)) springs_lambda_ = stiffness_eigenvalues(own.scenario)[2];
-}
-
-// ---- Scenarios and settings of the question
-
-std::vector<std::string> Trials::overrides(const TuneSetting& setting, double stiffness) const {
-  std::vector<std::string> fields = question_.overrides;
-  fields.push_back("rendering.algorithm=" + algorithm_);
-  if (setting.damping_ratio) {
-    fields.emplace_back("rendering.damping_N_s_per_m=null");
-    fields.push_back(fmt::format("rendering.damping_ratio={}", *setting.damping_ratio));
-  }
-  if (setting.mass) fields.push_back(fmt::format("rendering.mass_kg={}", *setting.mass));
-  if (!setting.filter.empty()) fields.push_back("device.velocity_filter=" + setting.filter);
-  fields.push_back(fmt::format("{}={}", kStiffnessPath, stiffness));
-  return fields;
-}
-
-LoadedScenario Trials::load(const TuneSetting& setting, double stiffness) const {
-  return load(setting, stiffness, variants_.front());
-}
-
-LoadedScenario Trials::load(const TuneSetting& setting, double stiffness, const SceneVariant& variant,
-                            const std::string& more) const {
-  std::vector<std::string> fields = overrides(setting, stiffness);
-  fields.insert(fields.end(), variant.overrides.begin(), variant.overrides.end());
-  if (!more.empty()) fields.push_back(more);
-  return load_scenario(question_.scenario, fields);
 }
 
 // ---- Searches
@@ -283,19 +200,10 @@ bool Trials::is_nearer(const TuneTrial& trial, const TuneTrial& other) {
 
 std::optional<Failing> Trials::first_failing(const TuneTrial& trial, std::size_t count,
                                              const std::function<std::string(std::size_t run)>& more) {
-  const double K = trial.stiffness;
   std::vector<std::string> why(count);
   const std::size_t failing = run_until_failure(nullptr, count, [&](std::size_t i) {
-    // Check the linear loop in contact, then run.
-    const SceneVariant& variant = variants_[i % variants_.size()];
-    const CheckedScenario scene = checked(load(trial.setting, K, variant, more(i)));
-    if (unstable_loop(scene.scenario(), trial.contact, K, scene.scenario().rendering.stiffness, over_hands_)) {
-      why[i] = "the contact loop is unstable" + with(variant);
-      return false;
-    }
-    const RunStability run = stability_of(scene, shell_, rule_for(scene.scenario(), variant));
-    if (!is_stable(run.verdict)) why[i] = verdict_with(run, variant);
-    return is_stable(run.verdict);
+    why[i] = trial_runs_.failure_of(trial, i % variant_count(), more(i));
+    return why[i].empty();
   });
   if (failing == count) return std::nullopt;
   return Failing{failing, why[failing]};
@@ -304,16 +212,7 @@ std::optional<Failing> Trials::first_failing(const TuneTrial& trial, std::size_t
 std::vector<std::optional<TuneFailure>> Trials::vibrations(const TuneSetting& setting,
                                                            const std::vector<double>& stiffnesses) {
   std::vector<std::optional<TuneFailure>> found(stiffnesses.size());
-  in_parallel(nullptr, found.size(), [&](std::size_t i) {
-    const CheckedScenario scene = checked(load(setting, stiffnesses[i]));
-    const RunStability run = stability_of(scene, shell_, rule_for(scene.scenario(), variants_[0]));
-    if (run.verdict == RunVerdict::vibrating || run.verdict == RunVerdict::diverged) {
-      found[i] = TuneFailure{"settled", verdict_with(run, variants_[0])};
-      return;
-    }
-    for (const Diagnosed& number : run_with_shell(scene, shell_, Diagnose::low_vibration).low_vibration)
-      if (!found[i] && number.value > number.threshold) found[i] = TuneFailure{number.rule, number.says};
-  });
+  in_parallel(nullptr, found.size(), [&](std::size_t i) { found[i] = trial_runs_.vibration(setting, stiffnesses[i]); });
   // A run that is not settled needs no second run.
   count_runs(static_cast<std::size_t>(
       std::ranges::count_if(found, [](const auto& failure) { return !failure || failure->binding != "settled"; })));
@@ -368,16 +267,6 @@ void Trials::count_runs(TuneTrial& trial, std::size_t count) {
   if (requested_.contains(&trial)) search_runs_ += count;
 }
 
-MetricValues Trials::metrics_of(const Result& run) const {
-  MetricValues metrics;
-  const auto add = [&](const std::string& name) {
-    if (const auto value = number_of(run.metrics, name)) metrics[name] = *value;
-  };
-  for (const char* name : kTuneMetrics) add(name);
-  for (const auto& [name, bound] : question_.limits) add(name);
-  return metrics;
-}
-
 // ---- Evaluation of the constraints, the cheapest first
 
 /// Evaluates a trial as far as `need` requires, and stores the violated constraint in
@@ -405,7 +294,7 @@ void Trials::judge(TuneTrial& trial, Need need) {
 /// the metrics. Stops at the first failure.
 void Trials::evaluate_motion(TuneTrial& trial) {
   if (trial.judged == 0 && !trial.failure) {
-    if (springs_lambda_) trial.failure = loop_failure(trial, 0, {});
+    if (trial_runs_.has_springs()) trial.failure = trial_runs_.loop_failure(trial, 0, {});
     if (!trial.failure) judge_motion(trial, 0, 1);
   }
   if (!trial.failure) measure_scene(trial);
@@ -420,7 +309,7 @@ void Trials::evaluate(TuneTrial& trial, Need need) {
   evaluate_motion(trial);
   if (trial.failure || is_far() || is_decided()) return;
   // Evaluate the other variants.
-  if (trial.judged < variants_.size()) judge_motion(trial, 1, variants_.size());
+  if (trial.judged < variant_count()) judge_motion(trial, 1, variant_count());
   if (trial.failure) return;
   measure_variants(trial);
   if (question_.limits.empty() || is_far() || is_decided()) return;
@@ -454,102 +343,6 @@ bool Trials::needs_depth(const TuneTrial& trial, Need need) const {
   return false;
 }
 
-/// Returns the name of the first hand with which the loop in contact is unstable at a stiffness between K and `highest`
-/// [N/m]; the scene's own loop has an empty name. Returns no value if all loops are stable. Samples the stiffness
-/// downwards from `highest` in steps of 10 %, and at K itself.
-std::optional<std::string> Trials::unstable_loop(Scenario scenario, const ContactOfTrial& contact, double K,
-                                                 double highest, bool over_hands) const {
-  constexpr double kStiffnessStep = 1.1;
-  for (double at = highest;; at = std::max(K, at / kStiffnessStep)) {
-    scenario.rendering.stiffness = at;
-    const std::vector<NamedLoop> loops = loops_in_contact(scenario, contact, over_hands);
-    if (loops.empty()) return std::nullopt;
-    for (const auto& [hand, matrices] : loops)
-      if (!is_stable_loop(matrices)) return hand;
-    if (!(at > K)) return std::nullopt;
-  }
-}
-
-std::vector<NamedLoop> Trials::loops_in_contact(const Scenario& scenario, const ContactOfTrial& contact,
-                                                bool over_hands) const {
-  if (springs_lambda_) return wall_loops(scenario, *springs_lambda_, over_hands);
-  if (!contact.linear) return {};
-  return contact_loops(scenario, scaled(*contact.linear, contact.rendering, scenario.rendering), over_hands);
-}
-
-/// Returns the contact of a settled run, linearised at the equilibrium of the tool. The search for the equilibrium
-/// starts from the state in the last step in contact. Returns no contact if the contact does not persist, because there
-/// is then no linear loop.
-ContactOfTrial Trials::contact_of(const CheckedScenario& scene, const RunStability& run) const {
-  ContactOfTrial contact;
-  contact.rendering = scene.scenario().rendering;
-  if (springs_lambda_ || !contact_lasts(run.settled, scene.scenario()) || !has_linear_loop(scene.scenario()) ||
-      has_multi_rate_contacts(scene.scenario()))
-    return contact;
-  const auto at_rest = linear_contact(scene, shell_, *run.settled.last_contact);
-  if (at_rest && at_rest->is_equilibrium) contact.linear = at_rest->contact;
-  return contact;
-}
-
-/// Returns the failure of a variant whose loop in contact is unstable between K and G K; empty if it is stable.
-std::optional<TuneFailure> Trials::loop_failure(const TuneTrial& trial, std::size_t variant,
-                                                const ContactOfTrial& contact) const {
-  const double K = trial.stiffness, G = question_.margin;
-  const Scenario scenario = load(trial.setting, K, variants_[variant]).scenario;
-  const auto hand = unstable_loop(scenario, contact, K, G * K, over_hands_);
-  if (!hand) return std::nullopt;
-  const std::string own = springs_lambda_ ? "the device alone" : variants_[variant].name;
-  const std::string who = hand->empty() ? own : *hand + with(variants_[variant]);
-  TuneFailure failure{"margin", fmt::format("between K and {:g} K the contact loop is unstable with {}", G, who)};
-  failure.variant = hand->empty() && variant == 0 ? "" : who;
-  // A loop that is unstable only with other hands fails because of the variant set "hands".
-  const bool is_own = unstable_loop(scenario, contact, K, G * K, false).has_value();
-  failure.family = is_own ? variants_[variant].family : "hands";
-  failure.unstable_at_K = unstable_loop(scenario, contact, K, K, over_hands_).has_value();
-  failure.variant_index = variant;
-  return failure;
-}
-
-/// Runs a variant at K and stores the result in `motion`. If the run is stable, also linearises its contact. Returns
-/// true if the run is stable.
-bool Trials::is_stable_at_K(const TuneTrial& trial, std::size_t variant, MotionOfVariant& motion) const {
-  const CheckedScenario scene = checked(load(trial.setting, trial.stiffness, variants_[variant]));
-  motion.at_K = stability_of(scene, shell_, rule_for(scene.scenario(), variants_[variant]));
-  if (!is_stable(motion.at_K.verdict)) return false;
-  motion.contact = contact_of(scene, motion.at_K);
-  return true;
-}
-
-/// Runs a variant at G K and stores the result in `motion`. Returns true if the run is stable.
-bool Trials::is_stable_at_GK(const TuneTrial& trial, std::size_t variant, MotionOfVariant& motion) const {
-  const CheckedScenario scene = checked(load(trial.setting, question_.margin * trial.stiffness, variants_[variant]));
-  motion.at_GK = stability_of(scene, shell_, rule_for(scene.scenario(), variants_[variant]));
-  return is_stable(motion.at_GK.verdict);
-}
-
-/// Returns how the motion of a variant fails: a run that is not settled, or an unstable loop in contact; empty if
-/// neither. Precondition: the runs at K and, if that run is stable, at G K were made.
-std::optional<TuneFailure> Trials::motion_failure(const TuneTrial& trial, std::size_t variant,
-                                                  const MotionOfVariant& motion) const {
-  const auto failure = [&](const char* binding, const std::string& where, const RunStability& run) {
-    TuneFailure failed{binding, where + verdict_with(run, variants_[variant])};
-    failed.variant = variant > 0 ? variants_[variant].name : "";
-    failed.family = variants_[variant].family;
-    failed.verdict = run_verdict_name(run.verdict);
-    failed.variant_index = variant;
-    return failed;
-  };
-  if (const RunVerdict at_K = motion.at_K.verdict; !is_stable(at_K)) {
-    TuneFailure failed = failure("settled", "at K: ", motion.at_K);
-    failed.too_soft = at_K >= RunVerdict::thrown_out && at_K <= RunVerdict::went_through;
-    return failed;
-  }
-  if (!is_stable(motion.at_GK.verdict))
-    return failure("margin", fmt::format("at {:g} K: ", question_.margin), motion.at_GK);
-  // For springs in permanent contact, the loop was checked before the runs.
-  return springs_lambda_ ? std::nullopt : loop_failure(trial, variant, motion.contact);
-}
-
 /// Records the motion of a variant in its trial. Has no effect on a trial with an earlier failure.
 void Trials::record(TuneTrial& trial, std::size_t variant, const MotionOfVariant& motion) const {
   trial.judged = variant + 1;
@@ -558,7 +351,7 @@ void Trials::record(TuneTrial& trial, std::size_t variant, const MotionOfVariant
     trial.contact = motion.contact;
     trial.settled = is_stable(motion.at_K.verdict);
   }
-  if (!trial.failure) trial.failure = motion_failure(trial, variant, motion);
+  if (!trial.failure) trial.failure = trial_runs_.motion_failure(trial, variant, motion);
 }
 
 /// Runs the variants [first, last) at K and at G K, and records their motions up to the first failing run.
@@ -566,8 +359,8 @@ void Trials::judge_motion(TuneTrial& trial, std::size_t first, std::size_t last)
   std::vector<MotionOfVariant> motions(last - first);
   const std::size_t failing = run_until_failure(&trial, 2 * motions.size(), [&](std::size_t job) {
     MotionOfVariant& motion = motions[job / 2];
-    return job % 2 == 0 ? is_stable_at_K(trial, first + job / 2, motion)
-                        : is_stable_at_GK(trial, first + job / 2, motion);
+    return job % 2 == 0 ? trial_runs_.is_stable_at_K(trial, first + job / 2, motion)
+                        : trial_runs_.is_stable_at_GK(trial, first + job / 2, motion);
   });
   for (std::size_t i = 0; i < motions.size() && 2 * i <= failing; ++i) record(trial, first + i, motions[i]);
   trial.judged = last;
@@ -580,50 +373,23 @@ void Trials::run_ahead(const TuneSetting& setting, std::span<const double> stiff
   for (const double K : stiffnesses) {
     TuneTrial& trial = stored_trial(setting, K);
     if (trial.judged > 0 || trial.failure) continue;
-    if (springs_lambda_) trial.failure = loop_failure(trial, 0, {});
+    if (trial_runs_.has_springs()) trial.failure = trial_runs_.loop_failure(trial, 0, {});
     if (!trial.failure) trials.push_back(&trial);
   }
   std::map<const TuneTrial*, MotionOfVariant> motions;
   for (const TuneTrial* trial : trials) motions[trial];
-  in_parallel(trials, [&](std::size_t i) { is_stable_at_K(*trials[i], 0, motions.at(trials[i])); });
+  in_parallel(trials, [&](std::size_t i) { trial_runs_.is_stable_at_K(*trials[i], 0, motions.at(trials[i])); });
   std::vector<TuneTrial*> settled = trials;
   std::erase_if(settled, [&](const TuneTrial* trial) { return !is_stable(motions.at(trial).at_K.verdict); });
-  in_parallel(settled, [&](std::size_t i) { is_stable_at_GK(*settled[i], 0, motions.at(settled[i])); });
+  in_parallel(settled, [&](std::size_t i) { trial_runs_.is_stable_at_GK(*settled[i], 0, motions.at(settled[i])); });
   for (TuneTrial* trial : trials) record(*trial, 0, motions.at(trial));
   std::erase_if(settled, [](const TuneTrial* trial) { return trial->failure.has_value(); });
-  in_parallel(settled, [&](std::size_t i) { measure(*settled[i]); });
-}
-
-/// Measures metrics and low-vibration numbers in the run of the scene itself. A trial whose force is zero fails.
-void Trials::measure(TuneTrial& trial) const {
-  trial.is_measured = true;
-  const CheckedScenario scene = checked(load(trial.setting, trial.stiffness));
-  const Result run = run_with_shell(scene, shell_, Diagnose::low_vibration);
-  trial.metrics = metrics_of(run);
-  if (const Metric* depth = find_metric(run.metrics, "inside_max_m"))
-    trial.depth_within = depth->tolerance().value_or(kInfinite);
-  for (const Diagnosed& number : run.low_vibration)
-    trial.largest.insert_or_assign(number.rule, ExtremeValue{number.value, number.says});
-  // Forces below half the resolution of the device are rounded to zero.
-  const auto* device = std::get_if<ImpedanceDeviceConfig>(&scene.scenario().device);
-  const double smallest = device != nullptr ? 0.5 * device->force_step : 0.0;
-  const double largest = number_of(run.metrics, "force_max_N").value_or(0.0);
-  if (!(largest > smallest)) {
-    trial.failure =
-        TuneFailure{"no_force", fmt::format("no force is rendered: the largest force of the law is {:.3g} N", largest)};
-    trial.failure->too_soft = true;
-  }
-  // A run beyond the limit of explicit friction is a numerical artefact: its metrics mean nothing.
-  if (const double steps = number_of(run.metrics, "explicit_friction_rows_beyond").value_or(0.0); steps > 0.0)
-    trial.failure = TuneFailure{
-        "friction",
-        fmt::format("explicit integration of friction is unstable in the run (number of unstable steps: {:g})", steps)};
-  for (const auto& [name, bound] : question_.limits) note_extremes(trial, name, {&trial.metrics, 1}, variants_);
+  in_parallel(settled, [&](std::size_t i) { trial_runs_.measure(*settled[i]); });
 }
 
 /// Measures the scene itself unless this was done before.
 void Trials::measure_scene(TuneTrial& trial) {
-  if (!trial.is_measured) in_parallel(&trial, 1, [&](std::size_t) { measure(trial); });
+  if (!trial.is_measured) in_parallel(&trial, 1, [&](std::size_t) { trial_runs_.measure(trial); });
 }
 
 /// Measures in all variants the metrics for which the user has set limits.
@@ -631,13 +397,11 @@ void Trials::measure_variants(TuneTrial& trial) {
   if (trial.is_complete) return;
   trial.is_complete = true;
   if (question_.limits.empty()) return;
-  std::vector<MetricValues> metrics(variants_.size());
+  std::vector<MetricValues> metrics(variant_count());
   metrics[0] = trial.metrics;
-  in_parallel(&trial, metrics.size() - 1, [&](std::size_t i) {
-    metrics[i + 1] =
-        metrics_of(run_with_shell(checked(load(trial.setting, trial.stiffness, variants_[i + 1])), shell_));
-  });
-  for (const auto& [name, bound] : question_.limits) note_extremes(trial, name, metrics, variants_);
+  in_parallel(&trial, metrics.size() - 1,
+              [&](std::size_t i) { metrics[i + 1] = trial_runs_.metrics_in(trial, i + 1); });
+  trial_runs_.note_metrics(trial, metrics);
 }
 
 /// Raises the error of each metric of the trial (TuneTrial::error) to the change of this metric by a refinement, if the
@@ -647,7 +411,7 @@ void Trials::refine(TuneTrial& trial, Refinement refinement) {
   if (is_done) return;
   is_done = true;
   std::size_t runs = 0;
-  const MetricValues changes = metric_changes(question_.scenario, overrides(trial.setting, trial.stiffness),
+  const MetricValues changes = metric_changes(question_.scenario, trial_runs_.overrides(trial.setting, trial.stiffness),
                                               trial.metrics, refinement, question_.threads, runs);
   for (const auto& [name, change] : changes) {
     const auto known = value_in(trial.error, name);

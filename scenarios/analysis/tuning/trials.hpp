@@ -12,13 +12,9 @@
 #include <utility>
 #include <vector>
 
-#include "scenarios/analysis/stability/run_stability.hpp"
-#include "scenarios/analysis/tuning/scene_variants.hpp"
 #include "scenarios/analysis/tuning/trial.hpp"
+#include "scenarios/analysis/tuning/trial_runs.hpp"
 #include "scenarios/analysis/tuning/tune_question.hpp"
-#include "scenarios/run/run_scenario.hpp"
-#include "scenarios/run/scene_loop.hpp"
-#include "sim/geometry/point_shell.hpp"
 
 /// The trials of one law: settings with stiffnesses, each evaluated in every variant of the scene.
 namespace hapbench {
@@ -70,19 +66,12 @@ class Trials {
   /// `question` and `algorithm` must outlive this object.
   Trials(const TuneQuestion& question, const std::string& algorithm);
 
-  // ---- Scenarios and settings of the question
-
   const TuneQuestion& question() const { return question_; }
-  const TuneRanges& ranges() const { return ranges_; }
+  const TuneRanges& ranges() const { return trial_runs_.ranges(); }
   /// Returns the number of variants, including the scene itself. A trial makes this number of runs at K.
-  std::size_t variant_count() const { return variants_.size(); }
-  /// Returns true if the question includes the variants "hands" (scene_variants()), in which the hand has other
-  /// stiffnesses or masses than in the scene.
-  bool over_hands() const { return over_hands_; }
-  /// Returns the overrides that apply a setting and K [N/m] to the scene.
-  std::vector<std::string> overrides(const TuneSetting& setting, double stiffness) const;
-  /// Loads the scene with a setting and K [N/m].
-  LoadedScenario load(const TuneSetting& setting, double stiffness) const;
+  std::size_t variant_count() const { return trial_runs_.variant_count(); }
+  /// Returns the scenarios, runs and loops of the trials.
+  const TrialRuns& trial_runs() const { return trial_runs_; }
 
   // ---- Searches
 
@@ -135,11 +124,6 @@ class Trials {
                                                 const std::function<bool(const TuneTrial&)>& counts);
   /// Returns true if a trial violates only limits, and its excess() is smaller than the excess() of `other`.
   bool is_nearer(const TuneTrial& trial, const TuneTrial& other);
-  /// Returns the linear loops of a scenario in a contact (contact_loops()), with the scenario's stiffness and damping.
-  /// For springs in permanent contact, returns the loops along the stiffest direction of the springs. Returns no loops
-  /// without contact. `over_hands`: true to include the loops with the hands of typical_hands().
-  std::vector<NamedLoop> loops_in_contact(const Scenario& scenario, const ContactOfTrial& contact,
-                                          bool over_hands) const;
   /// Makes `count` runs of a trial; the runs cycle through the variants. `more`: additional override of a run, such as
   /// a larger K. Returns the first run that is not settled or whose loop in contact is unstable between the trial's K
   /// and the run's K; empty if all runs are settled.
@@ -200,31 +184,13 @@ class Trials {
     double from, to;
     std::string constraint, reason;
   };
-  /// The runs of a variant in a trial. `at_GK` is only used if the run at K is stable.
-  struct MotionOfVariant {
-    RunStability at_K, at_GK;
-    ContactOfTrial contact;  ///< contact of the run at K; empty if this run is not stable
-  };
 
-  LoadedScenario load(const TuneSetting& setting, double stiffness, const SceneVariant& variant,
-                      const std::string& more = {}) const;
   void in_parallel(TuneTrial* trial, std::size_t count, const std::function<void(std::size_t)>& job);
   std::size_t run_until_failure(TuneTrial* trial, std::size_t count, const std::function<bool(std::size_t)>& holds);
   void in_parallel(std::span<TuneTrial* const> trials, const std::function<void(std::size_t)>& job);
   void count_runs(TuneTrial& trial, std::size_t count);
-  MetricValues metrics_of(const Result& run) const;
-  ContactOfTrial contact_of(const CheckedScenario& scene, const RunStability& run) const;
-  std::optional<std::string> unstable_loop(Scenario scenario, const ContactOfTrial& contact, double K, double highest,
-                                           bool over_hands) const;
-  std::optional<TuneFailure> loop_failure(const TuneTrial& trial, std::size_t variant,
-                                          const ContactOfTrial& contact) const;
-  bool is_stable_at_K(const TuneTrial& trial, std::size_t variant, MotionOfVariant& motion) const;
-  bool is_stable_at_GK(const TuneTrial& trial, std::size_t variant, MotionOfVariant& motion) const;
-  std::optional<TuneFailure> motion_failure(const TuneTrial& trial, std::size_t variant,
-                                            const MotionOfVariant& motion) const;
   void record(TuneTrial& trial, std::size_t variant, const MotionOfVariant& motion) const;
   void judge_motion(TuneTrial& trial, std::size_t first, std::size_t last);
-  void measure(TuneTrial& trial) const;
   void measure_scene(TuneTrial& trial);
   void measure_variants(TuneTrial& trial);
   void refine(TuneTrial& trial, Refinement refinement);
@@ -244,14 +210,9 @@ class Trials {
 
   const TuneQuestion& question_;
   const std::string& algorithm_;
-  TuneRanges ranges_;
-  bool over_hands_;
+  TrialRuns trial_runs_;
   std::map<std::string, double> rules_;  ///< low-vibration rules with their thresholds
   TuneLimits limits_;
-  std::vector<SceneVariant> variants_;  ///< the scene itself first
-  std::shared_ptr<const PointShell> shell_;
-  /// Largest eigenvalue of the stiffness tensor of springs in permanent contact, in units of K; empty otherwise.
-  std::optional<double> springs_lambda_;
   double smallest_unstable_ = std::numeric_limits<double>::infinity();
   std::map<std::pair<TuneSetting, double>, TuneTrial> all_;
   std::set<const TuneTrial*> requested_;  ///< trials of this search

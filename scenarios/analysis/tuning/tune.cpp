@@ -98,7 +98,7 @@ TunedLaw tuned_law(const TuneQuestion& question, const std::string& algorithm) {
   law.choice = verified_choice(trials, {}, law);
   if (!law.choice) explain_or_find(trials, law);
   if (law.choice) {
-    law.overrides = trials.overrides(law.choice->setting, law.choice->stiffness);
+    law.overrides = trials.trial_runs().overrides(law.choice->setting, law.choice->stiffness);
     trials.begin_purpose("margins");
     law.margins = margins_of(trials, *law.choice);
     evaluate_along_stiffness(trials, *law.choice);

@@ -63,7 +63,7 @@ double stricter(double value, const LimitEnd& end, double factor) {
 }
 
 TuneSearch::TuneSearch(Trials& trials) : trials_(trials) {
-  const Scenario scene = trials.load({}, trials.ranges().stiffness.from).scenario;
+  const Scenario scene = trials.trial_runs().load({}, trials.ranges().stiffness.from).scenario;
   settings_ = settings_of(trials.ranges(), scene);
   if (trials.question().filters && handle_moves_tool(scene.device)) filters_ = kFilters;
 }

@@ -46,7 +46,7 @@ bool fails_between(Trials& trials, const TuneTrial& choice, TunedLaw& law) {
 /// limit below G K or no contiguous stable interval.
 bool scene_limit_is_near(Trials& trials, const TuneTrial& choice, TunedLaw& law) {
   const ScenarioText& scene = trials.question().scenario;
-  const std::vector<std::string> chosen = trials.overrides(choice.setting, choice.stiffness);
+  const std::vector<std::string> chosen = trials.trial_runs().overrides(choice.setting, choice.stiffness);
   LimitQuestion question = limit_question(scene, chosen, kStiffnessPath, {});
   question.rule = rule_of(load_scenario(scene, chosen).scenario);
   question.threads = trials.question().threads;
@@ -66,7 +66,7 @@ bool scene_limit_is_near(Trials& trials, const TuneTrial& choice, TunedLaw& law)
 
 /// Returns true if at least one variant is not settled in a run twice as long as the scene's run.
 bool fails_in_longer_run(Trials& trials, const TuneTrial& choice) {
-  const Scenario scenario = trials.load(choice.setting, choice.stiffness).scenario;
+  const Scenario scenario = trials.trial_runs().load(choice.setting, choice.stiffness).scenario;
   const double duration = scenario.time.step * static_cast<double>(scenario.time.steps);
   // A run of twice the duration verifies the choice. Skip it if a script that is not periodic still moves the tool
   // after the end of the scene, because the tool would reach other positions than in the scene.
