@@ -68,29 +68,35 @@ Counts read_counts(std::size_t length, MeshLines& lines) {
   return {vertices, faces, left > 0};
 }
 
-/// Parses the part of the file after the header. Ignores numbers after the position of a vertex, such as normals or
-/// colours, and tokens after the corners of a face. Warns about other text after a position.
-MeshFaces read_entries(const Counts& counts, MeshLines& lines) {
-  MeshFaces faces;
-  std::size_t numbers = 3;  // largest number of tokens in the line of a vertex
+/// Reads the vertices. Ignores numbers after the position of a vertex, such as normals or colours, and warns about
+/// other text there. Returns the largest number of tokens in the line of a vertex.
+std::size_t read_vertices(const Counts& counts, MeshLines& lines, MeshFaces& faces) {
+  std::size_t tokens = 3;
   for (std::size_t i = 0; i < counts.vertices; ++i) {
     const bool has_line = lines.next();
     const bool is_edges = has_line && i == 0 && !counts.has_edges && lines.words().size() == 1 &&
                           whole_number(lines.words()[0]).has_value();
     if (!has_line || (is_edges && !lines.next())) lines.fail_at_end(i, counts.vertices, "vertices");
     faces.add_vertex(lines.position(0), lines.line());
-    numbers = std::max(numbers, lines.words().size());
+    tokens = std::max(tokens, lines.words().size());
     for (std::size_t k = 3; k < lines.words().size(); ++k)
       if (!finite_number(lines.words()[k])) lines.note_ignored(k);
   }
   lines.warn_of_ignored(faces.warnings);
+  return tokens;
+}
+
+/// Parses the part of the file after the header. Ignores tokens after the corners of a face.
+MeshFaces read_entries(const Counts& counts, MeshLines& lines) {
+  MeshFaces faces;
+  const std::size_t tokens = read_vertices(counts, lines, faces);
   for (std::size_t i = 0; i < counts.faces; ++i) {
     const bool has_line = lines.next();
-    if (!has_line && numbers >= 6)
+    if (!has_line && tokens >= 6)
       lines.fail(
           fmt::format("the file ends after {} of its {} faces, and a line with a vertex has {} numbers; allowed: "
                       "each vertex in a line of its own",
-                      i, counts.faces, numbers));
+                      i, counts.faces, tokens));
     if (!has_line) lines.fail_at_end(i, counts.faces, "faces");
     const std::size_t count = lines.count(0, "corners");
     if (count < 3 || lines.words().size() <= count)

@@ -171,8 +171,10 @@ std::string missing_steps_problem(const ContactTrace& trace, const RunTimes& run
   if (const ClockUnit* unit = unit_of_trace(trace, run, every, coverage)) return unit->advice;
   if (coverage.covered == 0 && first > run.end) {
     const ClockUnit* unit = unit_of_interval(interval, query);
-    return fmt::format("subtract the time at which the recording began (the first contact may be later) from the times of the trace{}{}",
-                       unit != nullptr ? "; " : "", unit != nullptr ? unit->advice : "");
+    return fmt::format(
+        "subtract the time at which the recording began (the first contact may be later) from the times "
+        "of the trace{}{}",
+        unit != nullptr ? "; " : "", unit != nullptr ? unit->advice : "");
   }
   if (coverage.covered == 0) return "no step has a time of the trace: is time_s in seconds from the start of the run?";
   if (interval > 1.5 * query)

@@ -388,8 +388,8 @@ std::string against_shaking(const DiagnosedRun& run) {
 }
 
 std::string against_reduction(const DiagnosedRun&) {
-  return "rendering.reduction null, if settled_force_step_max_N is smaller without the reduction (contacts that begin or "
-         "end change the kept set, too)";
+  return "rendering.reduction null, if settled_force_step_max_N is smaller without the reduction (contacts that begin "
+         "or end change the kept set, too)";
 }
 
 std::string against_coarseness(const DiagnosedRun& run) {
@@ -460,8 +460,8 @@ std::string against_encoder(const DiagnosedRun& run) {
 }
 
 std::string against_inward_force(const DiagnosedRun&) {
-  return "the opposite sign of the force in the law: the force of a spring of stiffness K at a contact is -K times depth "
-         "times gradient";
+  return "the opposite sign of the force in the law: the force of a spring of stiffness K at a contact is -K times "
+         "depth times gradient";
 }
 
 std::string against_saturation(const DiagnosedRun& run) {

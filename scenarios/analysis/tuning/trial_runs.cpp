@@ -161,10 +161,10 @@ bool TrialRuns::is_stable_at_K(const TuneTrial& trial, std::size_t variant, Moti
   return true;
 }
 
-bool TrialRuns::is_stable_at_GK(const TuneTrial& trial, std::size_t variant, MotionOfVariant& motion) const {
+bool TrialRuns::is_stable_at_margin(const TuneTrial& trial, std::size_t variant, MotionOfVariant& motion) const {
   const CheckedScenario scene = checked(load(trial.setting, question_.margin * trial.stiffness, variant));
-  motion.at_GK = stability_of(scene, shell_, rule_for(scene.scenario(), variants_[variant]));
-  return is_stable(motion.at_GK.verdict);
+  motion.at_margin = stability_of(scene, shell_, rule_for(scene.scenario(), variants_[variant]));
+  return is_stable(motion.at_margin.verdict);
 }
 
 std::optional<TuneFailure> TrialRuns::motion_failure(const TuneTrial& trial, std::size_t variant,
@@ -182,8 +182,8 @@ std::optional<TuneFailure> TrialRuns::motion_failure(const TuneTrial& trial, std
     failed.too_soft = at_K >= RunVerdict::thrown_out && at_K <= RunVerdict::went_through;
     return failed;
   }
-  if (!is_stable(motion.at_GK.verdict))
-    return failure("margin", fmt::format("at {:g} K: ", question_.margin), motion.at_GK);
+  if (!is_stable(motion.at_margin.verdict))
+    return failure("margin", fmt::format("at {:g} K: ", question_.margin), motion.at_margin);
   // For springs in permanent contact, the loop was checked before the runs.
   return springs_lambda_ ? std::nullopt : loop_failure(trial, variant, motion.contact);
 }

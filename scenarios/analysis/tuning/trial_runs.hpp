@@ -18,9 +18,9 @@
 /// The simulations and linear loops of one trial of `tune`.
 namespace hapbench {
 
-/// The runs of a variant in a trial. `at_GK` is only used if the run at K is stable.
+/// The runs of a variant in a trial. `at_margin` is only used if the run at K is stable.
 struct MotionOfVariant {
-  RunStability at_K, at_GK;
+  RunStability at_K, at_margin;
   ContactOfTrial contact;  ///< contact of the run at K; empty if this run is not stable
 };
 
@@ -61,7 +61,7 @@ class TrialRuns {
   /// true if the run is stable.
   bool is_stable_at_K(const TuneTrial& trial, std::size_t variant, MotionOfVariant& motion) const;
   /// Runs a variant at G K and stores the result in `motion`. Returns true if the run is stable.
-  bool is_stable_at_GK(const TuneTrial& trial, std::size_t variant, MotionOfVariant& motion) const;
+  bool is_stable_at_margin(const TuneTrial& trial, std::size_t variant, MotionOfVariant& motion) const;
   /// Returns how the motion of a variant fails: a run that is not settled, or an unstable loop in contact; empty if
   /// neither. Precondition: the runs at K and, if that run is stable, at G K were made.
   std::optional<TuneFailure> motion_failure(const TuneTrial& trial, std::size_t variant,

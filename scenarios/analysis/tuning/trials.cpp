@@ -360,7 +360,7 @@ void Trials::judge_motion(TuneTrial& trial, std::size_t first, std::size_t last)
   const std::size_t failing = run_until_failure(&trial, 2 * motions.size(), [&](std::size_t job) {
     MotionOfVariant& motion = motions[job / 2];
     return job % 2 == 0 ? trial_runs_.is_stable_at_K(trial, first + job / 2, motion)
-                        : trial_runs_.is_stable_at_GK(trial, first + job / 2, motion);
+                        : trial_runs_.is_stable_at_margin(trial, first + job / 2, motion);
   });
   for (std::size_t i = 0; i < motions.size() && 2 * i <= failing; ++i) record(trial, first + i, motions[i]);
   trial.judged = last;
@@ -381,7 +381,7 @@ void Trials::run_ahead(const TuneSetting& setting, std::span<const double> stiff
   in_parallel(trials, [&](std::size_t i) { trial_runs_.is_stable_at_K(*trials[i], 0, motions.at(trials[i])); });
   std::vector<TuneTrial*> settled = trials;
   std::erase_if(settled, [&](const TuneTrial* trial) { return !is_stable(motions.at(trial).at_K.verdict); });
-  in_parallel(settled, [&](std::size_t i) { trial_runs_.is_stable_at_GK(*settled[i], 0, motions.at(settled[i])); });
+  in_parallel(settled, [&](std::size_t i) { trial_runs_.is_stable_at_margin(*settled[i], 0, motions.at(settled[i])); });
   for (TuneTrial* trial : trials) record(*trial, 0, motions.at(trial));
   std::erase_if(settled, [](const TuneTrial* trial) { return trial->failure.has_value(); });
   in_parallel(settled, [&](std::size_t i) { trial_runs_.measure(*settled[i]); });

@@ -133,7 +133,7 @@ TEST(Diagnosis, EachRuleFindsItsFaultAndIsSilentWithout) {
     EXPECT_EQ(found->value, 1.0) << "every step in contact";
     const Diagnosed* sank = finding(pulled, "sank");
     ASSERT_NE(sank, nullptr);
-    EXPECT_EQ(sank->attempt.find("K"), std::string::npos) << "no K helps: " << sank->attempt;
+    EXPECT_EQ(sank->attempt.find('K'), std::string::npos) << "no K helps: " << sank->attempt;
     tested.insert("inward");
   }
   for (const Pair& pair : all) {
