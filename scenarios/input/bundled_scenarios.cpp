@@ -44,8 +44,8 @@ fs::path find_scenario(const std::string& argument, const fs::path& directory) {
   // If the argument is an existing file, return it. Refuse a mesh.
   std::error_code error;
   fs::path file = directory / argument;
-  if (fs::exists(file, error)) {
-    if (fs::is_directory(file, error)) throw InputError(argument + ": is a directory; allowed: a scenario file");
+  const bool is_folder = fs::is_directory(file, error);
+  if (!is_folder && fs::exists(file, error)) {
     if (is_mesh_name(file))
       throw InputError(fmt::format("{}: is a mesh; allowed: a scenario; \"hapbench new mesh --from {}\" writes one",
                                    argument, shell_file(argument)));
@@ -59,6 +59,8 @@ fs::path find_scenario(const std::string& argument, const fs::path& directory) {
     names.push_back(bundled.name);
   }
   // The argument names neither a file nor a scenario: report the most likely mistake.
+  if (is_folder)
+    throw InputError(argument + ": is a directory; allowed: a scenario file or the name of a bundled scenario");
   const std::string missing = argument + ": no such file and no bundled scenario";
   if (fs::exists(file.string() + ".json", error)) throw InputError(missing + "; there is " + argument + ".json");
   if (const fs::path near = fs::path(argument).replace_extension(".json"); fs::exists(directory / near, error))

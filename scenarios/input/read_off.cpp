@@ -69,7 +69,7 @@ Counts read_counts(std::size_t length, MeshLines& lines) {
 }
 
 /// Reads the vertices. Ignores numbers after the position of a vertex, such as normals or colours, and warns about
-/// other text there. Returns the largest number of tokens in the line of a vertex.
+/// other text in the line. Returns the largest number of tokens in the line of a vertex.
 std::size_t read_vertices(const Counts& counts, MeshLines& lines, MeshFaces& faces) {
   std::size_t tokens = 3;
   for (std::size_t i = 0; i < counts.vertices; ++i) {
@@ -86,18 +86,21 @@ std::size_t read_vertices(const Counts& counts, MeshLines& lines, MeshFaces& fac
   return tokens;
 }
 
-/// Parses the part of the file after the header. Ignores tokens after the corners of a face.
-MeshFaces read_entries(const Counts& counts, MeshLines& lines) {
+/// Parses the part of the file after the header. Ignores tokens after the corners of a face. `has_more`: true if the
+/// header announces further values in the line of a vertex, such as a normal.
+MeshFaces read_entries(const Counts& counts, bool has_more, MeshLines& lines) {
   MeshFaces faces;
   const std::size_t tokens = read_vertices(counts, lines, faces);
   for (std::size_t i = 0; i < counts.faces; ++i) {
     const bool has_line = lines.next();
-    if (!has_line && tokens >= 6)
-      lines.fail(
-          fmt::format("the file ends after {} of its {} faces, and a line with a vertex has {} numbers; allowed: "
-                      "each vertex in a line of its own",
-                      i, counts.faces, tokens));
-    if (!has_line) lines.fail_at_end(i, counts.faces, "faces");
+    if (!has_line) {
+      const bool has_several = !has_more && tokens >= 6 && tokens % 3 == 0;
+      lines.fail_at_end(i, counts.faces,
+                        has_several ? fmt::format("faces (a line with a vertex has {} values: if these are several "
+                                                  "vertices, write each in a line of its own)",
+                                                  tokens)
+                                    : "faces");
+    }
     const std::size_t count = lines.count(0, "corners");
     if (count < 3 || lines.words().size() <= count)
       lines.fail(fmt::format("face {}: got {} corners and {} vertices; allowed: at least 3, and as many vertices", i,
@@ -133,7 +136,7 @@ MeshFaces read_off(std::string_view text, const fs::path& file) {
   if (keyword.empty() && !has_counts) refuse();
   if (header.size() > 1 && lower_case(header[1]) == "binary")
     lines.fail("is a binary OFF file; allowed: a text, or binary PLY or STL");
-  return read_entries(read_counts(keyword.size(), lines), lines);
+  return read_entries(read_counts(keyword.size(), lines), keyword.size() > 3, lines);
 }
 
 }  // namespace hapbench

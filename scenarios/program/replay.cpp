@@ -123,20 +123,22 @@ std::string other_scenario_note(const CheckedScenario& scenario, const LoopLog& 
   return other_scenario_note(scenario.scenario(), hash_of(scenario), log);
 }
 
-/// The same for a comparison of laws: a scenario that differs from the recorded scenario only in its law is the same.
-/// `loaded`: the scenario before a law is chosen.
-std::string other_scenario_note(const LoadedScenario& loaded, const LoopLog& log) {
-  std::vector<std::string> hashes = {hash_of(checked(loaded))};
+/// Returns the note for a comparison of laws; empty if the scenario differs from the recorded scenario only in its law.
+std::string other_scenario_note(const fs::path& file, std::vector<std::string> overrides, const LoopLog& log) {
+  const LoadedScenario given = load_scenario(file, overrides);
+  std::erase_if(overrides, [](const std::string& text) { return text.starts_with("rendering.algorithm="); });
+  std::vector<std::string> hashes = {hash_of(checked(given)), hash_of(checked(load_scenario(file, overrides)))};
+  // Load the scenario with each law as for a recording: an override may change more fields than its own.
   for (const std::string& name : algorithm_names()) {
-    LoadedScenario other = loaded;
-    other.scenario = with_algorithm(std::move(other.scenario), name);
+    overrides.push_back("rendering.algorithm=" + name);
     try {
-      hashes.push_back(hash_of(checked(std::move(other))));
-    } catch (const InputError&) {  // the scenario rejects this law, which therefore recorded no log
+      hashes.push_back(hash_of(checked(load_scenario(file, overrides))));
+    } catch (const InputError&) {  // a scenario that rejects the law recorded no log with it
     }
+    overrides.pop_back();
   }
   const auto recorded = std::ranges::find(hashes, log.scenario.hash);
-  return other_scenario_note(loaded.scenario, recorded == hashes.end() ? hashes.front() : *recorded, log);
+  return other_scenario_note(given.scenario, recorded == hashes.end() ? hashes.front() : *recorded, log);
 }
 
 /// Returns sentences on the calls of the log and on the comparison of the outputs. `period`: time step of the scenario
@@ -201,7 +203,7 @@ int compare_replays(const std::string& given, const std::string& log_file, const
     scenarios.push_back(checked(std::move(loaded)));
   }
   Report report(options, "compare_replay", "compare_" + file.stem().string() + "_replay", context);
-  if (const std::string other = other_scenario_note(load_scenario(file, options.overrides), log); !other.empty())
+  if (const std::string other = other_scenario_note(file, options.overrides, log); !other.empty())
     print_warnings(context, {fmt::format("{}: {}", log_file, other)});
   std::vector<ReplayRow> rows;
   for (const CheckedScenario& scenario : scenarios) {

@@ -159,8 +159,8 @@ Number drift(const DiagnosedRun& run);
 Number depth_in_half_widths(const DiagnosedRun& run);
 Number softness(const DiagnosedRun& run);
 Number saturation(const DiagnosedRun& run);
-/// Returns the fraction of the steps in contact in which the spring force of an external law points into the surface;
-/// empty for a built-in law and without contact.
+/// Returns the fraction of the steps in contact in which the spring force of an external law points deeper into the
+/// surface at every contact. Empty for a built-in law, for springs and without contact.
 Number inward_share(const DiagnosedRun& run);
 /// Returns the number of landings per second [1/s]. Does not count the first landing, nor one landing for each time at
 /// which the hand's script may have lifted the tool (scripted_lifts()).

@@ -45,9 +45,9 @@ constexpr Rule kRules[] = {
      [](const DiagnosedRun& r) { return ": " + divergence_text(r.result); }},
     {"diverged", "1 if the run diverged (left its bounds)", "1", 0.5, "the run diverged", diverged, against_divergence},
     {"inward",
-     "fraction of the steps in contact in which the spring force of a law in a module or in Python points into the "
-     "surface",
-     "1", kMaxInward, "the law pulls the tool into the surface in {} of the steps in contact", inward_share,
+     "fraction of the steps in contact in which the spring force of a law in a module or in Python points deeper into "
+     "the surface at every contact",
+     "1", kMaxInward, "the law pulls the tool into the surface during {} of the contact time", inward_share,
      against_inward_force},
     {"sank", "1 if the tool passed through the surface", "1", 0.5, "the tool passed through the surface",
      ended<Outcome::went_through>, against_sinking},

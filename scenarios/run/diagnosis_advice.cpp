@@ -298,7 +298,7 @@ std::string against_sinking(const DiagnosedRun& run) {
                          : "another motion.position: the script starts inside the environment";
   if (step_exceeds_half_width(run)) return kShorterStep;
   if (!run.is_free()) return "another motion.position, because the script moves the tool there";
-  if (is_beyond(inward_share(run), kMaxInward)) return "another sign of the law's force (rule \"inward\")";
+  if (is_beyond(inward_share(run), kMaxInward)) return "a law that pushes the tool out: see the rule \"inward\"";
   if (run.observations.in_contact == 0) return against_untouched_surface(run);
   if (is_too_stiff(run)) return against_sinking_when_unstable(run);
   if (const auto advice = against_instability(run)) return *advice;
@@ -330,15 +330,20 @@ std::string against_loss(const DiagnosedRun& run) {
 }
 
 std::string against_standstill(const DiagnosedRun& run) {
-  // The hand may have reached the end of its path, which is shorter than intended. Its motion then ends there.
-  if (run.has_warning("short_path")) return "a longer path of the drag: the warning \"short_path\" names where it ends";
+  const auto* device = run.impedance();
+  const bool device_has_friction = device != nullptr && device->coulomb > 0.0;
+  std::vector<std::string> remedies;
+  // A hand stays at the end of its path. Friction can hold the tool before the end.
+  if (run.ended(Outcome::not_dragged) && run.has_warning("short_path")) {
+    const char* const longer = "a longer path of the drag (the warning \"short_path\" names where it ends)";
+    if (!device_has_friction && !run.scenario().rendering.has_friction()) return longer;
+    remedies.emplace_back(longer);
+  }
   // A tool that ends without a rendered force is held by the device or led by the hand; the law has no effect.
   const bool is_rendered = !run.observations.last_force.isZero(0.0);
-  std::vector<std::string> remedies;
   if (!is_rendered || stiffer_hand_helps(run)) remedies.emplace_back("a stiffer hand");
   if (is_rendered && run.scenario().rendering.has_friction()) remedies.emplace_back("a smaller rendering.friction");
-  if (const auto* device = run.impedance(); device != nullptr && device->coulomb > 0.0)
-    remedies.emplace_back("a device with a smaller device.coulomb_N");
+  if (device_has_friction) remedies.emplace_back("a device with a smaller device.coulomb_N");
   if (!is_rendered) return either(remedies);
   return either(remedies) +
          "; \"hapbench compare SCENARIO --algorithms all\" shows with which algorithms the tool moves on";
@@ -388,8 +393,8 @@ std::string against_shaking(const DiagnosedRun& run) {
 }
 
 std::string against_reduction(const DiagnosedRun&) {
-  return "rendering.reduction null, if settled_force_step_max_N is smaller without the reduction (contacts that begin "
-         "or end change the kept set, too)";
+  return "rendering.reduction null (if settled_force_step_max_N is smaller without it: contacts that begin or end change "
+         "the kept set, too)";
 }
 
 std::string against_coarseness(const DiagnosedRun& run) {
@@ -460,8 +465,8 @@ std::string against_encoder(const DiagnosedRun& run) {
 }
 
 std::string against_inward_force(const DiagnosedRun&) {
-  return "the opposite sign of the force in the law: the force of a spring of stiffness K at a contact is -K times "
-         "depth times gradient";
+  return "if the law is not meant to attract: weights above 0, or a force of -K times depth times gradient, summed over "
+         "the contacts";
 }
 
 std::string against_saturation(const DiagnosedRun& run) {

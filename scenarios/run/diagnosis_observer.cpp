@@ -21,11 +21,17 @@ std::optional<double> force_limit(const Scenario& scenario) {
   return limit;
 }
 
-/// Returns the sum of the depths of the contacts, each along its outward direction [m].
-Vec3 outward_depth(const ContactBuffer& contacts) noexcept {
-  Vec3 sum = Vec3::Zero();
-  for (std::size_t i = 0; i < contacts.size(); ++i) sum -= contacts.depth[i] * contacts.gradient(i);
-  return sum;
+/// Returns true if a force points deeper into the surface at every contact with a depth above 0, and there is such a
+/// contact. A law f = -K sum c_i d_i u_i with weights c_i >= 0 never gives such a force: from f . u_i > 0 for all i
+/// follows sum c_i d_i u_i . f > 0, but this sum is -|f|^2 / K.
+bool points_inwards(const Vec3& force, const ContactBuffer& contacts) noexcept {
+  bool has_depth = false;
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    if (!(contacts.depth[i] > 0.0)) continue;
+    if (!(force.dot(contacts.gradient(i)) > 0.0)) return false;
+    has_depth = true;
+  }
+  return has_depth;
 }
 
 }  // namespace
@@ -36,7 +42,8 @@ DiagnosisObserver::DiagnosisObserver(const Scenario& scenario)
   observations_.last_forces.reserve(std::min(kMaxForces, static_cast<std::size_t>(scenario.time.steps) / 4 + 1));
   if (std::holds_alternative<ImpedanceDeviceConfig>(scenario.device)) observations_.created_by_motors = 0.0;
   const AlgorithmEntry* law = find_algorithm(scenario.rendering.algorithm);
-  if (law != nullptr && law->is_external()) observations_.inward = 0;
+  const bool has_surface = !std::holds_alternative<SpringsEnvironment>(scenario.environment);
+  if (has_surface && law != nullptr && law->is_external()) observations_.inward = 0;
 }
 
 void DiagnosisObserver::on_step(const StepRecord& record) noexcept {
@@ -64,7 +71,7 @@ void DiagnosisObserver::add_contact(const StepRecord& record) noexcept {
   // Behind the surface, a tool that was thrown through it can touch where no equilibrium is near.
   if (outcome_ == nullptr || !outcome_->has_passed()) observations_.last_contact = contact_state(record);
   if (force_limit_ && f.norm() >= kAtLimit * *force_limit_) ++observations_.at_force_limit;
-  if (observations_.inward && record.force.spring.dot(outward_depth(*record.rendered)) < 0.0) ++*observations_.inward;
+  if (observations_.inward && points_inwards(record.force.spring, *record.rendered)) ++*observations_.inward;
   if (input_limit_ && record.hand.input.norm() >= kAtLimit * *input_limit_) ++observations_.at_input_limit;
   if (!was_in_contact_) return;
   const Vec3 moved = record.tool.pose.position - observations_.tip, normal = record.force.spring.stableNormalized();

@@ -107,7 +107,8 @@ class CommandLine(Arguments):
         """Returns the parsed arguments. The word after an option that takes a value is this value, even if the word
         begins with "-". Positional arguments, which are files or folders, may stand before, between and after options.
         After "--", all words are positional arguments."""
-        if not {"-h", "--help"}.isdisjoint(words):
+        options = words[: words.index("--")] if "--" in words else words
+        if not {"-h", "--help"}.isdisjoint(options):
             self.print_help()
             self.exit()
         with_value = {

@@ -212,7 +212,9 @@ class Pages(unittest.TestCase):
                         self.assertRegex(row, r"^\|(\s*:?-+:?\s*\|)+$")
                     if row.startswith("|"):
                         cells = len(re.findall(r"(?<!\\)\|", row))
-                        self.assertTrue(row.endswith("|"))
+                        self.assertTrue(
+                            row.endswith("|"), "a row of a table, or a text that begins with |"
+                        )
                         self.assertEqual(width or cells, cells)
                         width = cells
                     else:

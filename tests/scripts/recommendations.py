@@ -3,7 +3,7 @@ and with two devices of the library, without bounds and with two bounds. As a sc
 
     tests/scripts/recommendations.py PROGRAM [--cases N] [--seed S] [--log FILE] [--seconds T]
 
-judges N cases (default 24; all: every case, about a day on two cores). A case whose search takes more than T seconds
+judges N cases (default 24; all: every case, many hours). A case whose search takes more than T seconds
 of processor time (default 60) counts as unfinished. With --log, each judged case is written to a file, and a further
 call judges only cases that the file lacks, or that were unfinished after less than T seconds.
 """
@@ -103,7 +103,9 @@ def main():
         # The last entry of a case counts.
         last = {tuple(one["case"]): one for one in logged}
         known = [
-            one for one in last.values() if one.get("seconds", options.seconds) >= options.seconds
+            one
+            for one in last.values()
+            if one["answer"] != "unfinished" or one["seconds"] >= options.seconds
         ]
     done = {tuple(one["case"]) for one in known}
     with ThreadPoolExecutor(2) as workers:

@@ -51,7 +51,8 @@ struct TuneFailure {
 
 /// The contact of a run, linearised at the equilibrium of the tool. `linear` is empty if the contact did not last until
 /// the end of the run, if no equilibrium was found, or if the scene has no linear loop. It is also empty if the scene
-/// renders springs in permanent contact: Trials then uses their stiffness tensor instead (Trials::loops_in_contact).
+/// renders springs in permanent contact: TrialRuns then uses their stiffness tensor instead
+/// (TrialRuns::loops_in_contact).
 struct ContactOfTrial {
   std::optional<LinearContact> linear = {};
   RenderingConfig rendering = {};  ///< rendering settings with which `linear` was computed

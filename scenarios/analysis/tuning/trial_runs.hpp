@@ -15,7 +15,7 @@
 #include "scenarios/run/scene_loop.hpp"
 #include "sim/geometry/point_shell.hpp"
 
-/// The simulations and linear loops of one trial of `tune`.
+/// The simulations and linear loops of the trials of `tune`.
 namespace hapbench {
 
 /// The runs of a variant in a trial. `at_margin` is only used if the run at K is stable.
@@ -25,7 +25,8 @@ struct MotionOfVariant {
 };
 
 /// Makes the scenarios of a question for one law, runs them, and evaluates their linear loops. Variants are named by
-/// their index; 0 is the scene itself. Several threads may call all functions at the same time, for different trials.
+/// their index; 0 is the scene itself. Several threads may call these functions at the same time; measure() and
+/// note_metrics(), which change their trial, only for different trials.
 class TrialRuns {
  public:
   /// Builds the surface and the variants. `question` and `algorithm` must outlive this object.

@@ -229,42 +229,48 @@ std::map<double, TuneFailure> Trials::known_vibrations(const TuneSetting& settin
   return found;
 }
 
+/// Runs `count` simulations of a trial on all threads. `trial`: null if the simulations do not count for a search.
 void Trials::in_parallel(TuneTrial* trial, std::size_t count, const std::function<void(std::size_t)>& job) {
-  if (trial != nullptr)
-    count_runs(*trial, count);
-  else
-    runs_ += count;
+  count_runs(trial, count);
   for_each_job(count, {question_.threads, ""}, job);
   report_runs();
 }
 
+/// Runs holds(0) … holds(count - 1) on all threads until one returns false. Returns the lowest index for which it does,
+/// or `count`. Counts the simulations up to this index. An exception of a job counts as a failure, and is rethrown if
+/// no lower job fails; the result thus does not depend on the number of threads. `trial`: as for in_parallel().
 std::size_t Trials::run_until_failure(TuneTrial* trial, std::size_t count,
                                       const std::function<bool(std::size_t)>& holds) {
   std::atomic<std::size_t> lowest = count;  // lowest job that is known to fail
+  std::vector<std::exception_ptr> errors(count);
   for_each_job(count, {question_.threads, ""}, [&](std::size_t i) {
-    if (i > lowest || holds(i)) return;
+    if (i > lowest) return;
+    try {
+      if (holds(i)) return;
+    } catch (const InputError&) {
+      errors[i] = std::current_exception();
+    }
     for (std::size_t known = lowest; i < known && !lowest.compare_exchange_weak(known, i);) {
     }
   });
-  const std::size_t needed = std::min(lowest + 1, count);
-  if (trial != nullptr)
-    count_runs(*trial, needed);
-  else
-    runs_ += needed;
+  if (lowest < count && errors[lowest]) std::rethrow_exception(errors[lowest]);
+  count_runs(trial, std::min(lowest + 1, count));
   report_runs();
   return lowest;
 }
 
+/// Runs one simulation of each trial on all threads.
 void Trials::in_parallel(std::span<TuneTrial* const> trials, const std::function<void(std::size_t)>& job) {
-  for (TuneTrial* trial : trials) count_runs(*trial, 1);
+  for (TuneTrial* trial : trials) count_runs(trial, 1);
   for_each_job(trials.size(), {question_.threads, ""}, job);
   report_runs();
 }
 
-void Trials::count_runs(TuneTrial& trial, std::size_t count) {
+void Trials::count_runs(TuneTrial* trial, std::size_t count) {
   runs_ += count;
-  trial.runs += count;
-  if (requested_.contains(&trial)) search_runs_ += count;
+  if (trial == nullptr) return;
+  trial->runs += count;
+  if (requested_.contains(trial)) search_runs_ += count;
 }
 
 // ---- Evaluation of the constraints, the cheapest first
@@ -275,7 +281,7 @@ void Trials::judge(TuneTrial& trial, Need need) {
   trial.binding.clear();
   trial.why.clear();
   trial.too_soft = trial.limits_alone = false;
-  if (is_exhausted() && trial.runs == 0) {
+  if (is_exhausted() && trial.runs == 0 && !trial.failure) {
     trial.fail("runs", fmt::format("the search ended after {} runs", search_runs_));
     return;
   }
@@ -343,7 +349,7 @@ bool Trials::needs_depth(const TuneTrial& trial, Need need) const {
   return false;
 }
 
-/// Records the motion of a variant in its trial. Has no effect on a trial with an earlier failure.
+/// Stores the motion of a variant in its trial. Keeps an earlier failure.
 void Trials::record(TuneTrial& trial, std::size_t variant, const MotionOfVariant& motion) const {
   trial.judged = variant + 1;
   if (variant == 0) {
@@ -363,11 +369,11 @@ void Trials::judge_motion(TuneTrial& trial, std::size_t first, std::size_t last)
                         : trial_runs_.is_stable_at_margin(trial, first + job / 2, motion);
   });
   for (std::size_t i = 0; i < motions.size() && 2 * i <= failing; ++i) record(trial, first + i, motions[i]);
-  trial.judged = last;
 }
 
 void Trials::run_ahead(const TuneSetting& setting, std::span<const double> stiffnesses) {
-  if (is_exhausted()) return;
+  constexpr std::size_t kRuns = 3;  // largest number of simulations of a trial
+  if (search_runs_ + kRuns * stiffnesses.size() > kMaxTuneRuns) return;
   // Each stage runs only trials that have not failed in the stage before.
   std::vector<TuneTrial*> trials;
   for (const double K : stiffnesses) {
@@ -377,7 +383,7 @@ void Trials::run_ahead(const TuneSetting& setting, std::span<const double> stiff
     if (!trial.failure) trials.push_back(&trial);
   }
   std::map<const TuneTrial*, MotionOfVariant> motions;
-  for (const TuneTrial* trial : trials) motions[trial];
+  std::erase_if(trials, [&](const TuneTrial* trial) { return !motions.try_emplace(trial).second; });  // equal K
   in_parallel(trials, [&](std::size_t i) { trial_runs_.is_stable_at_K(*trials[i], 0, motions.at(trials[i])); });
   std::vector<TuneTrial*> settled = trials;
   std::erase_if(settled, [&](const TuneTrial* trial) { return !is_stable(motions.at(trial).at_K.verdict); });
@@ -421,7 +427,7 @@ void Trials::refine(TuneTrial& trial, Refinement refinement) {
     else
       trial.error.erase(name);
   }
-  count_runs(trial, runs);
+  count_runs(&trial, runs);
   report_runs();
 }
 

@@ -4,7 +4,6 @@
 #include <functional>
 #include <limits>
 #include <map>
-#include <memory>
 #include <optional>
 #include <set>
 #include <span>
@@ -51,7 +50,7 @@ struct TuneLimits {
 /// Evaluates and stores all trials of one law.
 ///
 /// Invariants:
-/// - each run of a setting and stiffness is made once, when a search first needs it;
+/// - each run of a setting and stiffness is made once, when a search first needs it or by run_ahead();
 /// - whether a trial is feasible depends only on the trial, on the limits and on the refutations of this search
 ///   (refute()). A trial that keeps some limits therefore keeps all looser limits. The metrics of a feasible trial keep
 ///   the limits even with their errors added;
@@ -59,8 +58,8 @@ struct TuneLimits {
 ///   searches;
 /// - a trial is evaluated only as far as a caller needs it (Need). The results equal the results of a complete
 ///   evaluation, except that TuneTrial::binding and `why` of an infeasible trial may lack a later failure or the error;
-/// - runs() does not depend on the number of threads: it counts simulations up to the first failing one, and not the
-///   simulations that other threads had already begun.
+/// - runs() does not depend on the number of threads: of runs that end at the first failure, it counts the runs up to
+///   this failure, and not the runs that other threads had already begun.
 class Trials {
  public:
   /// `question` and `algorithm` must outlive this object.
@@ -92,8 +91,8 @@ class Trials {
   const TuneTrial& trial_at(const TuneSetting& setting, double stiffness);
   /// Runs the scene itself with a setting at several stiffnesses [N/m] on all threads, so that trial_at() needs no
   /// further run of the scene itself. First runs each K, then G K where the run at K is settled, and then measures the
-  /// trials that have not failed. The runs count for a search when it requests the trial. Does nothing if the search is
-  /// exhausted.
+  /// trials that have not failed. The runs count for a search when it requests the trial, which the caller must do for
+  /// each stiffness. Does nothing if the search might then exceed its maximum number of runs.
   void run_ahead(const TuneSetting& setting, std::span<const double> stiffnesses);
   /// Returns true if a setting is feasible at K [N/m].
   bool feasible(const TuneSetting& setting, double K) { return trial_at(setting, K).feasible(); }
@@ -124,9 +123,9 @@ class Trials {
                                                 const std::function<bool(const TuneTrial&)>& counts);
   /// Returns true if a trial violates only limits, and its excess() is smaller than the excess() of `other`.
   bool is_nearer(const TuneTrial& trial, const TuneTrial& other);
-  /// Makes `count` runs of a trial; the runs cycle through the variants. `more`: additional override of a run, such as
-  /// a larger K. Returns the first run that is not settled or whose loop in contact is unstable between the trial's K
-  /// and the run's K; empty if all runs are settled.
+  /// Makes up to `count` runs of a trial; the runs cycle through the variants. `more`: additional override of a run,
+  /// such as a larger K. Returns the first run that is not settled or whose loop in contact is unstable between the
+  /// trial's K and the run's K; empty if all runs are settled.
   std::optional<Failing> first_failing(const TuneTrial& trial, std::size_t count,
                                        const std::function<std::string(std::size_t run)>& more);
 
@@ -188,7 +187,7 @@ class Trials {
   void in_parallel(TuneTrial* trial, std::size_t count, const std::function<void(std::size_t)>& job);
   std::size_t run_until_failure(TuneTrial* trial, std::size_t count, const std::function<bool(std::size_t)>& holds);
   void in_parallel(std::span<TuneTrial* const> trials, const std::function<void(std::size_t)>& job);
-  void count_runs(TuneTrial& trial, std::size_t count);
+  void count_runs(TuneTrial* trial, std::size_t count);
   void record(TuneTrial& trial, std::size_t variant, const MotionOfVariant& motion) const;
   void judge_motion(TuneTrial& trial, std::size_t first, std::size_t last);
   void measure_scene(TuneTrial& trial);

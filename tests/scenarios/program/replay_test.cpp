@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "device_model/live/hapbench_renderer.hpp"
+#include "scenarios/scene/load_scenario.hpp"
 #include "tests/results/files.hpp"
 #include "tests/scenarios/support/program.hpp"
 
@@ -27,7 +28,8 @@ const char* const kScene = R"({
   "initial": {"position_m": [0, 0, 0.002]},
   "tool": {"diameter_m": 0.001, "length_m": 0.01, "tip": "round"},
   "device": {"type": "impedance", "handle_mass_kg": 0.05, "velocity_filter": {"type": "low_pass", "cutoff_Hz": 100}},
-  "rendering": {"algorithm": "shaped_stiffness", "stiffness_N_per_m": 2000, "damping_ratio": 0.2}
+  "rendering": {"algorithm": "shaped_stiffness", "stiffness_N_per_m": 2000, "damping_ratio": 0.2},
+  "expect": {"outcome": "no_contact"}
 })";
 
 /// Returns a log in which the handle moves into the hole, around its wall, out and in again. Two successive calls are
@@ -165,7 +167,7 @@ TEST_F(Replay, WarnsOfAToolThatPassedThroughTheSurface) {
 }
 
 TEST_F(Replay, AComparisonNamesAnotherScenario) {
-  // The scenario of the log, also with a law that is not compared, is the recorded one. Every other field is not.
+  // No warning if only the law differs, also a law that is not compared. A warning if any other field differs.
   const auto warned = [&](const std::vector<std::string>& more) {
     std::vector<std::string> words = {"compare", scene, "--replay", log, "--algorithms", "mean,proxy", "--out", out};
     words.insert(words.end(), more.begin(), more.end());
@@ -178,6 +180,23 @@ TEST_F(Replay, AComparisonNamesAnotherScenario) {
   EXPECT_EQ(warned({"--set", "rendering.algorithm=summation"}).find(other), std::string::npos);
   EXPECT_NE(warned({"--set", "rendering.stiffness_N_per_m=12345"}).find(other), std::string::npos);
   EXPECT_NE(warned({"--set", "time.step_s=0.0007"}).find("The recorded time step is"), std::string::npos);
+  // The same for a log whose law was an override.
+  const std::string mean = folder / "mean.csv";
+  const LoadedScenario loaded =
+      load_scenario(std::filesystem::path(scene), std::vector<std::string>{"rendering.algorithm=mean"});
+  std::string text = read_file(log);
+  const std::string hash =
+      scenario_hash(effective_scenario(loaded.scenario, std::filesystem::current_path()), loaded.files);
+  const std::string own = scenario_hash(
+      effective_scenario(load_scenario(std::filesystem::path(scene)).scenario, std::filesystem::current_path()), {});
+  ASSERT_NE(text.find(own), std::string::npos);
+  write_plainly(mean, text.replace(text.find(own), own.size(), hash));
+  for (const std::vector<std::string>& more :
+       {std::vector<std::string>{}, {"--set", "rendering.algorithm=summation"}}) {
+    std::vector<std::string> words = {"compare", scene, "--replay", mean, "--algorithms", "mean,proxy", "--out", out};
+    words.insert(words.end(), more.begin(), more.end());
+    EXPECT_EQ(hapbench(words).err.find(other), std::string::npos);
+  }
 }
 
 TEST_F(Replay, RefusesWhatHasNoMeaning) {

@@ -84,20 +84,24 @@ TEST(Advice, NamesTheSpacingIfTheToolPassesBetweenThePoints) {
 
 /// A drag whose path ends early is not held by friction: only a longer path helps.
 TEST(Advice, NamesTheEndOfTheDragsPath) {
-  const auto dragged = [](const char* spacing) {
+  const auto dragged = [](const char* spacing, const char* speed, const char* friction) {
     return run_of_text(fmt::format(R"({{
       "time": {{"step_s": 0.001, "duration_s": 1}},
       "environment": {{"type": "plane", "size_m": 0.012, "spacing_m": {}}},
       "initial": {{"position_m": [-0.003, 0, 0.0011]}},
       "tool": {{"diameter_m": 0.002, "length_m": 0.02, "tip": "round"}},
-      "hand": {{"type": "drag", "force_N": 1, "direction": [1, 0, 0], "speed_m_per_s": 0.006, "tilt_rad": 0.2}},
-      "rendering": {{"algorithm": "shaped_stiffness", "stiffness_N_per_m": 20000, "damping_ratio": 0.7}}}})",
-                                   spacing));
+      "hand": {{"type": "drag", "force_N": 1, "direction": [1, 0, 0], "speed_m_per_s": {}, "tilt_rad": 0.2}},
+      "rendering": {{"algorithm": "shaped_stiffness", "stiffness_N_per_m": 20000, "damping_ratio": 0.7,
+                    "friction": {}}}}})",
+                                   spacing, speed, friction));
   };
-  const Result result = dragged("0.0008");
+  const char* const none = R"({"mu_s_N_s_per_m": 0, "mu_f_s_per_m": 0})";
+  const Result result = dragged("0.0008", "0.006", none);
   ASSERT_EQ(result.end.outcome, Outcome::not_dragged);
   expect_words(advice(result, "stuck"), {"a longer path", "short_path"}, {"friction", "stiffer hand", "algorithms"});
-  EXPECT_EQ(dragged("0.0004").end.outcome, Outcome::completes) << "the remedy of the warning helps";
+  EXPECT_EQ(dragged("0.0004", "0.006", none).end.outcome, Outcome::completes) << "the remedy of the warning helps";
+  // Friction can hold the tool on a path that is also too short.
+  expect_words(advice(dragged("0.0004", "0.02", R"({"type": "dry", "mu": 5})"), "stuck"), {"rendering.friction"}, {});
 }
 
 /// A loop that is unstable at any K has one cause: no rule names K or the force of the hand.

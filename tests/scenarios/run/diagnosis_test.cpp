@@ -112,7 +112,8 @@ TEST(Diagnosis, EachRuleFindsItsFaultAndIsSilentWithout) {
   all.push_back({"force_sign",
                  {"recorded_wipe", {"motion.position.file=" + fs::absolute(directory / "reversed.csv").string()}},
                  {"recorded_wipe"}});
-  // Load a law that gives the force of `mean` or, if HOSTILE is "nan", NaN.
+  // Load a law that gives the force of `mean`. If HOSTILE is "nan", it gives NaN; if it is "inward", the opposite
+  // force.
   load_module(fs::canonical(HAPBENCH_TEST_MODULES) / "hostile.so");
   std::set<std::string> tested = {"fault"};
   const Scene hostile = {"single_spring", {"rendering.algorithm=hostile"}};
@@ -128,9 +129,7 @@ TEST(Diagnosis, EachRuleFindsItsFaultAndIsSilentWithout) {
     EXPECT_EQ(finding(run(molar), "inward"), nullptr);
     const test::EnvironmentVariable inward("HOSTILE", "inward");
     const Result pulled = run(molar);
-    const Diagnosed* found = finding(pulled, "inward");
-    ASSERT_NE(found, nullptr);
-    EXPECT_EQ(found->value, 1.0) << "every step in contact";
+    EXPECT_NE(finding(pulled, "inward"), nullptr);
     const Diagnosed* sank = finding(pulled, "sank");
     ASSERT_NE(sank, nullptr);
     EXPECT_EQ(sank->attempt.find('K'), std::string::npos) << "no K helps: " << sank->attempt;

@@ -374,6 +374,33 @@ TEST(Tune, EvaluatesATrialOnlyAsFarAsAnAnswerNeedsIt) {
   }
 }
 
+/// Checks that trials and numbers of runs depend neither on the number of threads nor on runs made ahead.
+TEST(Tune, FindsTheSameOnAnyNumberOfThreads) {
+  const std::vector<double> stiffnesses = {2.5e3, 4e3, 6e3, 2.5e4, 5e4, 2e5, 2e6, 2e6};
+  const TuneSetting setting{0.3, std::nullopt, ""};
+  const std::string law = "shaped_stiffness";
+  const auto found = [&](unsigned threads, bool ahead) {
+    TuneQuestion asked = question("tap_wall", {"time.duration_s=0.6"});
+    asked.threads = threads;
+    asked.limits["force_rms_above_30Hz_N"].max = 0.1;
+    Trials trials(asked, law);
+    if (ahead) trials.run_ahead(setting, stiffnesses);
+    std::string text;
+    for (const double K : stiffnesses) {
+      const TuneTrial& trial = trials.trial_at(setting, K);
+      text += fmt::format("{}: {} {} {}\n", K, trial.binding, trial.why, trial.lambda_max);
+      for (const auto& [name, value] : trial.metrics) text += fmt::format("  {} {}\n", name, value);
+    }
+    return std::pair(text, trials.runs());
+  };
+  const auto [one, runs] = found(1, false);
+  EXPECT_NE(one.find("settled"), std::string::npos) << "a trial fails at K";
+  EXPECT_NE(one.find("margin"), std::string::npos) << "a trial fails at the margin times K";
+  EXPECT_EQ(found(3, false), std::pair(one, runs));
+  EXPECT_EQ(found(1, true).first, one);
+  EXPECT_EQ(found(1, true), found(3, true));
+}
+
 /// Checks a run that friction makes unstable. With mu_f = 340 s/m, explicit integration of friction is unstable above
 /// 1.2 N. The hand presses with up to 2 N, and with less at the end of the run, where the linear loop is stable.
 TEST(Tune, RecommendsNoRunThatIsAnArtefactOfFriction) {
