@@ -393,8 +393,8 @@ std::string against_shaking(const DiagnosedRun& run) {
 }
 
 std::string against_reduction(const DiagnosedRun&) {
-  return "rendering.reduction null (if settled_force_step_max_N is smaller without it: contacts that begin or end change "
-         "the kept set, too)";
+  return "rendering.reduction null (if settled_force_step_max_N is smaller without it: contacts that begin or end "
+         "change the kept set, too)";
 }
 
 std::string against_coarseness(const DiagnosedRun& run) {
@@ -465,8 +465,8 @@ std::string against_encoder(const DiagnosedRun& run) {
 }
 
 std::string against_inward_force(const DiagnosedRun&) {
-  return "if the law is not meant to attract: weights above 0, or a force of -K times depth times gradient, summed over "
-         "the contacts";
+  return "if the law is not meant to attract: weights above 0, or a force of -K times depth times gradient, summed "
+         "over the contacts";
 }
 
 std::string against_saturation(const DiagnosedRun& run) {
