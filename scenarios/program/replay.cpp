@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "algorithms/registry.hpp"
 #include "results/io/atomic_file.hpp"
 #include "scenarios/input/bundled_scenarios.hpp"
 #include "scenarios/program/names.hpp"
