@@ -102,8 +102,8 @@ void warn_of_passage(const ProgramContext& context, const std::string& what, con
                                          what, text)});
 }
 
-std::string hash_of(const CheckedScenario& scenario) {
-  return scenario_hash(effective_scenario(scenario.scenario(), fs::current_path()), scenario.files());
+std::string hash_of(const LoadedScenario& loaded) {
+  return scenario_hash(effective_scenario(loaded.scenario, fs::current_path()), loaded.files);
 }
 
 /// Returns a sentence on the difference between a scenario, whose hash is `hash`, and the recorded scenario; empty if
@@ -121,25 +121,30 @@ std::string other_scenario_note(const Scenario& scenario, const std::string& has
 }
 
 std::string other_scenario_note(const CheckedScenario& scenario, const LoopLog& log) {
-  return other_scenario_note(scenario.scenario(), hash_of(scenario), log);
+  return other_scenario_note(scenario.scenario(), hash_of(scenario.loaded()), log);
 }
 
 /// Returns the note for a comparison of laws; empty if the scenario differs from the recorded scenario only in its law.
 std::string other_scenario_note(const fs::path& file, std::vector<std::string> overrides, const LoopLog& log) {
   const LoadedScenario given = load_scenario(file, overrides);
+  const std::string own = hash_of(given);
   std::erase_if(overrides, [](const std::string& text) { return text.starts_with("rendering.algorithm="); });
-  std::vector<std::string> hashes = {hash_of(checked(given)), hash_of(checked(load_scenario(file, overrides)))};
-  // Load the scenario with each law as for a recording: an override may change more fields than its own.
-  for (const std::string& name : algorithm_names()) {
-    overrides.push_back("rendering.algorithm=" + name);
+  const auto is_recorded = [&](const std::vector<std::string>& fields) {
     try {
-      hashes.push_back(hash_of(checked(load_scenario(file, overrides))));
+      return hash_of(load_scenario(file, fields)) == log.scenario.hash;
     } catch (const InputError&) {  // a scenario that rejects the law recorded no log with it
+      return false;
     }
-    overrides.pop_back();
-  }
-  const auto recorded = std::ranges::find(hashes, log.scenario.hash);
-  return other_scenario_note(given.scenario, recorded == hashes.end() ? hashes.front() : *recorded, log);
+  };
+  // Load the scenario with each law as for a recording: an override may change more fields than its own.
+  const auto is_recorded_with = [&](const std::string& law) {
+    std::vector<std::string> fields = overrides;
+    fields.push_back("rendering.algorithm=" + law);
+    return is_recorded(fields);
+  };
+  const bool is_same =
+      own == log.scenario.hash || is_recorded(overrides) || std::ranges::any_of(algorithm_names(), is_recorded_with);
+  return other_scenario_note(given.scenario, is_same ? log.scenario.hash : own, log);
 }
 
 /// Returns sentences on the calls of the log and on the comparison of the outputs. `period`: time step of the scenario

@@ -83,7 +83,7 @@ class RunCache {
 /// Evaluates the given parameters (middles of the intervals that are stable in theory) and the end points of the
 /// kScanIntervals intervals of a scan.
 EvaluatedParameters evaluate_first(RunCache& runs, std::vector<double> parameters) {
-  for (int i = 0; i <= kScanIntervals; ++i) parameters.push_back(static_cast<double>(i) / kScanIntervals);
+  for (const double t : scan_parameters(kScanIntervals)) parameters.push_back(t);
   runs.run_ahead(parameters);
   EvaluatedParameters evaluated;
   for (const double t : parameters) evaluated[t] = runs.is_stable_at(t);

@@ -154,18 +154,21 @@ bool IntervalSearchOptions::needs_bisection(double a, double b) const {
   return high - low > resolution * (range.to - range.from);
 }
 
+std::vector<double> scan_parameters(int intervals) {
+  std::vector<double> parameters;
+  for (int i = 0; i <= intervals; ++i) parameters.push_back(static_cast<double>(i) / intervals);
+  return parameters;
+}
+
 EvaluatedParameters evaluate_scan(int intervals, const IsStable& stable) {
   EvaluatedParameters evaluated;
-  for (int i = 0; i <= intervals; ++i) {
-    const double t = static_cast<double>(i) / intervals;
-    evaluated[t] = stable(t);
-  }
+  for (const double t : scan_parameters(intervals)) evaluated[t] = stable(t);
   return evaluated;
 }
 
 std::vector<double> scan_values(const IntervalSearchOptions& options, int intervals) {
   std::vector<double> values;
-  for (int i = 0; i <= intervals; ++i) values.push_back(options.value_at(static_cast<double>(i) / intervals));
+  for (const double t : scan_parameters(intervals)) values.push_back(options.value_at(t));
   return values;
 }
 

@@ -57,9 +57,11 @@ using EvaluatedParameters = std::map<double, bool>;
 /// Evaluates a parameter. Returns true if it is stable.
 using IsStable = std::function<bool(double t)>;
 
-/// Divides [0, 1] into `intervals` equal intervals and evaluates their end points, from t = 0 to t = 1.
+/// Divides [0, 1] into `intervals` equal intervals and returns their end points, from t = 0 to t = 1.
+std::vector<double> scan_parameters(int intervals);
+/// Evaluates scan_parameters(), from t = 0 to t = 1.
 EvaluatedParameters evaluate_scan(int intervals, const IsStable& stable);
-/// Returns the values at the parameters of evaluate_scan().
+/// Returns the values at scan_parameters().
 std::vector<double> scan_values(const IntervalSearchOptions& options, int intervals);
 
 /// Bisects the first stable-to-unstable transition above the current value, or above the first stable parameter if the

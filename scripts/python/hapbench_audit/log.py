@@ -101,7 +101,7 @@ class Log:
 
     @cached_property
     def is_rounded(self):
-        """True if the times are those of an even clock, rounded to multiples of about one interval."""
+        """True if the clock is even and its times are rounded to multiples of about one interval."""
         steps = np.diff(self.time)
         return not self.missing.any() and is_rounded(steps, float(np.median(steps)))
 
