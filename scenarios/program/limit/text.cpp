@@ -26,7 +26,7 @@ namespace {
 std::string damping_text(const RenderingConfig& rendering) {
   if (rendering.damping) return fmt::format("B = {} N s/m", significant(*rendering.damping));
   if (rendering.damping_ratio == 0.0) return "no damping is rendered (damping_ratio 0): B = 0 at every K";
-  return fmt::format("B = 2 zeta sqrt(K m) with damping_ratio zeta = {} and rendering.mass_kg m = {}",
+  return fmt::format("B = 2 zeta sqrt(K M) with damping_ratio zeta = {} and rendering.mass_kg M = {}",
                      significant(rendering.damping_ratio), significant(rendering.mass));
 }
 
@@ -246,7 +246,7 @@ std::string limit_answer(const FieldLimit& found, const LimitQuestion& question)
   };
   const QuotedLimit& quoted = found.quoted;
   std::string text =
-      quoted.value ? fmt::format("quote {}, the {}", shown(*quoted.value, found.quoted_tolerance(), 6), quoted.reason)
+      quoted.value ? fmt::format("the limit to quote is {}, the {}", shown(*quoted.value, found.quoted_tolerance(), 6), quoted.reason)
                    : fmt::format("no limit to quote: {}", quoted.reason);
   const auto& linear = found.known_linear_limit();
   // Name the limits that are not the quoted limit.

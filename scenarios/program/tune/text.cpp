@@ -37,7 +37,7 @@ std::string limits_text(const Tuning& tuning) {
       "largest K that the search found{}. All runs at stiffnesses from K to {:g} K are settled: stable or decaying "
       "(\"hapbench describe stability\") or, if a script moves the tool, with little vibration after the first quarter "
       "of the contact (at most 1 mm/s rms above 30 Hz)",
-      tuning.ranges.damping_ratio ? ", with damping B = 2 zeta sqrt(K m) and m = rendering.mass_kg" : "",
+      tuning.ranges.damping_ratio ? ", with damping B = 2 zeta sqrt(K M) and M = rendering.mass_kg" : "",
       tuning.question.margin);
   if (!tuning.question.allow_vibration)
     text += fmt::format(
