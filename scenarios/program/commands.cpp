@@ -49,7 +49,7 @@ constexpr CommandGuide kCommands[] = {
      "limit tap_wall --device all\n"
      "limit mine.json --algorithms mean,shaped_stiffness\n"
      "limit tap_wall --vary time.step_s --between 1e-4:1e-2",
-     "scenarios/analysis/README.md, section \"How limit searches\""},
+     "scenarios/LIMITS.md, section \"How limit searches\""},
     {"decide", "tune", "choose force law, stiffness and damping for a device", add_tune,
      "tune tap_wall --device touch\n"
      "tune mine.json --device log_device.json --algorithms mean,proxy\n"
@@ -65,7 +65,7 @@ constexpr CommandGuide kCommands[] = {
      "stress\n"
      "stress --count 1000\n"
      "stress --module ./my_law.so",
-     "scenarios/analysis/README.md, section \"Stress\""},
+     "scenarios/STRESS.md"},
     {"decide", "reproduce", "test the claims of the thesis", add_reproduce,
      "reproduce\n"
      "reproduce --only T2,R1b\n"
