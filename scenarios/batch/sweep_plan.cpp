@@ -65,10 +65,8 @@ Json check_files(SweepPlan& plan, const std::vector<std::size_t>& runs, Names& m
     const CheckedScenario scene = checked(plan.cases.load(run));
     const LoadedScenario& loaded = scene.loaded();
     append_new(plan.warnings, with_files(loaded, scene.file_warnings()));
-    if (std::holds_alternative<RecordedPosition>(loaded.scenario.motion.position)) {
-      const bool has_force = loaded.files.at(kMotionFile).stroke()->force.has_value();
-      add_names(metrics, metrics_without_values(loaded.scenario, has_force));
-    }
+    if (std::holds_alternative<RecordedPosition>(loaded.scenario.motion.position))
+      add_names(metrics, metrics_without_values(loaded));
     Scenario unnamed = loaded.scenario;
     unnamed.name.clear();  // the name may come from the scenario's file name
     hashes.push_back(with_file(loaded, [&] { return scenario_hash(effective_scenario(unnamed, {}), loaded.files); }));

@@ -43,4 +43,14 @@ void add_bound(const std::string& text, std::map<std::string, MetricBound>& boun
                  fmt::format("got \"{}\"; allowed: METRIC=MAX or METRIC=MIN:MAX, such as inside_settled_m=3e-4", text));
 }
 
+void require_bounded_metrics(const std::map<std::string, MetricBound>& bounds, const LoadedScenario& scene) {
+  if (bounds.empty()) return;
+  const MetricList metrics = metrics_without_values(scene);
+  const char* const trials = trial_count(scene.scenario.hand) > 1.0 ? " and with a single trial" : "";
+  for (const auto& [name, bound] : bounds)
+    if (find_metric(metrics, name) == nullptr)
+      fail_in_option("--bound", fmt::format("got \"{}\"; \"{}\" has no such metric: runs have it only {}{}", name,
+                                            scene.scenario.name, condition_of_metric(name), trials));
+}
+
 }  // namespace hapbench

@@ -1,11 +1,15 @@
 #include "scenarios/scene/metric_sections.hpp"
 
 #include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+#include <variant>
 
 #include "results/observe/contact_metrics.hpp"
 #include "results/observe/energy.hpp"
 #include "results/observe/ideal_trajectory.hpp"
 #include "results/observe/target_metrics.hpp"
+#include "scenarios/scene/named_files.hpp"
 #include "scenarios/scene/six_dof_observer.hpp"
 
 namespace hapbench {
@@ -14,6 +18,7 @@ namespace {
 /// A section of the summary: its name, the condition under which a run has it, and its observer.
 struct SectionKind {
   const char* name;
+  const char* condition;  ///< the condition in words, after "only"; empty if every run has the section
   /// Returns the number of target positions, or 1 for a section that has no target positions. Returns 0 if the
   /// scenario does not request the section.
   std::size_t (*parts)(const Scenario& scenario, bool has_reference_force);
@@ -51,21 +56,25 @@ std::size_t target_positions(const Scenario& scenario, bool) {
 /// All sections, in the order of the summary. To add a section, add an entry here and a source file with its
 /// observer.
 const SectionKind kSections[] = {
-    {"passivity", [](const Scenario&, bool) { return std::size_t{1}; }, make<PassivityObserver>, true},
-    {"energy", [](const Scenario& s, bool) { return std::size_t{s.record.energy}; }, make<EnergyLedger>},
-    {"ideal_trajectory", [](const Scenario& s, bool) { return std::size_t{s.record.ideal_trajectory}; },
-     observe_ideal_trajectory},
-    {"fidelity", [](const Scenario&, bool has_reference) { return std::size_t{has_reference}; },
-     make<ForceFidelityObserver>},
-    {"six_dof", [](const Scenario& s, bool) { return std::size_t{s.six_dof.has_value()}; }, observe_six_dof},
-    {"torque", [](const Scenario& s, bool) { return std::size_t{s.record.torque}; }, make<LostTorqueObserver>},
-    {"friction", [](const Scenario& s, bool) { return std::size_t{s.rendering.dry_friction.has_value()}; },
-     make<FrictionObserver>},
-    {"force_stage", [](const Scenario& s, bool) { return std::size_t{s.rendering.force_stage.has_value()}; },
+    {"passivity", "", [](const Scenario&, bool) { return std::size_t{1}; }, make<PassivityObserver>, true},
+    {"energy", "with record.energy", [](const Scenario& s, bool) { return std::size_t{s.record.energy}; },
+     make<EnergyLedger>},
+    {"ideal_trajectory", "with record.ideal_trajectory",
+     [](const Scenario& s, bool) { return std::size_t{s.record.ideal_trajectory}; }, observe_ideal_trajectory},
+    {"fidelity", "with reference_force, or with a stroke that has a measured force",
+     [](const Scenario&, bool has_reference) { return std::size_t{has_reference}; }, make<ForceFidelityObserver>},
+    {"six_dof", "with six_dof", [](const Scenario& s, bool) { return std::size_t{s.six_dof.has_value()}; },
+     observe_six_dof},
+    {"torque", "with record.torque", [](const Scenario& s, bool) { return std::size_t{s.record.torque}; },
+     make<LostTorqueObserver>},
+    {"friction", "with rendering.friction of type \"dry\"",
+     [](const Scenario& s, bool) { return std::size_t{s.rendering.dry_friction.has_value()}; }, make<FrictionObserver>},
+    {"force_stage", "with rendering.force_stage",
+     [](const Scenario& s, bool) { return std::size_t{s.rendering.force_stage.has_value()}; },
      make<ForceStageObserver>},
-    {"contacts", [](const Scenario& s, bool) { return std::size_t{has_multi_rate_contacts(s)}; },
-     make<ContactAgeObserver>},
-    {"targets", target_positions, observe_targets, true}};
+    {"contacts", "with rendering.contacts",
+     [](const Scenario& s, bool) { return std::size_t{has_multi_rate_contacts(s)}; }, make<ContactAgeObserver>},
+    {"targets", "with a hand of type \"tracking\"", target_positions, observe_targets, true}};
 
 /// Adds the metrics that every run has. `inside` is null if the environment has no solid.
 void report_common_metrics(const MetricsObserver& metrics, const InsideDepths* inside, MetricList& list) {
@@ -100,6 +109,13 @@ MetricList metrics_without_values(const Scenario& scenario, bool has_reference_f
   });
 }
 
+MetricList metrics_without_values(const LoadedScenario& loaded) {
+  const Scenario& scenario = loaded.scenario;
+  const bool is_recorded = std::holds_alternative<RecordedPosition>(scenario.motion.position);
+  return metrics_without_values(
+      scenario, scenario.reference_force || (is_recorded && loaded.files.at(kMotionFile).stroke()->force));
+}
+
 MetricList metrics_without_values(std::size_t target_positions) {
   return list_without_values([target_positions](const SectionKind&) { return target_positions; });
 }
@@ -107,6 +123,13 @@ MetricList metrics_without_values(std::size_t target_positions) {
 const MetricList& all_metrics() {
   static const MetricList all = metrics_without_values(2);
   return all;
+}
+
+std::string condition_of_metric(std::string_view metric) {
+  const std::string_view section = metric.substr(0, metric.find('.'));
+  for (const SectionKind& kind : kSections)
+    if (section != metric && section == kind.name) return kind.condition;
+  return "";
 }
 
 SectionObservers::SectionObservers(const Scenario& scenario, bool has_reference_force) {

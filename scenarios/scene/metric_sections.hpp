@@ -1,12 +1,15 @@
 #pragma once
 
 #include <memory>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "results/observe/force_fidelity.hpp"
 #include "results/observe/inside_observer.hpp"
 #include "results/observe/metrics.hpp"
 #include "results/summary/summary.hpp"
+#include "scenarios/scene/load_scenario.hpp"
 #include "scenarios/scene/scenario.hpp"
 
 /// Defines the metrics of a run: metrics that every run has, and metrics of optional sections, such as friction. The
@@ -18,12 +21,18 @@ namespace hapbench {
 /// the summary. `has_reference_force` is true if the scenario has a reference force or its recorded stroke has a
 /// measured force.
 MetricList metrics_without_values(const Scenario& scenario, bool has_reference_force);
+/// As above. Whether a recorded stroke has a measured force is read from its file. Throws InputError if the file cannot
+/// be used.
+MetricList metrics_without_values(const LoadedScenario& loaded);
 /// Returns the metrics of all sections, without values. `target_positions` is the number of target positions of a
 /// tracking task.
 MetricList metrics_without_values(std::size_t target_positions);
 /// Returns the metrics that `expect` can bound. The list is computed once. It has metrics for two target
 /// positions, because the tasks of the thesis have two.
 const MetricList& all_metrics();
+/// Returns the condition under which runs have a metric, such as "with record.energy". Empty if every run has it. Of a
+/// scenario with several trials, runs have only the metrics that can be computed over several trials.
+std::string condition_of_metric(std::string_view metric);
 
 /// The observers of a run: one observer for each section that the scenario requests.
 class SectionObservers {

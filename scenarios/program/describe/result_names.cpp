@@ -118,6 +118,7 @@ Description describe_printed_names(const Layout& layout) {
 void add_metric_terms(Index& index, const std::vector<DescribedTable>& tables, const Layout& layout) {
   for (const Metric& metric : all_metrics()) {
     Json json = {{"kind", "metric"}, {"name", metric.name}, {"unit", metric.unit}, {"meaning", metric.meaning}};
+    if (const std::string condition = condition_of_metric(metric.name); !condition.empty()) json["only"] = condition;
     for (const DescribedTable& table : tables)
       for (const auto& column : table.columns)
         if (!table.file.empty() && column.name == metric.name && column.meaning == metric.meaning)

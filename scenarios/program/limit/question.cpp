@@ -167,6 +167,7 @@ LimitRow make_limit_row(const LimitOptions& options, const LimitTable& table, st
     row.question = question_of(options, scene, row.scenario, overrides);
     append_new(warnings, of_option(row.device, row.question.warnings));
     append_new(warnings, of_option(row.device, with_files(loaded, checked(loaded).file_warnings())));
+    require_bounded_metrics(row.question.rule.bounds, loaded);
   } catch (const InputError& error) {
     throw row.device != nullptr ? on_device(*row.device, error) : error;
   }

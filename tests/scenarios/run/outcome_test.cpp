@@ -2,6 +2,8 @@
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <set>
+#include <string>
 
 #include "results/observe/metrics.hpp"
 #include "scenarios/input/bundled_scenarios.hpp"
@@ -10,6 +12,7 @@
 #include "scenarios/run/outcome.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/run/scene_checks.hpp"
+#include "scenarios/scene/metric_sections.hpp"
 #include "scenarios/scene/tools.hpp"
 #include "tests/results/files.hpp"
 #include "tests/scenarios/support/bundled.hpp"
@@ -143,6 +146,19 @@ TEST(Expectation, IncludesItsBoundsAndMayBoundEveryMetric) {
     EXPECT_EQ(unmet("force_max_N", bound), 0u);
   EXPECT_GE(all_metrics().size(), 12u);
   for (const Metric& metric : all_metrics()) EXPECT_EQ(unmet(metric.name, {1e15, {}}), 1u) << metric.name;
+}
+
+// condition_of_metric() is stated for exactly the metrics that a scene without any of these fields lacks.
+TEST(MetricConditions, AreThoseOfTheMetricsThatAPlainSceneLacks) {
+  const MetricList plain = metrics_without_values(load_scenario(find_scenario("tap_wall")));
+  std::set<std::string> conditions;
+  for (const Metric& metric : all_metrics()) {
+    const std::string condition = condition_of_metric(metric.name);
+    EXPECT_EQ(condition.empty(), find_metric(plain, metric.name) != nullptr) << metric.name;
+    conditions.insert(condition);
+  }
+  // The empty condition, and those of the optional sections.
+  EXPECT_EQ(conditions.size(), 10u);
 }
 
 Json scene() {
