@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <iterator>
+#include <string_view>
 #include <utility>
 
 #include "scenarios/run/diagnosed_run.hpp"
@@ -151,6 +154,15 @@ constexpr Rule kRules[] = {
      against_drift},
 };
 
+/// Returns the advice of a rule. If the law pulls the tool into the surface, no other K, damping, hand or device helps:
+/// the advice is then to correct the law, except of rules whose advice does not depend on the law.
+std::string advice(const Rule& rule, const DiagnosedRun& run) {
+  constexpr std::string_view kOfAnyLaw[] = {"fault", "inward", "sank",     "step",
+                                            "servo", "facets", "friction", "force_sign"};
+  const bool of_any_law = std::ranges::find(kOfAnyLaw, rule.name) != std::end(kOfAnyLaw);
+  return !of_any_law && pulls_inwards(run) ? correct_pulling_law() : rule.attempt(run);
+}
+
 /// Evaluates the rules for which the member `mark` is true, or all rules if `mark` is null. If `beyond_threshold` is
 /// true, returns only the rules whose threshold is exceeded, with advice. Otherwise returns all evaluated rules that
 /// have a number, without advice.
@@ -166,7 +178,7 @@ std::vector<Diagnosed> diagnosed(const DiagnosedRun& run, bool Rule::*mark, bool
     std::string says = fmt::format(fmt::runtime(rule.says), fmt::format("{:.3g}", *value));
     if (*value > rule.threshold) says += rule.more(run);
     found.push_back({rule.name, rule.number, rule.unit, *value, rule.threshold, std::move(says),
-                     beyond_threshold ? rule.attempt(run) : ""});
+                     beyond_threshold ? advice(rule, run) : ""});
   }
   return found;
 }

@@ -239,6 +239,14 @@ std::string damping_ratio_field() {
   return std::string(parameter::kDampingRatio.field) + " (zeta)";
 }
 
+bool pulls_inwards(const DiagnosedRun& run) {
+  return is_beyond(inward_share(run), kMaxInward);
+}
+
+std::string correct_pulling_law() {
+  return "a law that pushes the tool out: see the rule \"inward\"";
+}
+
 std::string against_fault(const DiagnosedRun& run) {
   const Divergence& divergence = run.result.end.divergence;
   const char* what = std::string_view(divergence.quantity) == "contacts" ? "contact module" : "law or module";
@@ -298,7 +306,7 @@ std::string against_sinking(const DiagnosedRun& run) {
                          : "another motion.position: the script starts inside the environment";
   if (step_exceeds_half_width(run)) return kShorterStep;
   if (!run.is_free()) return "another motion.position, because the script moves the tool there";
-  if (is_beyond(inward_share(run), kMaxInward)) return "a law that pushes the tool out: see the rule \"inward\"";
+  if (pulls_inwards(run)) return correct_pulling_law();
   if (run.observations.in_contact == 0) return against_untouched_surface(run);
   if (is_too_stiff(run)) return against_sinking_when_unstable(run);
   if (const auto advice = against_instability(run)) return *advice;

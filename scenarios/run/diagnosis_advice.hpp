@@ -11,6 +11,12 @@ namespace hapbench {
 /// The field of the damping ratio as the advice names it.
 std::string damping_ratio_field();
 
+/// Returns true if the law of the run pulls the tool into the surface (rule `inward`).
+bool pulls_inwards(const DiagnosedRun& run);
+
+/// The advice of other rules for a law that pulls the tool into the surface.
+std::string correct_pulling_law();
+
 std::string against_fault(const DiagnosedRun& run);
 std::string against_divergence(const DiagnosedRun& run);
 std::string against_sinking(const DiagnosedRun& run);
