@@ -45,10 +45,11 @@ struct ValidateOptions : CommonOptions {
 
 std::string surface_text(const SceneFacts::Surface& surface, std::optional<bool> is_closed) {
   const std::string closed = is_closed ? (*is_closed ? ", closed" : ", open") : "";
-  const auto& [gap, touching] = surface.start;
-  const std::string start = touching > 0 ? fmt::format("starts in contact: {} points inside the tool, largest depth {}",
-                                                       touching, length_text(std::abs(gap)))
-                                         : fmt::format("starts {} from the surface", length_text(gap));
+  const auto& [gap, touching, is_estimate] = surface.start;
+  const std::string start =
+      touching > 0 ? fmt::format("starts in contact: {} points inside the tool, largest depth {}", touching,
+                                 length_text(std::abs(gap)))
+                   : fmt::format("starts {}{} from the surface", is_estimate ? "about " : "", length_text(gap));
   return fmt::format("  environment  {} ({}), {} points{}\n  start        {}\n", size_text(surface.box),
                      bounds_text(surface.box), surface.points, closed, start);
 }
@@ -168,6 +169,7 @@ Json facts_json(const LoadedScenario& loaded, const SceneFacts& facts) {
     json["environment"]["components"] = components_json(loaded.files.at(kEnvironmentFile).mesh().findings());
   }
   json["start"] = {{"gap_m", facts.surface->start.distance}, {"touching", facts.surface->start.touching}};
+  if (facts.surface->start.is_estimate) json["start"]["gap_is_estimate"] = true;
   return json;
 }
 

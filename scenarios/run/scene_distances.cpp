@@ -8,6 +8,7 @@
 
 #include "sim/contact/contact_buffer.hpp"
 #include "sim/geometry/triangle_tree.hpp"
+#include "sim/tool/mesh_tool.hpp"
 
 namespace hapbench {
 namespace {
@@ -23,12 +24,22 @@ double vertex_distance(const TriangleSoup& soup) {
   return std::sqrt(area / static_cast<double>(soup.vertices.size()));
 }
 
+/// Returns true if the point is in the box of a mesh tool, or the tool has no grid, so that its distance is exact.
+bool has_exact_distance(const ToolShape& tool, const ToolPose& pose, const Vec3& point) {
+  const auto* mesh = dynamic_cast<const MeshTool*>(&tool);
+  if (mesh == nullptr) return true;
+  const Vec3 local = pose.rotation().transpose() * (point - pose.position);
+  const Box& box = mesh->grid().box();
+  return (local.array() >= box.min.array()).all() && (local.array() <= box.max.array()).all();
+}
+
 }  // namespace
 
 Gap gap_between(const ToolShape& tool, const ToolPose& pose, const PointShell& shell) {
   constexpr std::size_t kAtOnce = 4096;  // keeps the buffer small, however large the shell
   ContactBuffer points(std::min(kAtOnce, shell.size()));
   Gap gap{std::numeric_limits<double>::infinity()};
+  std::size_t nearest = 0;
   for (std::size_t first = 0; first < shell.size(); first += kAtOnce) {
     // Copy a block of points, and compute their depths in the tool.
     points.clear();
@@ -38,10 +49,14 @@ Gap gap_between(const ToolShape& tool, const ToolPose& pose, const PointShell& s
     }
     tool.surface_constraints(pose, Vec3::Zero(), 0.0, points);
     for (std::size_t i = 0; i < points.size(); ++i) {
-      gap.distance = std::min(gap.distance, -points.depth[i]);
+      if (-points.depth[i] < gap.distance) {
+        gap.distance = -points.depth[i];
+        nearest = first + i;
+      }
       if (points.depth[i] >= 0.0) ++gap.touching;
     }
   }
+  gap.is_estimate = shell.size() > 0 && !has_exact_distance(tool, pose, shell.point(nearest).position);
   return gap;
 }
 

@@ -451,12 +451,13 @@ class Start {
   void warn_of_start() {
     const SceneFacts facts = scene_facts(scenario());
     if (!facts.surface) return;
-    const auto& [distance, touching] = facts.surface->start;
+    const Gap& gap = facts.surface->start;
     const bool is_behind = std::ranges::count(facts.warnings, "wrong_side", &Warning::kind) > 0;
-    if (touching == 0 && !is_behind) return;
-    const std::string problem = touching == 0 ? "behind the surface, on the side opposite to its normals"
-                                              : fmt::format("in contact: {} points inside the tool, largest depth {}",
-                                                            touching, length_text(-distance));
+    if (gap.touching == 0 && !is_behind) return;
+    const std::string problem = gap.touching == 0
+                                    ? "behind the surface, on the side opposite to its normals"
+                                    : fmt::format("in contact: {} points inside the tool, largest depth {}",
+                                                  gap.touching, length_text(-gap.distance));
     warnings_.push_back(fmt::format("the tool starts {}; its tip centre is at {}: choose another start with {}",
                                     problem, hapbench::position_text(start_),
                                     placement_options(options_, kind_).text()));
