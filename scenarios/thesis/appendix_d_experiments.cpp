@@ -162,9 +162,11 @@ Finding judge_experiment(const Measured& measured, const PublishedNumbers& publi
       in_simulation(consistent),
       (deviating.empty() ? std::string("every measure agrees with the thesis in direction and significance")
                          : "measures that differ from the published result: " + deviating) +
-          fmt::format(". Of all means, the {} deviates most from its published value, by {:.2g} standard errors. The "
-                      "mean force is nearly an input, because subjects regulate the force that the gauge shows",
-                      farthest, largest),
+          fmt::format(
+              ". The largest deviation of a single mean from its published value is that of the {}, {:.2g} standard "
+              "errors. "
+              "The mean force is nearly an input, because subjects regulate the force that the gauge shows",
+              farthest, largest),
       text, number};
 }
 
