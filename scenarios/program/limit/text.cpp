@@ -245,9 +245,9 @@ std::string limit_answer(const FieldLimit& found, const LimitQuestion& question)
     return deserved_on_side(value, printed_tolerance(question, tolerance), digits, stable_side(question));
   };
   const QuotedLimit& quoted = found.quoted;
-  std::string text =
-      quoted.value ? fmt::format("the limit to quote is {}, the {}", shown(*quoted.value, found.quoted_tolerance(), 6), quoted.reason)
-                   : fmt::format("no limit to quote: {}", quoted.reason);
+  std::string text = quoted.value ? fmt::format("the limit to quote is {}, the {}",
+                                                shown(*quoted.value, found.quoted_tolerance(), 6), quoted.reason)
+                                  : fmt::format("no limit to quote: {}", quoted.reason);
   const auto& linear = found.known_linear_limit();
   // Name the limits that are not the quoted limit.
   if (linear && std::isfinite(*linear) && *linear > 0.0 && linear != quoted.value)
