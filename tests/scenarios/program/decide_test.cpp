@@ -333,7 +333,7 @@ TEST(Ledger, IsNotWrittenOfSingleClaimsUnlessItIsSaidWhere) {
   test::write_plainly(directory / "out/claims.json", "mine");
   const test::ProgramRun run = hapbench({"reproduce", "--only", "b3", "--out", out});
   ASSERT_EQ(run.status, 0) << run.err;
-  EXPECT_NE(run.out.find("\nB3   claim: n points push"), std::string::npos) << run.out;
+  EXPECT_NE(run.out.find("\nB3   claim: the merged depth"), std::string::npos) << run.out;
   EXPECT_NE(run.out.find("\n     why: "), std::string::npos) << run.out;
   EXPECT_EQ(test::read_file(directory / "out/claims.json"), "mine");
   EXPECT_FALSE(std::filesystem::exists(directory / "out/claims.md"));
