@@ -67,6 +67,7 @@ bool are_opposed(const Vec3& a, const Vec3& b) noexcept {
 void InsideDepths::add(const InsideDepths& trial) {
   const double deepest = std::max(max_bound() + max_within, trial.max_bound() + trial.max_within);
   max = std::max(max, trial.max);  // std::optional: an empty value compares less than any number
+  searched = std::max(searched, trial.searched);
   max_within = deepest - max_bound();
   settled_within = std::max(settled_within, trial.settled_within);
   settled.insert(settled.end(), trial.settled.begin(), trial.settled.end());
@@ -343,19 +344,18 @@ void InsideObserver::on_step(const StepRecord& record) noexcept {
   } else {
     march(core, began_ ? length : 0.0, record.time);
   }
-  // Keep the pose for the search after the run, or search the depth now.
+  // Search the depth now if it is recorded, and keep the pose for the search after the run.
   const bool settled = settled_by_ != nullptr && settled_by_->in_settled_contact();
   if (every_ > 0) {
     depth_ = record.step % every_ == 0 ? search_.depth(pose) : std::nullopt;
     depths_.max = std::max(depths_.max, depth_);
     if (depth_ && settled) depths_.settled.push_back(*depth_);
-    return;
   }
   // The key of a pose is the depth of the deepest contact while the front point (struct Passage) is outside of the
   // solid. While the front point is inside, the key is the depth of the tip centre plus the half width.
   const bool deep = side_ == SolidSide::inside;
   deepest_.add(pose, deep ? tool_->half_width() + std::max(0.0, -tip_phi_.value) : record.force.depth_max);
-  if (settled) settled_.add(pose, 0.0);
+  if (settled && every_ == 0) settled_.add(pose, 0.0);
 }
 
 void InsideObserver::check_tip(const StepRecord& record) noexcept {
@@ -421,8 +421,15 @@ InsideDepths InsideObserver::depths() {
   InsideDepths depths = depths_;
   const double width = tool_->half_width(), error = search_.error();
   depths.max_within = depths.settled_within = InsideSearch::kTolerance * width + error;
-  if (every_ > 0) return depths;
-  const double rest = find_deepest(depths);
+  if (every_ > 0) {
+    InsideSearch search(*tool_, *solid_);
+    InsideDepths found;
+    find_deepest(search, found);
+    depths.searched = found.max;
+    return depths;
+  }
+  const double rest = find_deepest(search_, depths);
+  depths.searched = depths.max;
   for (const auto& sample : settled_.all()) {
     if (const auto depth = search_.depth(sample.pose)) depths.settled.push_back(*depth);
   }
@@ -436,7 +443,7 @@ InsideDepths InsideObserver::depths() {
 /// upper bound of the depth in steps that were not searched [m]; 0 if, within the tolerance, no such step is deeper
 /// than the deepest known step.
 // NOLINTNEXTLINE(readability-function-cognitive-complexity): one branch and bound; its parts are the local functions.
-double InsideObserver::find_deepest(InsideDepths& depths) {
+double InsideObserver::find_deepest(InsideSearch& inside_search, InsideDepths& depths) {
   struct Segment {
     std::size_t first, end;
     /// max_motion: largest distance of a point of the tool from its position in the middle pose [m]. bound: upper bound
@@ -449,7 +456,7 @@ double InsideObserver::find_deepest(InsideDepths& depths) {
   const double width = tool_->half_width();
   const auto search = [&](const ToolPose& pose, double max_motion) {
     const double tolerance = InsideSearch::kTolerance - max_motion / width;
-    depths.max = std::max(depths.max, search_.depth(pose, depths.max.value_or(0.0), tolerance));
+    depths.max = std::max(depths.max, inside_search.depth(pose, depths.max.value_or(0.0), tolerance));
   };
   const auto depth_threshold = [&] { return depths.max_bound() + InsideSearch::kTolerance * width; };
   // Search the pose with the largest key first.
@@ -479,7 +486,7 @@ double InsideObserver::find_deepest(InsideDepths& depths) {
   // known depth.
   const auto is_enough = [&](double largest_bound) {
     if (is_extended && largest_bound <= kUsefulBound * depths.max_bound()) return true;
-    if (bound.looks() + search_.looks() < max_evaluations) return false;
+    if (bound.looks() + inside_search.looks() < max_evaluations) return false;
     const bool extends = !is_extended && max_evaluations < kMaxExtendedEvaluations && depths.max_bound() > 0.0 &&
                          largest_bound > kUselessBound * depths.max_bound();
     if (extends) max_evaluations = kMaxExtendedEvaluations;

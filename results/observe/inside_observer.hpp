@@ -17,6 +17,10 @@ class MetricsObserver;
 /// Depths of the tool in the environment, in one or several trials.
 struct InsideDepths {
   std::optional<double> max;    ///< largest depth of any point of the tool in any step [m]
+  /// Largest depth that the search after the run found [m]. `max` can be larger by the error of this search, because it
+  /// also contains the depths that were searched for `settled` or during the run. The outcome of a run uses this depth,
+  /// so that it does not depend on what the run records and measures.
+  std::optional<double> searched;
   std::vector<double> settled;  ///< depths of the tool in some steps in settled contact [m]
   /// Bounds on the search error [m]: `max` may be too small by up to max_within + InsideSearch::kTolerance * max, and
   /// each value of `settled` by up to settled_within + InsideSearch::kTolerance times the value.
@@ -192,7 +196,7 @@ class PoseSamples {
 /// pass the surface before it has moved by its distance from the surface, so few steps need a check. The deepest
 /// point of the tool is searched after the run: in the steps with the deepest contact or tip centre, in the steps
 /// that may be deeper (InsideBound), and in some steps in settled contact. With `every` > 0, the deepest point is
-/// instead searched during the run, in each `every`-th step. Does not allocate during the run.
+/// also searched during the run, in each `every`-th step. Does not allocate during the run.
 class InsideObserver final : public Observer {
  public:
   /// `metrics`: if not null, must observe before this observer; it determines which steps are in settled contact.
@@ -219,7 +223,7 @@ class InsideObserver final : public Observer {
   void check_tip(const StepRecord& record) noexcept;
   void march(const Vec3& point, double length, double time) noexcept;
   void update_side(const Vec3& point, const SurfaceDistance& phi, double time) noexcept;
-  double find_deepest(InsideDepths& depths);
+  double find_deepest(InsideSearch& inside_search, InsideDepths& depths);
 
   std::shared_ptr<const ToolShape> tool_;
   std::shared_ptr<const Solid> solid_;

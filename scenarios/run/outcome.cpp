@@ -122,10 +122,11 @@ class OutcomeObserverImpl final : public OutcomeObserver {
   };
   static const Condition kConditions[5];  ///< the first condition that holds determines the outcome
 
-  /// Returns the largest depth of any part of the tool inside the solid over the run [m]; 0 without a solid.
+  /// Returns the largest depth of any part of the tool inside the solid that the search after the run finds [m]; 0
+  /// without a solid.
   double inside_max() {
     const InsideDepths* inside = depths();
-    return inside != nullptr ? inside->max.value_or(0.0) : 0.0;
+    return inside != nullptr ? inside->searched.value_or(0.0) : 0.0;
   }
 
   /// Returns true if a dragged tool ended without contact, and its last contact is longer ago than

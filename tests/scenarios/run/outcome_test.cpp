@@ -6,12 +6,14 @@
 #include <string>
 
 #include "results/observe/metrics.hpp"
+#include "scenarios/analysis/stability/run_stability.hpp"
 #include "scenarios/input/bundled_scenarios.hpp"
 #include "scenarios/run/checked_scenario.hpp"
 #include "scenarios/run/expectations.hpp"
 #include "scenarios/run/outcome.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/run/scene_checks.hpp"
+#include "scenarios/scene/environments.hpp"
 #include "scenarios/scene/metric_sections.hpp"
 #include "scenarios/scene/tools.hpp"
 #include "tests/results/files.hpp"
@@ -252,6 +254,34 @@ TEST(Drag, WithoutAPathIsNotDraggedAndIsWarnedOfBeforeItRuns) {
     EXPECT_NE(warnings_of(report).find(remedy), std::string::npos) << warnings_of(report);
   }
   EXPECT_TRUE(scene_facts(read_scenario(scene(), "")).warnings.empty());
+}
+
+/// Checks that a run has the same outcome whatever it records, and that limit and tune judge it in the same way. The
+/// drill sinks in by about its half width, so that the error of the searched depth can decide.
+TEST(Outcome, IsTheSameWhateverIsRecorded) {
+  const std::vector<std::string> scene = {"device={\"type\":\"impedance\",\"preset\":\"omega.3\"}",
+                                          "rendering.damping_ratio=0.7", "rendering.damping_N_s_per_m=null",
+                                          "time.steps=12000"};
+  std::set<Outcome> outcomes;
+  int deeper = 0;  // runs that complete although the recorded depth is larger than the half width
+  for (int i = 0; i < 7; ++i) {
+    std::vector<std::string> overrides = scene;
+    overrides.push_back("rendering.stiffness_N_per_m=" + std::to_string(3080.0 + 20.0 * i));
+    const CheckedScenario plain = checked(load_scenario(find_scenario("rotate_in_hole_proxy"), overrides));
+    const Result run = run_scenario(plain, {}, false);
+    EXPECT_EQ(stability_of(plain, make_shell(plain.scenario(), plain.files()), {}).verdict == RunVerdict::went_through,
+              run.end.outcome == Outcome::went_through)
+        << overrides.back();
+    overrides.emplace_back("record.inside=true");
+    const Result recorded =
+        run_scenario(checked(load_scenario(find_scenario("rotate_in_hole_proxy"), overrides)), {}, false);
+    EXPECT_EQ(outcome_name(recorded.end.outcome), outcome_name(run.end.outcome)) << overrides.back();
+    outcomes.insert(run.end.outcome);
+    const double depth = number_of(recorded.metrics, "inside_max_m").value();
+    if (run.end.outcome == Outcome::completes && depth > 0.0005) ++deeper;
+  }
+  EXPECT_EQ(outcomes, (std::set{Outcome::completes, Outcome::went_through})) << "the scenes miss the threshold";
+  EXPECT_GT(deeper, 0) << "no run is so near the threshold that the error of the search decides";
 }
 
 /// Checks a drill that rotates about its resting tip into the wall of its hole. At the end, the axis of its shank is in
