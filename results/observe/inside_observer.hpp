@@ -16,7 +16,7 @@ class MetricsObserver;
 
 /// Depths of the tool in the environment, in one or several trials.
 struct InsideDepths {
-  std::optional<double> max;    ///< largest depth of any point of the tool in any step [m]
+  std::optional<double> max;  ///< largest depth of any point of the tool in any step [m]
   /// Largest depth that the search after the run found [m]. `max` can be larger by the error of this search, because it
   /// also contains the depths that were searched for `settled` or during the run. The outcome of a run uses this depth,
   /// so that it does not depend on what the run records and measures.
