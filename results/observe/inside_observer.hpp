@@ -16,10 +16,12 @@ class MetricsObserver;
 
 /// Depths of the tool in the environment, in one or several trials.
 struct InsideDepths {
-  std::optional<double> max;  ///< largest depth of any point of the tool in any step [m]
-  /// Largest depth that the search after the run found [m]. `max` can be larger by the error of this search, because it
-  /// also contains the depths that were searched for `settled` or during the run. The outcome of a run uses this depth,
-  /// so that it does not depend on what the run records and measures.
+  /// Largest depth of any point of the tool in the searched steps [m]: in any step, or with a search during the run in
+  /// the recorded steps.
+  std::optional<double> max;
+  /// Largest depth that the search for the deepest step after the run found [m]. `max` can be larger, because it also
+  /// contains depths that were searched for `settled` or during the run. It can be smaller if the run records only some
+  /// steps. The outcome of a run uses this depth, so that it does not depend on what the run records and measures.
   std::optional<double> searched;
   std::vector<double> settled;  ///< depths of the tool in some steps in settled contact [m]
   /// Bounds on the search error [m]: `max` may be too small by up to max_within + InsideSearch::kTolerance * max, and
@@ -196,7 +198,8 @@ class PoseSamples {
 /// pass the surface before it has moved by its distance from the surface, so few steps need a check. The deepest
 /// point of the tool is searched after the run: in the steps with the deepest contact or tip centre, in the steps
 /// that may be deeper (InsideBound), and in some steps in settled contact. With `every` > 0, the deepest point is
-/// also searched during the run, in each `every`-th step. Does not allocate during the run.
+/// searched during the run as well, in each `every`-th step, also for the depths in settled contact. Does not allocate
+/// during the run.
 class InsideObserver final : public Observer {
  public:
   /// `metrics`: if not null, must observe before this observer; it determines which steps are in settled contact.

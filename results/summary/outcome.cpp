@@ -44,8 +44,9 @@ constexpr OutcomeInfo kOutcomes[] = {
      "core left the environment on a different side than it had entered. (4) At the end, the point on the axis half a "
      "tool width behind the foremost point of the tip was inside. (5) Another part of the tool, such as its shank, was "
      "deeper than the tool's half width, in the deepest step that a search after the run found. This search may miss "
-     "a depth by 4 % of the half width, and is the same whatever the run records. The core is the axis from the tip "
-     "centre to the far end of the tool. For a flat tip, the core begins 0.9 half widths behind the tip centre while "
+     "a depth by the tolerance of inside_max_m, and is the same whatever the run records; a warning names a run with a "
+     "recorded depth above the half width that the search missed. The core is the axis from the tip centre to the far "
+     "end of the tool. For a flat tip, the core begins 0.9 half widths behind the tip centre while "
      "no contact is deeper than 0.9 half widths",
      true, "in the first step in which (1), (2) or (3) holds"},
     {"diverges",

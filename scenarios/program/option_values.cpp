@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <variant>
+
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/input/nearest_name.hpp"
 #include "scenarios/input/text_lines.hpp"
@@ -43,14 +46,22 @@ void add_bound(const std::string& text, std::map<std::string, MetricBound>& boun
                  fmt::format("got \"{}\"; allowed: METRIC=MAX or METRIC=MIN:MAX, such as inside_settled_m=3e-4", text));
 }
 
-void require_bounded_metrics(const std::map<std::string, MetricBound>& bounds, const LoadedScenario& scene) {
-  if (bounds.empty()) return;
-  const MetricList metrics = metrics_without_values(scene);
-  const char* const trials = trial_count(scene.scenario.hand) > 1.0 ? " and with a single trial" : "";
-  for (const auto& [name, bound] : bounds)
-    if (find_metric(metrics, name) == nullptr)
-      fail_in_option("--bound", fmt::format("got \"{}\"; \"{}\" has no such metric: runs have it only {}{}", name,
-                                            scene.scenario.name, condition_of_metric(name), trials));
+void require_bounded_metrics(const std::map<std::string, MetricBound>& bounds,
+                             const std::vector<LoadedScenario>& scenes) {
+  const auto is_depth = [](const std::string& name) {
+    return name.starts_with("inside_") || name == "centre_inside_share";
+  };
+  for (const auto& entry : bounds) {
+    const std::string& name = entry.first;
+    const auto has_value = [&](const LoadedScenario& scene) {
+      const bool has_inside = !std::holds_alternative<SpringsEnvironment>(scene.scenario.environment);
+      return find_metric(metrics_without_values(scene), name) != nullptr && (has_inside || !is_depth(name));
+    };
+    if (std::ranges::any_of(scenes, has_value)) continue;
+    const std::string condition = is_depth(name) ? "with a surface; springs have no inside" : condition_of_metric(name);
+    fail_in_option("--bound", fmt::format("got \"{}\"; \"{}\" has no such metric: runs have it only {}", name,
+                                          scenes.front().scenario.name, condition));
+  }
 }
 
 }  // namespace hapbench

@@ -42,8 +42,8 @@ Approach::Closest Approach::closest_to_surface(const ToolShape& tool) const {
     const auto next = std::ranges::min_element(lower_bounds);
     if (next == lower_bounds.end() || *next >= kRelativeAccuracy * closest.distance) break;
     const Candidate& candidate = candidates_[static_cast<std::size_t>(next - lower_bounds.begin())];
-    const double gap = gap_between(tool, candidate.pose, *shell_).distance;
-    if (gap < closest.distance) closest = {gap, candidate.time};
+    const auto [gap, touching, is_estimate] = gap_between(tool, candidate.pose, *shell_);
+    if (gap < closest.distance) closest = {gap, candidate.time, {}, is_estimate};
     for (std::size_t i = 0; i < candidates_.size(); ++i)
       lower_bounds[i] = std::max(lower_bounds[i], gap - tool.displacement_bound(candidate.pose, candidates_[i].pose));
     // Exclude this candidate from further searches.

@@ -39,6 +39,7 @@ class Approach {
     /// Time that the tool still needed to reach the surface at the speed of its last steps [s]. Empty if the tool was
     /// closest to the surface before the last step, or if it did not approach the surface in the last steps.
     std::optional<double> time_to_contact = {};
+    bool is_estimate = false;  ///< as Gap::is_estimate
   };
   /// Returns the smallest distance of the tool from the surface points before the first contact, within 1 %.
   /// The run is divided into at most 256 intervals, and the step closest to the environment's bounding box in each

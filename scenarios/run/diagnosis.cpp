@@ -2,9 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <iterator>
-#include <string_view>
 #include <utility>
 
 #include "scenarios/run/diagnosed_run.hpp"
@@ -39,14 +36,16 @@ struct Rule {
   std::string (*attempt)(const DiagnosedRun& run);         ///< what to change (diagnosis_advice.hpp)
   std::string (*more)(const DiagnosedRun& run) = no_more;  ///< further facts, appended to the problem
   bool low_vibration = false;                              ///< included in diagnosis_rules(true)
-  bool warns = false;  ///< reported as a warning for runs without a diagnosis; such a rule uses metrics only
+  bool warns = false;   ///< reported as a warning for runs without a diagnosis; such a rule uses metrics only
+  bool by_law = false;  ///< true if a law that pulls the tool into the surface can cause the problem
 };
 
 constexpr Rule kRules[] = {
     {"fault", "1 if the law or a module failed, or gave a number that is not finite", "1", 0.5,
      "a fault of the force law or of a module ended the run", fault, against_fault,
      [](const DiagnosedRun& r) { return ": " + divergence_text(r.result); }},
-    {"diverged", "1 if the run diverged (left its bounds)", "1", 0.5, "the run diverged", diverged, against_divergence},
+    {"diverged", "1 if the run diverged (left its bounds)", "1", 0.5, "the run diverged", diverged, against_divergence,
+     no_more, false, false, true},
     {"inward",
      "fraction of the steps in contact in which the spring force of a law in a module or in Python points deeper into "
      "the surface at every contact",
@@ -56,7 +55,7 @@ constexpr Rule kRules[] = {
      ended<Outcome::went_through>, against_sinking},
     {"lost", "1 if the tool never touched the environment, or lost contact before the end", "1", 0.5,
      "the tool never touched the surface, or lost contact before the end",
-     ended<Outcome::no_contact, Outcome::lost_contact>, against_loss},
+     ended<Outcome::no_contact, Outcome::lost_contact>, against_loss, no_more, false, false, true},
     {"stuck", "1 if the hand's target moved on and the tool did not", "1", 0.5, "the tool is stuck",
      ended<Outcome::stuck, Outcome::not_dragged>, against_standstill},
     {"step", "largest displacement of the tip in one time step near the surface, divided by the tool's half width", "1",
@@ -69,22 +68,23 @@ constexpr Rule kRules[] = {
      "K divided by the linear limit of the loop of device, hand, tool and contact (without dry friction and without a "
      "slow drift along the surface), in a run that vibrates, diverges or loses contact",
      "1", kMaxLimitRatio, "K is {} times the linear stability limit", stability_limit_ratio, against_unstable_stiffness,
-     no_more, true},
+     no_more, true, false, true},
     {"loop",
      "1 if the loop of device, hand, tool and contact is unstable even at K / 10000, in a run that vibrates, diverges "
      "or loses contact",
-     "1", 0.5, "the loop is unstable even at K / 10000: K is not the cause", unstable_loop, against_unstable_loop},
+     "1", 0.5, "the loop is unstable even at K / 10000: K is not the cause", unstable_loop, against_unstable_loop,
+     no_more, false, false, true},
     {"buzz", "rms of the force above 30 Hz, divided by the mean force in settled contact of a pressed tool", "1",
      kMaxBuzz, "the force vibrates: its rms above 30 Hz is {} times the mean force", buzz, against_buzz, buzz_frequency,
-     true},
+     true, false, true},
     {"pop", "largest force step in settled contact, divided by the mean force of a pressed tool", "1", 0.5,
      "the force jumps: the largest force step in settled contact is {} times the mean force", pop, against_pops,
-     no_more, true},
+     no_more, true, false, true},
     {"shake",
      "rms of the tool's velocity above 30 Hz over the run, if the rule buzz has no number: without settled contact, or "
      "for a tool that nothing presses",
      "m/s", kMaxShake, "the tool vibrates: the rms of its velocity above 30 Hz is {} m/s", shake, against_shaking,
-     no_more, true},
+     no_more, true, false, true},
     {"reduction",
      "largest force step at a change of the contacts kept by rendering.reduction, divided by the mean force in "
      "settled contact",
@@ -100,12 +100,14 @@ constexpr Rule kRules[] = {
      "contact",
      coarseness, against_coarseness, point_spacing},
     {"deep", "median depth of the tool below the surface in settled contact, divided by its half width", "1", 0.75,
-     "the tool sinks into the surface by {} times its half width", depth_in_half_widths, against_depth},
+     "the tool sinks into the surface by {} times its half width", depth_in_half_widths, against_depth, no_more, false,
+     false, true},
     {"soft", "K divided by the combined stiffness along the softest contact (1 / ratio_min)", "1", kMaxSoftness,
-     "along some contact the rendered stiffness is {} times smaller than K", softness, against_softness},
+     "along some contact the rendered stiffness is {} times smaller than K", softness, against_softness, no_more, false,
+     false, true},
     {"hard", "combined stiffness along the stiffest contact, divided by K (ratio_max)", "1", 3.0,
      "the stiffnesses of the contacts add up to {} K", [](const DiagnosedRun& r) { return r.metric("ratio_max"); },
-     against_sums},
+     against_sums, no_more, false, false, true},
     {"damping",
      "B dt / m of the moving mass along the stiffest contact, divided by the stability limit of one integration step",
      "1", kMaxDampingShare,
@@ -126,7 +128,8 @@ constexpr Rule kRules[] = {
      "1", kMaxEncoderForce, "each encoder step causes a force of {} times the mean force, through the damping",
      encoder_force, against_encoder},
     {"saturated", "fraction of the steps in contact in which the force is at its upper limit", "1", kMaxSaturation,
-     "the force is at its upper limit during {} of the contact time", saturation, against_saturation},
+     "the force is at its upper limit during {} of the contact time", saturation, against_saturation, no_more, false,
+     false, true},
     {"limiter", "fraction of the steps in contact in which the input-force limiter of the device cuts the hand's force",
      "1", 0.2, "the device's limiter cuts the hand's force during {} of the contact time",
      [](const DiagnosedRun& r) { return share(r.observations.at_input_limit, r.observations.in_contact); },
@@ -134,14 +137,15 @@ constexpr Rule kRules[] = {
     {"bounces",
      "number of landings per second; not counted are the first landing, one landing for each period or waypoint of the "
      "hand's script, and two for each of a script of the orientation",
-     "1/s", 8.0, "the tool bounces: {} landings per second", bounces, against_bounces, no_more, true},
+     "1/s", 8.0, "the tool bounces: {} landings per second", bounces, against_bounces, no_more, true, false, true},
     {"chatter",
      "number of force reversals (by more than 90 degrees from one step to the next) per second in settled contact of a "
      "pressed tool",
-     "1/s", kMaxChatter, "the force chatters: it reverses {} times per second", chatter, against_chatter, no_more,
-     true},
+     "1/s", kMaxChatter, "the force chatters: it reverses {} times per second", chatter, against_chatter, no_more, true,
+     false, true},
     {"energy", "net energy created by the rendering; on an impedance device, by the force of the motors at the handle",
-     "J", kMaxCreatedEnergy, "net energy of {} J was created", created_energy, against_energy, created_by, true},
+     "J", kMaxCreatedEnergy, "net energy of {} J was created", created_energy, against_energy, created_by, true, false,
+     true},
     {"force_sign", "mean angle between the rendered force and the force measured with the stroke", "rad", 2.6,
      "the measured force is opposite to the rendered force (mean angle {} rad), like a force of the tool on the "
      "surface",
@@ -154,13 +158,12 @@ constexpr Rule kRules[] = {
      against_drift},
 };
 
-/// Returns the advice of a rule. If the law pulls the tool into the surface, no other K, damping, hand or device helps:
-/// the advice is then to correct the law, except of rules whose advice does not depend on the law.
+/// Returns the advice of a rule. If the law pulls a free tool into the surface, this law can be the cause: the advice
+/// is then to correct the law, unless it is meant to attract.
 std::string advice(const Rule& rule, const DiagnosedRun& run) {
-  constexpr std::string_view kOfAnyLaw[] = {"fault", "inward", "sank",     "step",
-                                            "servo", "facets", "friction", "force_sign"};
-  const bool of_any_law = std::ranges::find(kOfAnyLaw, rule.name) != std::end(kOfAnyLaw);
-  return !of_any_law && pulls_inwards(run) ? correct_pulling_law() : rule.attempt(run);
+  std::string own = rule.attempt(run);
+  if (!rule.by_law || !run.is_free() || !pulls_inwards(run)) return own;
+  return fmt::format("{}, or, if the law is meant to attract: {}", correct_pulling_law(), own);
 }
 
 /// Evaluates the rules for which the member `mark` is true, or all rules if `mark` is null. If `beyond_threshold` is

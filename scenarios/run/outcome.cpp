@@ -94,6 +94,7 @@ class OutcomeObserverImpl final : public OutcomeObserver {
       if (std::string text = (this->*condition.text)(); !text.empty())
         warnings.push_back({std::string(outcome_name(outcome)), "", std::move(text)});
     }
+    if (auto missed = missed_depth_warning(outcome)) warnings.push_back(std::move(*missed));
     if (drag_ == nullptr) return warnings;
     if (auto ends = short_path_warning(std::get<DragHandFields>(scenario_.hand), *drag_, time_, *tool_))
       warnings.push_back(std::move(*ends));
@@ -127,6 +128,21 @@ class OutcomeObserverImpl final : public OutcomeObserver {
   double inside_max() {
     const InsideDepths* inside = depths();
     return inside != nullptr ? inside->searched.value_or(0.0) : 0.0;
+  }
+
+  /// Returns a warning if a recorded or measured depth is larger than the half width of the tool, but the search that
+  /// decides the outcome found no such depth.
+  std::optional<Warning> missed_depth_warning(Outcome outcome) {
+    const InsideDepths* inside = depths();
+    const double half_width = tool_->half_width();
+    if (inside == nullptr || outcome == Outcome::went_through || outcome == Outcome::diverges) return std::nullopt;
+    if (!(inside->max.value_or(0.0) > half_width) || inside_max() > half_width) return std::nullopt;
+    return Warning{"missed_depth", "",
+                   fmt::format("the tool was up to {} deep (inside_max_m), more than its half width of {}, but the "
+                               "outcome is {}: the search that decides the outcome, whatever the run records, found "
+                               "depths of up to {} only",
+                               length_text(*inside->max), length_text(half_width), outcome_name(outcome),
+                               length_text(inside->searched.value_or(0.0)))};
   }
 
   /// Returns true if a dragged tool ended without contact, and its last contact is longer ago than
@@ -289,9 +305,9 @@ class OutcomeObserverImpl final : public OutcomeObserver {
   std::string never_touched_text() {
     const auto closest = approach_->closest_to_surface(*tool_);
     return fmt::format(
-        "the tool never touched the environment: its smallest distance to the surface was {} (at {:.4g} s); "
+        "the tool never touched the environment: its smallest distance to the surface was {}{} (at {:.4g} s); "
         "environment {}; {}",
-        length_text(closest.distance), closest.time, environment_text(),
+        closest.is_estimate ? "about " : "", length_text(closest.distance), closest.time, environment_text(),
         likely_cause(closest.time_to_contact, closest.distance));
   }
 

@@ -67,8 +67,9 @@ std::optional<Warning> start_warning(const ToolShape& tool, const SceneFacts::Su
   if (!(gap > kUnitFactor * smaller)) return std::nullopt;
   return Warning{
       "start", "",
-      fmt::format("the tool starts {} from the environment, {:.0f} times the size of {}: is its position in metres?",
-                  length_text(gap), gap / smaller, smaller == tool.reach() ? "the tool" : "the environment")};
+      fmt::format("the tool starts {}{} from the environment, {:.0f} times the size of {}: is its position in metres?",
+                  surface.start.is_estimate ? "about " : "", length_text(gap), gap / smaller,
+                  smaller == tool.reach() ? "the tool" : "the environment")};
 }
 
 /// Returns warnings about lengths of a stroke that probably have wrong units. stroke_clock_warning() checks the times.

@@ -24,13 +24,12 @@ double vertex_distance(const TriangleSoup& soup) {
   return std::sqrt(area / static_cast<double>(soup.vertices.size()));
 }
 
-/// Returns true if the point is in the box of a mesh tool, or the tool has no grid, so that its distance is exact.
-bool has_exact_distance(const ToolShape& tool, const ToolPose& pose, const Vec3& point) {
-  const auto* mesh = dynamic_cast<const MeshTool*>(&tool);
-  if (mesh == nullptr) return true;
+/// Returns the distance of a point from the box of a mesh tool [m]; 0 in the box, and for a tool without a grid.
+double distance_from_box(const MeshTool* mesh, const ToolPose& pose, const Vec3& point) {
+  if (mesh == nullptr) return 0.0;
   const Vec3 local = pose.rotation().transpose() * (point - pose.position);
   const Box& box = mesh->grid().box();
-  return (local.array() >= box.min.array()).all() && (local.array() <= box.max.array()).all();
+  return (local - local.cwiseMax(box.min).cwiseMin(box.max)).norm();
 }
 
 }  // namespace
@@ -39,7 +38,10 @@ Gap gap_between(const ToolShape& tool, const ToolPose& pose, const PointShell& s
   constexpr std::size_t kAtOnce = 4096;  // keeps the buffer small, however large the shell
   ContactBuffer points(std::min(kAtOnce, shell.size()));
   Gap gap{std::numeric_limits<double>::infinity()};
-  std::size_t nearest = 0;
+  const auto* mesh = dynamic_cast<const MeshTool*>(&tool);
+  // Smallest distance of a point outside of the tool's box from this box: no such point is nearer to the tool.
+  double outside = std::numeric_limits<double>::infinity();
+  bool is_nearest_outside = false;
   for (std::size_t first = 0; first < shell.size(); first += kAtOnce) {
     // Copy a block of points, and compute their depths in the tool.
     points.clear();
@@ -49,14 +51,16 @@ Gap gap_between(const ToolShape& tool, const ToolPose& pose, const PointShell& s
     }
     tool.surface_constraints(pose, Vec3::Zero(), 0.0, points);
     for (std::size_t i = 0; i < points.size(); ++i) {
+      const double from_box = distance_from_box(mesh, pose, shell.point(first + i).position);
+      if (from_box > 0.0) outside = std::min(outside, from_box);
       if (-points.depth[i] < gap.distance) {
         gap.distance = -points.depth[i];
-        nearest = first + i;
+        is_nearest_outside = from_box > 0.0;
       }
       if (points.depth[i] >= 0.0) ++gap.touching;
     }
   }
-  gap.is_estimate = shell.size() > 0 && !has_exact_distance(tool, pose, shell.point(nearest).position);
+  gap.is_estimate = is_nearest_outside || outside < gap.distance;
   return gap;
 }
 

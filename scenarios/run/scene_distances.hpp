@@ -16,8 +16,8 @@ struct Gap {
   /// with a negative sign.
   double distance = 0.0;
   std::size_t touching = 0;  ///< number of points inside or on the tool
-  /// True if the nearest point is outside the box of a mesh tool, where ToolShape::surface_constraints() gives a lower
-  /// bound of the distance for a convex tool, and an upper bound for a concave tool.
+  /// True if the nearest point can be outside of the box of a mesh tool, where ToolShape::surface_constraints() gives a
+  /// lower bound of the distance for a convex tool, and an upper bound for a concave tool.
   bool is_estimate = false;
 };
 

@@ -72,9 +72,10 @@ const SectionKind kSections[] = {
     {"force_stage", "with rendering.force_stage",
      [](const Scenario& s, bool) { return std::size_t{s.rendering.force_stage.has_value()}; },
      make<ForceStageObserver>},
-    {"contacts", "with rendering.contacts",
+    {"contacts", "with rendering.contacts of several rates (every above 1, a delay or a dropout)",
      [](const Scenario& s, bool) { return std::size_t{has_multi_rate_contacts(s)}; }, make<ContactAgeObserver>},
-    {"targets", "with a hand of type \"tracking\"", target_positions, observe_targets, true}};
+    {"targets", "with a hand of type \"tracking\" that has this target position", target_positions, observe_targets,
+     true}};
 
 /// Adds the metrics that every run has. `inside` is null if the environment has no solid.
 void report_common_metrics(const MetricsObserver& metrics, const InsideDepths* inside, MetricList& list) {
@@ -128,7 +129,8 @@ const MetricList& all_metrics() {
 std::string condition_of_metric(std::string_view metric) {
   const std::string_view section = metric.substr(0, metric.find('.'));
   for (const SectionKind& kind : kSections)
-    if (section != metric && section == kind.name) return kind.condition;
+    if (section != metric && section == kind.name)
+      return std::string(kind.condition) + (kind.merges ? "" : ", in a run of a single trial");
   return "";
 }
 

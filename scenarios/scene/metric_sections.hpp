@@ -30,8 +30,8 @@ MetricList metrics_without_values(std::size_t target_positions);
 /// Returns the metrics that `expect` can bound. The list is computed once. It has metrics for two target
 /// positions, because the tasks of the thesis have two.
 const MetricList& all_metrics();
-/// Returns the condition under which runs have a metric, such as "with record.energy". Empty if every run has it. Of a
-/// scenario with several trials, runs have only the metrics that can be computed over several trials.
+/// Returns the condition under which runs have a metric, such as "with record.energy, in a run of a single trial".
+/// Empty if every run has it.
 std::string condition_of_metric(std::string_view metric);
 
 /// The observers of a run: one observer for each section that the scenario requests.

@@ -100,8 +100,8 @@ QuotedLimit quoted_limit(const LimitQuestion& question, const FieldLimit& limit)
   if (agree)
     return {is_first(*value, *linear) ? *value : *linear, name + "; the runs agree" + stable_beyond(question, limit)};
   if (is_first(*value, *linear) && beyond)
-    return {value, fmt::format("simulated limit, which is {} than the {}: the next value fails; {}",
-                               smallest ? "larger" : "smaller", name, next_run(question, limit))};
+    return {value, fmt::format("simulated limit: it is {} than the {}, and {}", smallest ? "larger" : "smaller", name,
+                               next_run(question, limit))};
   if (is_first(*value, *linear))
     return {{},
             fmt::format("every run {} {}, the end of the range, is stable; the {} is beyond the range", to,

@@ -108,7 +108,12 @@ RunStability stability_of(const CheckedScenario& checked, std::shared_ptr<const 
   }
   // Check the bounds on metrics in a complete run.
   if (!is_stable(run.verdict) || rule.bounds.empty()) return run;
-  run.violated = violated_bounds(rule.bounds, run_with_shell(checked, shell));
+  const Result full = run_with_shell(checked, shell);
+  if (full.end.outcome == Outcome::went_through) {
+    run.verdict = RunVerdict::went_through;
+    return run;
+  }
+  run.violated = violated_bounds(rule.bounds, full);
   if (!run.violated.empty()) run.verdict = RunVerdict::beyond_bound;
   return run;
 }

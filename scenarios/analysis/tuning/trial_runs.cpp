@@ -236,9 +236,10 @@ void TrialRuns::measure(TuneTrial& trial) const {
     trial.depth_within = depth->tolerance().value_or(std::numeric_limits<double>::infinity());
   for (const Diagnosed& number : run.low_vibration)
     trial.largest.insert_or_assign(number.rule, ExtremeValue{number.value, number.says});
-  // The verdict on a run that ends early because the tool rests can come from other poses of the tool than the outcome
-  // of the whole run. The depth of a tool near the threshold of the outcome may then differ by the error of its search.
-  if (run.end.outcome == Outcome::went_through) {
+  // The verdict on a run that ends early because the tool rests comes from fewer poses of the tool than the outcome of
+  // the whole run. The depth of a tool near the threshold of the outcome may then differ by the error of its search.
+  if (!trial.failure && run.end.outcome == Outcome::went_through) {
+    trial.settled = false;
     trial.failure = TuneFailure{"settled", fmt::format("at K: {}", outcome_name(run.end.outcome))};
     trial.failure->verdict = outcome_name(run.end.outcome);
     trial.failure->too_soft = true;

@@ -167,7 +167,11 @@ LimitRow make_limit_row(const LimitOptions& options, const LimitTable& table, st
     row.question = question_of(options, scene, row.scenario, overrides);
     append_new(warnings, of_option(row.device, row.question.warnings));
     append_new(warnings, of_option(row.device, with_files(loaded, checked(loaded).file_warnings())));
-    require_bounded_metrics(row.question.rule.bounds, loaded);
+    // The searched field itself may be the one with which runs have the metric.
+    const Range& range = row.question.search.range;
+    if (!row.question.rule.bounds.empty())
+      require_bounded_metrics(row.question.rule.bounds,
+                              {loaded, row.question.at(range.from), row.question.at(range.to)});
   } catch (const InputError& error) {
     throw row.device != nullptr ? on_device(*row.device, error) : error;
   }

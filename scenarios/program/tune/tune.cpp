@@ -73,7 +73,7 @@ int tune(const TuneOptions& options, ProgramContext& context) {
   const std::vector<std::string> algorithms = options.algorithms.empty()
                                                   ? std::vector<std::string>{loaded.scenario.rendering.algorithm}
                                                   : chosen_algorithms(options.algorithms);
-  require_bounded_metrics(tuning.question.limits, loaded);
+  require_bounded_metrics(tuning.question.limits, {loaded});
   print_warnings(context, scene);
   tuning.scene = loaded.scenario.name + device;
   tuning.ranges = with_file(loaded, [&] { return tune_ranges(tuning.question, algorithms.front()); });

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "sim/geometry/point_shell.hpp"
+#include "sim/tool/cylinder.hpp"
 #include "sim/tool/mesh_tool.hpp"
 #include "tests/support/meshes.hpp"
 
@@ -38,6 +39,23 @@ TEST(Gap, OfAMeshToolIsAnEstimateOutsideOfItsBox) {
       EXPECT_LE(excess, error) << point.transpose();
     }
   }
+}
+
+// A point outside of the box can be nearer to a concave tool than the nearest point in the box, although its upper
+// bound is larger. The cup has a radius of 1 mm and is 2 mm high, with walls of 0.3 mm; the point in the box is on its
+// axis.
+TEST(Gap, OfAConcaveToolIsAnEstimateIfAPointOutsideOfItsBoxCanBeNearer) {
+  const MeshTool tool(test::grid_of(test::scaled(test::cup(12), 1e-3), 5e-5));
+  const SurfacePoint in_cup{{0.0, 0.0, 1.2e-3}, Vec3::UnitZ()};
+  const auto gap = [&](double height) {
+    const SurfacePoint above{{0.0, 0.0, height}, Vec3::UnitZ()};
+    return gap_between(tool, ToolPose{}, PointShell({in_cup, above}, 0.0));
+  };
+  EXPECT_FALSE(gap_to(tool, in_cup.position).is_estimate);
+  EXPECT_TRUE(gap(2.3e-3).is_estimate) << "0.3 mm above the box";
+  EXPECT_FALSE(gap(4e-3).is_estimate) << "2 mm above the box, farther than the point in the cup";
+  const Gap of_cylinder = gap_between(Cylinder(1e-3, 0.01, Tip::round), ToolPose{}, PointShell({in_cup}, 0.0));
+  EXPECT_FALSE(of_cylinder.is_estimate);
 }
 
 }  // namespace
