@@ -403,7 +403,8 @@ def check_cause(scene, bench, row):
     """Checks the statement about a run in the reason of the quoted limit. Returns (fault or None, kind of the
     cause)."""
     reason = row["quoted_reason"]
-    if next_run := re.search(r"simulated limit: the run at [0-9.e+-]+ is (\w+)", reason):
+    compared = r"(?:it is \w+ than the [^:;]+, and )?"
+    if next_run := re.search(rf"simulated limit: {compared}the run at [0-9.e+-]+ is (\w+)", reason):
         # check_quote() checks the run at this value.
         return None, f"simulated limit: {next_run[1]}"
     found = re.search(r"the run at ([0-9.e+-]+) (.*)", reason)
