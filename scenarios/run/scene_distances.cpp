@@ -27,9 +27,7 @@ double vertex_distance(const TriangleSoup& soup) {
 /// Returns the distance of a point from the box of a mesh tool [m]; 0 in the box, and for a tool without a grid.
 double distance_from_box(const MeshTool* mesh, const ToolPose& pose, const Vec3& point) {
   if (mesh == nullptr) return 0.0;
-  const Vec3 local = pose.rotation().transpose() * (point - pose.position);
-  const Box& box = mesh->grid().box();
-  return (local - local.cwiseMax(box.min).cwiseMin(box.max)).norm();
+  return distance_to(mesh->grid().box(), pose.rotation().transpose() * (point - pose.position));
 }
 
 }  // namespace
