@@ -279,17 +279,6 @@ class Run {
   Recorders recorders_;
 };
 
-/// Returns the trials of a scenario, subject by subject. Only a tracking hand has more than one trial.
-std::vector<Trial> trials_of(const Scenario& scenario) {
-  const auto* hand = std::get_if<TrackingHandFields>(&scenario.hand);
-  if (hand == nullptr) return {Trial{}};
-  std::vector<Trial> trials;
-  for (std::size_t subject = 0; subject < hand->subjects.size(); ++subject)
-    for (std::size_t number = 0; number < static_cast<std::size_t>(hand->trials); ++number)
-      trials.push_back({subject, number});
-  return trials;
-}
-
 }  // namespace
 
 // NOLINTNEXTLINE(readability-function-cognitive-complexity): the phases of a run, one after the other.

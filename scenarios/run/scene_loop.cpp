@@ -29,13 +29,37 @@ struct SampledHand {
 
 /// Returns stiffness and damping of the sampled hand along the normal of the surface. Both are zero for a hand whose
 /// force does not depend on the handle, and for a hand that is attached to the handle. A subject's intended position is
-/// held constant.
+/// held constant. Of several subjects, returns the hand of the first (with_each_subject()).
 SampledHand sampled_hand(const Scenario& scenario) {
   if (const auto* hand = std::get_if<ImpedanceHandFields>(&scenario.hand)) return {hand->stiffness, hand->damping};
   if (const auto* drag = std::get_if<DragHandFields>(&scenario.hand)) return {0.0, drag->drag.normal_damping};
   if (const auto* tracking = std::get_if<TrackingHandFields>(&scenario.hand))
     return {tracking->subjects[0].stiffness, tracking->subjects[0].damping};
   return {};
+}
+
+/// Returns the scenario with each of its subjects alone, because each subject closes a loop of its own. Returns only
+/// the scenario itself if it has no subjects.
+std::vector<Scenario> with_each_subject(const Scenario& scenario) {
+  const auto* tracking = std::get_if<TrackingHandFields>(&scenario.hand);
+  if (tracking == nullptr) return {scenario};
+  std::vector<Scenario> scenes(tracking->subjects.size(), scenario);
+  for (std::size_t i = 0; i < scenes.size(); ++i)
+    std::get<TrackingHandFields>(scenes[i].hand).subjects = {tracking->subjects[i]};
+  return scenes;
+}
+
+/// Returns the contact with the hand of each subject. `contact` has the hand of the first subject. All hands of
+/// subjects act equally along the axes along which the tool moves. Returns only `contact` if the scenario has no
+/// subjects.
+std::vector<LinearContact> with_each_hand(const Scenario& scenario, const LinearContact& contact) {
+  const auto* tracking = std::get_if<TrackingHandFields>(&scenario.hand);
+  if (tracking == nullptr) return {contact};
+  const Mat3 along = contact.hand.stiffness / tracking->subjects[0].stiffness;
+  std::vector<LinearContact> contacts(tracking->subjects.size(), contact);
+  for (std::size_t i = 0; i < contacts.size(); ++i)
+    contacts[i].hand = {tracking->subjects[i].stiffness * along, tracking->subjects[i].damping * along};
+  return contacts;
 }
 
 /// Returns the loop of an impedance device at a wall of stiffness lambda K and damping lambda B.
@@ -199,15 +223,32 @@ bool has_linear_loop(const Scenario& scenario) {
 }
 
 Eigen::MatrixXd contact_step_matrix(const Scenario& scenario, double lambda) {
-  if (!device_acts_on_tool(scenario)) return step_matrix_with_hand(scenario, lambda);
-  if (!has_linear_loop(scenario)) return {};
-  return device_loop(scenario, lambda).state_matrix();
+  if (device_acts_on_tool(scenario) && !has_linear_loop(scenario)) return {};
+  Eigen::MatrixXd all;
+  for (const Scenario& scene : with_each_subject(scenario)) {
+    const Eigen::MatrixXd own = device_acts_on_tool(scene) ? device_loop(scene, lambda).state_matrix()
+                                                           : Eigen::MatrixXd(step_matrix_with_hand(scene, lambda));
+    const Eigen::Index rows = all.rows(), more = own.rows();
+    all.conservativeResizeLike(Eigen::MatrixXd::Zero(rows + more, rows + more));
+    all.bottomRightCorner(more, more) = own;
+  }
+  return all;
 }
 
+/// Returns the matrices of the loop, for several subjects of the loops of all subjects.
 static std::vector<Eigen::MatrixXd> loop_with(const Scenario& scenario, const LinearContact& contact) {
-  if (!device_acts_on_tool(scenario)) return contact_loop(tool_on_spring(scenario, 1.0), contact);
-  return std::visit([&contact](const auto& loop) { return contact_loop(loop, contact); },
-                    device_loop(scenario, 1.0).loop);
+  std::vector<Eigen::MatrixXd> all;
+  const auto add = [&all](const auto& loop, const LinearContact& with) {
+    const std::vector<Eigen::MatrixXd> matrices = contact_loop(loop, with);
+    all.insert(all.end(), matrices.begin(), matrices.end());
+  };
+  for (const LinearContact& with : with_each_hand(scenario, contact)) {
+    if (device_acts_on_tool(scenario))
+      std::visit([&](const auto& loop) { add(loop, with); }, device_loop(scenario, 1.0).loop);
+    else
+      add(tool_on_spring(scenario, 1.0), with);
+  }
+  return all;
 }
 
 /// Returns the matrices of the loop while dry friction holds the tool. The friction bristle acts along the surface, in

@@ -63,8 +63,9 @@ Eigen::Matrix2d step_matrix_with_hand(const Scenario& scenario, double lambda);
 bool has_linear_loop(const Scenario& scenario);
 
 /// Returns the matrices of the scenario's loop of hand, device and contact in three dimensions (contact_loop() in
-/// linear_loops.hpp). With dry friction, also returns the matrices of the loop in which friction holds the tool. Empty
-/// if has_linear_loop() is false or the loop is too large to solve.
+/// linear_loops.hpp). With dry friction, also returns the matrices of the loop in which friction holds the tool. With
+/// several subjects, returns the matrices of the loops of all subjects at the same contact. Empty if has_linear_loop()
+/// is false or the loop is too large to solve.
 std::vector<Eigen::MatrixXd> contact_loop(const Scenario& scenario, const LinearContact& contact);
 
 /// The matrices of one variant of a loop in contact.
@@ -90,8 +91,9 @@ std::vector<NamedLoop> wall_loops(const Scenario& scenario, double lambda, bool 
 std::string unstable_without_wall(const Scenario& scenario);
 
 /// Returns the state matrix of one step of the tool in contact with a wall of stiffness lambda K and damping
-/// lambda B. If device_acts_on_tool(), this is the matrix of device_loop(), otherwise step_matrix_with_hand(). Empty if
-/// has_linear_loop() is false.
+/// lambda B. If device_acts_on_tool(), this is the matrix of device_loop(), otherwise step_matrix_with_hand(). For a
+/// scenario with several subjects, the matrix has a block for the loop of each subject. Empty if has_linear_loop() is
+/// false.
 Eigen::MatrixXd contact_step_matrix(const Scenario& scenario, double lambda);
 
 }  // namespace hapbench

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
 #include "scenarios/scene/scenario.hpp"
 
@@ -12,6 +13,9 @@ struct Trial {
   std::size_t subject = 0;  ///< index of the subject, from 0
   std::size_t number = 0;   ///< index of the subject's trial, from 0
 };
+
+/// Returns the trials of a scenario, subject by subject. Only a tracking hand has more than one trial.
+std::vector<Trial> trials_of(const Scenario& scenario);
 
 /// Purposes of random numbers. Each trial has a seed for each purpose. Seeds depend on the numeric values; do not
 /// renumber.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <utility>
+#include <vector>
 
 #include "results/observe/metrics.hpp"
 #include "scenarios/analysis/stability/motion_classifier.hpp"
@@ -11,7 +12,9 @@
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/run/scripted_motion.hpp"
 #include "scenarios/run/stop_signal.hpp"
+#include "scenarios/scene/trials.hpp"
 #include "sim/contact/contact_buffer.hpp"
+#include "sim/core/hash.hpp"
 
 namespace hapbench {
 namespace {
@@ -54,13 +57,13 @@ bool is_left_behind(RunVerdict verdict) {
   return verdict == RunVerdict::stuck || verdict == RunVerdict::not_dragged;
 }
 
-/// Runs the scenario once with its given length and returns the verdict.
+/// Runs a trial of the scenario once with the scenario's length and returns the verdict.
 RunStability judged_once(const Scenario& scenario, const NamedFiles& files,
-                         const std::shared_ptr<const PointShell>& shell, const StabilityRule& rule) {
-  // Run the scenario with observers of its motion, its end and its outcome.
+                         const std::shared_ptr<const PointShell>& shell, const StabilityRule& rule, Trial trial) {
+  // Run the trial with observers of its motion, its end and its outcome.
   MotionClassifier classifier = classifier_of(scenario);
   RunEndObserver run_end(scenario);
-  SimulationParts parts = assemble(scenario, files, shell, {});
+  SimulationParts parts = assemble(scenario, files, shell, trial);
   const std::shared_ptr<const ToolShape> tool = parts.tool;
   // Simulate the whole run, which the class of the motion needs. With RunLength::until_failure, the outcome observer
   // stops searching the depth of the tool after the tool has gone through the surface; the run goes on.
@@ -89,23 +92,51 @@ RunStability judged_once(const Scenario& scenario, const NamedFiles& files,
   return run;
 }
 
-}  // namespace
-
-RunStability stability_of(const CheckedScenario& checked, std::shared_ptr<const PointShell> shell,
-                          const StabilityRule& rule) {
+/// Judges a trial. Extends a trial that is too short to judge.
+RunStability judged(const CheckedScenario& checked, const std::shared_ptr<const PointShell>& shell,
+                    const StabilityRule& rule, Trial trial) {
   constexpr int kMaxExtensions = 3;
   constexpr std::int64_t kExtensionFactor = 4, kMaxExtendedSteps = 1'000'000;
-  // Extend a run that is too short to judge.
-  RunStability run = judged_once(checked.scenario(), checked.files(), shell, rule);
+  RunStability run = judged_once(checked.scenario(), checked.files(), shell, rule, trial);
   Scenario longer = checked.scenario();
   for (int i = 0; run.undecided && i < kMaxExtensions && longer.time.steps * kExtensionFactor <= kMaxExtendedSteps;
        ++i) {
     longer.time.steps *= kExtensionFactor;
     const std::uint64_t motion_hash = run.motion_hash;
-    run = judged_once(longer, checked.files(), shell, rule);
+    run = judged_once(longer, checked.files(), shell, rule, trial);
     // Keep the hash of the unextended run, which can be compared with the hashes of other runs.
     run.motion_hash = motion_hash;
   }
+  return run;
+}
+
+/// Judges the trials of the scenario up to the first trial that the rule does not count as stable.
+RunStability judged_trials(const CheckedScenario& checked, const std::shared_ptr<const PointShell>& shell,
+                           const StabilityRule& rule) {
+  RunStability run = judged(checked, shell, rule, Trial{});
+  const std::vector<Trial> trials = trials_of(checked.scenario());
+  for (std::size_t i = 1; i < trials.size() && rule.holds(run.verdict); ++i) {
+    RunStability next = judged(checked, shell, rule, trials[i]);
+    Hash64 motions;
+    motions.word(run.motion_hash);
+    motions.word(next.motion_hash);
+    next.motion_hash = motions.value();
+    // A rule may count a vibrating trial as stable. The verdict on the run is then that it vibrates.
+    if (!rule.holds(next.verdict) || (is_stable(run.verdict) && !is_stable(next.verdict))) {
+      run = std::move(next);
+    } else {
+      run.undecided |= next.undecided;
+      run.motion_hash = next.motion_hash;
+    }
+  }
+  return run;
+}
+
+}  // namespace
+
+RunStability stability_of(const CheckedScenario& checked, std::shared_ptr<const PointShell> shell,
+                          const StabilityRule& rule) {
+  RunStability run = judged_trials(checked, shell, rule);
   // Check the bounds on metrics in a complete run.
   if (!is_stable(run.verdict) || rule.bounds.empty()) return run;
   const Result full = run_with_shell(checked, shell);

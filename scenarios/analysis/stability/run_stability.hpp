@@ -15,10 +15,11 @@
 /// Decides whether a run is stable, by its motion (motion_classifier.hpp) and by the outcome of the run.
 namespace hapbench {
 
-/// The verdict on one run.
+/// The verdict on one run. A run with several trials is stable if all its trials are stable; its verdict is the verdict
+/// on the first trial that the rule (StabilityRule::holds) does not count as stable.
 struct RunStability {
   RunVerdict verdict = RunVerdict::stable;
-  SettledState settled;
+  SettledState settled;           ///< state of the trial that has the verdict; the first such trial
   std::uint64_t motion_hash = 0;  ///< hash of all positions of the handle; equal for bitwise equal motions
   /// True if even the longest run was too short to judge: the tool still moves but does not oscillate.
   bool undecided = false;
@@ -29,11 +30,11 @@ struct RunStability {
   std::vector<ViolatedBound> violated = {};
 };
 
-/// Runs the scenario's first trial without records and returns the verdict on this run. If the run is too short to
-/// judge, makes up to three further runs, each four times as long as the run before and of at most 10^6 steps. If the
-/// rule has bounds on metrics and the run is stable, runs the scenario again to compute the metrics. `shell`:
-/// make_shell() of the scenario. Throws Stopped.
-/// Precondition: the position of the tool is free, and the scenario has at least 4 steps.
+/// Runs the trials of the scenario without records, up to the first trial that is not stable, and returns the verdict.
+/// If a trial is too short to judge, makes up to three further runs of it, each four times as long as the run before
+/// and of at most 10^6 steps. If the rule has bounds on metrics and the run is stable, runs the scenario again to
+/// compute the metrics. `shell`: make_shell() of the scenario. Throws Stopped. Precondition: the position of the tool
+/// is free, and the scenario has at least 4 steps.
 RunStability stability_of(const CheckedScenario& checked, std::shared_ptr<const PointShell> shell,
                           const StabilityRule& rule = {});
 

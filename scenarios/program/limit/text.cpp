@@ -19,6 +19,7 @@
 #include "scenarios/program/limit/columns.hpp"
 #include "scenarios/program/names.hpp"
 #include "scenarios/run/scripted_motion.hpp"
+#include "scenarios/scene/trials.hpp"
 
 namespace hapbench {
 namespace {
@@ -37,6 +38,13 @@ std::string resolution_text(const LimitQuestion& question) {
   return fmt::format("{} %{}", significant(100.0 * search.resolution), search.range.logarithmic ? "" : " of the range");
 }
 
+/// Returns the number of steps of a run, and the number of trials if a run has several.
+std::string run_length_text(const Scenario& scenario) {
+  const std::size_t trials = trials_of(scenario).size();
+  if (trials == 1) return fmt::format("{} steps", scenario.time.steps);
+  return fmt::format("{} trials, all of which must be stable, of up to {} steps", trials, scenario.time.steps);
+}
+
 /// States the question for one scene. `over`: true if other fields vary too; values that depend on these fields are
 /// then omitted.
 std::string question_text(const LimitQuestion& question, const Scenario& scenario, bool over, const Layout& layout) {
@@ -45,7 +53,7 @@ std::string question_text(const LimitQuestion& question, const Scenario& scenari
   const auto end = [&search](double value) { return rounded_text(search.whole ? std::round(value) : value, 4); };
   std::string text = fmt::format("{}: {} stable {}, searched between {} and {} with a resolution of {}", scenario.name,
                                  question.side(), question.path, end(search.range.from), end(search.range.to), width);
-  if (!over) text += fmt::format("; runs of {} steps", scenario.time.steps);
+  if (!over) text += "; runs of " + run_length_text(scenario);
   if (!over && question.path != "time.step_s") text += fmt::format(" of {} s", significant(scenario.time.step));
   if (!over && question.path == kStiffnessPath) text += "; " + damping_text(scenario.rendering);
   return layout.wrapped(text, 0);

@@ -301,6 +301,28 @@ TEST(ContactLoops, HaveThatOfAToolHeldByFriction) {
   }
 }
 
+/// Checks that an experiment is stable only if the loop of every subject is: without a device, the damping c of a hand
+/// is stable up to 2 M / dt, because leapfrog holds its force over a step.
+TEST(ContactLoops, HaveThatOfEverySubject) {
+  Scenario scenario = test::bundled("vertical_peg_in_hole_shaped_stiffness");
+  scenario.device = IdealDeviceFields{};
+  scenario.rendering.damping = 0.0;
+  Subject gentle, rigid;
+  rigid.damping = 1.1 * 2.0 * scenario.rendering.mass / scenario.time.step;
+  auto& subjects = std::get<TrackingHandFields>(scenario.hand).subjects;
+  for (const auto& [with, stable] : {std::pair(std::vector{gentle, gentle}, true),
+                                     {std::vector{gentle, rigid}, false},
+                                     {std::vector{rigid, gentle}, false}}) {
+    subjects = with;
+    LinearContact contact;
+    contact.rendered.stiffness = Vec3(0.0, 0.0, scenario.rendering.stiffness).asDiagonal();
+    contact.rendered.assumed.stiffness = contact.rendered.stiffness;
+    contact.hand = {with[0].stiffness * Mat3::Identity(), with[0].damping * Mat3::Identity()};
+    EXPECT_EQ(is_stable_loop(contact_loop(scenario, contact)), stable);
+    EXPECT_EQ(unstable_without_wall(scenario), stable ? "" : "the hand");
+  }
+}
+
 TEST(DeviceLoop, KnowsEveryFieldOfTheDevices) {
   Scenario scenario;
   const LowPassFilter filter{50.0, 3};

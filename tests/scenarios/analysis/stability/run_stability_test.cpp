@@ -8,6 +8,7 @@
 
 #include "scenarios/input/bundled_scenarios.hpp"
 #include "scenarios/run/checked_scenario.hpp"
+#include "scenarios/run/run_scenario.hpp"
 #include "scenarios/scene/environments.hpp"
 #include "scenarios/scene/load_scenario.hpp"
 
@@ -42,6 +43,25 @@ TEST(StabilityOf, OfAToolThatItsHandDoesNotMoveOnIsStableUnlessProgressIsJudged)
   EXPECT_EQ(stability_of(checked(loaded), shell, rule).verdict, RunVerdict::stuck);
   rule.judges_progress = false;
   EXPECT_EQ(stability_of(checked(loaded), shell, rule).verdict, RunVerdict::stable);
+}
+
+/// Checks that every trial of an experiment counts: with this K, the subject that presses with 6 N passes through the
+/// bottom of the hole, the other subject does not. The verdict does not depend on their order, and `run` has the same
+/// outcome.
+TEST(StabilityOf, AnExperimentIsThatOfItsWorstTrial) {
+  const ScenarioText peg = read_scenario_text(find_scenario("vertical_peg_in_hole_shaped_stiffness"));
+  const std::string gentle = R"({"press_N":1.6})", strong = R"({"press_N":6})";
+  for (const auto& [subjects, verdict] : {std::pair(gentle + "," + gentle, RunVerdict::stable),
+                                          {gentle + "," + strong, RunVerdict::went_through},
+                                          {strong + "," + gentle, RunVerdict::went_through}}) {
+    const std::vector<std::string> fields = {"hand.subjects=[" + subjects + "]",  "hand.trials=1",
+                                             "hand.task.places_m=[[0,0,-0.005]]", R"(device={"type":"ideal"})",
+                                             "rendering.stiffness_N_per_m=5000",  "time.duration_s=3"};
+    const CheckedScenario scene = checked(load_scenario(peg, fields));
+    const auto shell = make_shell(scene.scenario(), scene.files());
+    EXPECT_EQ(stability_of(scene, shell, rule_of(scene.scenario())).verdict, verdict) << subjects;
+    EXPECT_EQ(run_with_shell(scene, shell).end.outcome == Outcome::went_through, verdict == RunVerdict::went_through);
+  }
 }
 
 }  // namespace
