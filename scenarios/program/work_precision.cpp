@@ -35,31 +35,34 @@ bool is_unresolved(double error, double of_reference) {
   return error < kResolvedError * of_reference;
 }
 
-/// Returns an error of the setting as text, in multiples of `unit`. `difference`: difference of the setting from the
+/// Returns an error of a setting as text, in multiples of `unit`. `difference`: difference of the setting from the
 /// reference solution. `of_reference`: error of the reference solution. If is_unresolved(), the text is "<" and the
-/// largest possible error, the sum of both. Returns "-" for a setting without an error.
-std::string error_text(const Setting& s, double difference, double of_reference, double unit) {
-  if (!s.error) return "-";
+/// largest possible error, the sum of both.
+std::string error_text(double difference, double of_reference, double unit) {
   if (!is_unresolved(difference, of_reference)) return significant(difference / unit, 2);
   return "< " + significant_up((difference + of_reference) / unit, 2);
 }
 
 /// Returns true if the table marks an error of the setting with "<".
 bool has_unresolved_error(const Setting& s) {
-  return s.error && (is_unresolved(s.error->position, s.reference_error.position) ||
-                     is_unresolved(s.error->force, s.reference_error.force));
+  return s.error && (is_unresolved(s.error->position, s.reference_error->position) ||
+                     is_unresolved(s.error->force, s.reference_error->force));
 }
 
 /// Returns the columns of convergence.csv. Their values are the same if the command is repeated. `max_error` [m]: the
 /// requested error.
 Columns<Setting> error_columns(double max_error) {
-  const auto reference_position = [](const Setting& s) { return s.reference_error.position; };
-  const auto reference_force = [](const Setting& s) { return s.reference_error.force; };
+  const auto reference_position = [](const Setting& s) {
+    return s.reference_error ? std::optional(s.reference_error->position) : std::nullopt;
+  };
+  const auto reference_force = [](const Setting& s) {
+    return s.reference_error ? std::optional(s.reference_error->force) : std::nullopt;
+  };
   const auto micrometres = [](const Setting& s) {
-    return error_text(s, s.error ? s.error->position : 0.0, s.reference_error.position, 1e-6);
+    return s.error ? error_text(s.error->position, s.reference_error->position, 1e-6) : "-";
   };
   const auto millinewtons = [](const Setting& s) {
-    return error_text(s, s.error ? s.error->force : 0.0, s.reference_error.force, 1e-3);
+    return s.error ? error_text(s.error->force, s.reference_error->force, 1e-3) : "-";
   };
   const auto cost = [](const Setting& s) { return significant(1e3 * s.cost.per_simulated_second(), 3); };
   const auto share = [](const Setting& s) { return significant(100.0 * s.cost.per_simulated_second(), 2); };
@@ -133,7 +136,7 @@ std::string none_below_text(const WorkPrecisionProblem& problem, double max_erro
     return fmt::format(
         "no setting is shown to be below {:g} m, because the reference is known to {} m only; {}, also for "
         "the reference",
-        max_error, significant_up(problem.settings.front().reference_error.position, 3), kSmaller);
+        max_error, significant_up(problem.settings.front().reference_error->position, 3), kSmaller);
   const bool all_known = std::ranges::all_of(problem.settings, [](const Setting& s) { return s.error.has_value(); });
   return fmt::format("no setting {} an error below {:g} m{}; {}", all_known ? "has" : "is shown to have", max_error,
                      all_known ? "" : ": \"-\" marks settings without an error, because runs ended differently",
@@ -143,6 +146,8 @@ std::string none_below_text(const WorkPrecisionProblem& problem, double max_erro
 /// Returns a sentence with the cheapest setting of a problem whose position error is below `max_error` [m], or the
 /// reason why no setting is named.
 std::string answer_text(const WorkPrecisionProblem& problem, double max_error) {
+  if (!problem.noise.empty())
+    return fmt::format("no error is stated: {}; without this noise, errors can be stated", problem.noise);
   if (!problem.is_predictable) {
     return fmt::format(
         "no error is stated: an initial shift of 1 nm grows to {} m, which is more than the requested error ({:g} m; "
@@ -188,11 +193,13 @@ void report_work_precision(const std::vector<WorkPrecisionProblem>& problems, do
           0));
     report.add_text(layout.wrapped(answer_text(problem, max_error), 0));
     const auto& first = problem.settings.front();
-    if (problem.is_predictable)
-      report.add_text(layout.wrapped(
-          fmt::format("reference: {}; its error is about {} m and {} N", problem.reference,
-                      significant(first.reference_error.position, 1), significant(first.reference_error.force, 1)),
-          0));
+    if (problem.is_predictable) {
+      const std::string error = first.reference_error ? fmt::format("its error is about {} m and {} N",
+                                                                    significant(first.reference_error->position, 1),
+                                                                    significant(first.reference_error->force, 1))
+                                                      : "its error is not known, because its runs ended differently";
+      report.add_text(layout.wrapped(fmt::format("reference: {}; {}", problem.reference, error), 0));
+    }
     report.add_text("\n");
     Json json = {{"problem", problem.name}, {"predictable", problem.is_predictable}, {"reference", problem.reference}};
     json["settings"] = Json::array();

@@ -37,12 +37,35 @@ double order_in_step(const Scenario& scenario) {
 
 /// Returns a text that explains which noise prevents convergence in the time step; empty without noise.
 std::string noise_reason(const Scenario& scenario) {
-  const auto* admittance = std::get_if<AdmittanceDeviceConfig>(&scenario.device);
-  if (std::holds_alternative<TrackingHandFields>(scenario.hand))
-    return "the noise of the hand is drawn anew at every step, so that a finer step is another signal";
-  const bool senses = admittance != nullptr && admittance->sensor.noise > 0.0;
-  return senses ? "the noise of the force sensor is drawn anew at every step, so that a finer step is another signal"
-                : "";
+  const auto drawn = [](const char* noise) {
+    return fmt::format("{} is drawn anew at every step, so that a finer step is another signal", noise);
+  };
+  if (const auto* tracking = std::get_if<TrackingHandFields>(&scenario.hand);
+      tracking != nullptr && std::ranges::any_of(tracking->subjects, [](const Subject& subject) {
+        return subject.motor_noise > 0.0 || subject.tilt_noise > 0.0;
+      }))
+    return drawn("the noise of the hand (motor_noise_N and tilt_noise_rad in hand.subjects)");
+  if (const auto* device = std::get_if<AdmittanceDeviceConfig>(&scenario.device);
+      device != nullptr && device->sensor.noise > 0.0)
+    return drawn("the noise of the force sensor (device.sensor.noise_N)");
+  if (const auto* device = std::get_if<ImpedanceDeviceConfig>(&scenario.device);
+      device != nullptr && device->position_noise > 0.0)
+    return drawn("the noise of the measured position (device.position_noise_m)");
+  return "";
+}
+
+/// Returns the overrides that keep times constant that the scenario counts in time steps, if the time step becomes
+/// `times` smaller: the delay of the device, and the period and the delay of multi-rate contacts.
+std::vector<std::string> with_constant_times(const Scenario& scenario, std::int64_t times) {
+  std::vector<std::string> overrides;
+  if (const double delay = delay_of(scenario); delay > 0.0)
+    overrides.push_back(fmt::format("{}={}", delay_path(scenario), static_cast<double>(times) * delay));
+  if (has_multi_rate_contacts(scenario)) {
+    const MultiRateSchedule& contacts = *scenario.rendering.multi_rate;
+    overrides.push_back(fmt::format("{}={}", parameter::kEvery.field, times * contacts.every));
+    overrides.push_back(fmt::format("{}={}", parameter::kDelay.field, times * contacts.delay));
+  }
+  return overrides;
 }
 
 /// Returns the levels of the time step. Throws InputError if the ratio is not an integer.
@@ -55,8 +78,8 @@ LevelSweep step_levels(const Scenario& scenario, std::size_t levels, double rati
   std::int64_t times = 1;
   for (std::size_t i = 0; i < levels; ++i, times *= static_cast<std::int64_t>(ratio)) {
     std::vector<std::string> overrides = {fmt::format("time.steps={}", times * scenario.time.steps)};
-    if (const double delay = delay_of(scenario); delay > 0.0)  // keeps the delay [s] constant
-      overrides.push_back(fmt::format("{}={}", delay_path(scenario), static_cast<double>(times) * delay));
+    const std::vector<std::string> constant = with_constant_times(scenario, times);
+    overrides.insert(overrides.end(), constant.begin(), constant.end());
     sweep.axis.values.push_back(fmt::format("{}", scenario.time.step / static_cast<double>(times)));
     sweep.axis.along.push_back({std::move(overrides), times});
   }

@@ -16,6 +16,7 @@
 #include "scenarios/run/checked_scenario.hpp"
 #include "scenarios/run/expectations.hpp"
 #include "scenarios/scene/field_files.hpp"
+#include "scenarios/scene/trials.hpp"
 #include "sim/core/math.hpp"
 #include "sim/loop/integrators/table.hpp"
 
@@ -68,19 +69,25 @@ class Study {
       }
     }
     if (curves_.empty()) curves_ = {std::string(loaded_.scenario.integrator.type->info.name)};
-    problems_ = Cases({question.scenario}, {}, axes_).size();
-    levels_ = with_file(loaded_, [&] {
-      return level_sweep(loaded_, kStepPath, question.levels + reference_levels(question.ratio), question.ratio);
-    });
+    const Cases problems({question.scenario}, question.overrides, axes_);
+    for (std::size_t i = 0; i < problems.size(); ++i) {
+      const LoadedScenario problem = problems.load(i);
+      levels_.push_back(with_file(problem, [&] {
+        return level_sweep(problem, kStepPath, question.levels + reference_levels(question.ratio), question.ratio);
+      }));
+    }
   }
 
-  std::size_t problems() const { return problems_; }
+  std::size_t problems() const { return levels_.size(); }
   const std::vector<std::string>& curves() const { return curves_; }
   /// Returns true if a second integrator checks the reference solution.
   bool checks_reference() const { return std::ranges::count(curves_, kReferenceIntegrator.info.name) > 0; }
   std::size_t finest() const { return question_.levels - 1; }
-  std::size_t reference_level() const { return levels_.axis.values.size() - 1; }
-  const LevelSweep& levels() const { return levels_; }
+  std::size_t reference_level() const { return levels_.front().axis.values.size() - 1; }
+  /// Returns the time steps of a problem, with the problem's own values of other fields.
+  const LevelSweep& levels(std::size_t problem) const { return levels_[problem]; }
+  /// Returns the number of trials of the scene, of which the study runs the first.
+  std::size_t trials() const { return trials_of(loaded_.scenario).size(); }
 
   /// Returns the name of a problem: the values of its axes, or the law if no axis defines problems.
   std::string name(std::size_t problem) const {
@@ -92,9 +99,9 @@ class Study {
   CheckedScenario load(const StudyRun& run) const {
     std::vector<Axis> axes = axes_;
     axes.push_back({kIntegratorPath, {run.integrator}});
-    axes.push_back(levels_.axis);
+    axes.push_back(levels_[run.problem].axis);
     const Cases cases({question_.scenario}, question_.overrides, std::move(axes));
-    return checked(cases.load(run.problem * levels_.axis.values.size() + run.level));
+    return checked(cases.load(run.problem * levels_[run.problem].axis.size() + run.level));
   }
 
  private:
@@ -102,8 +109,7 @@ class Study {
   LoadedScenario loaded_;
   std::vector<Axis> axes_;  ///< fields that define problems
   std::vector<std::string> curves_;
-  std::size_t problems_ = 1;
-  LevelSweep levels_;
+  std::vector<LevelSweep> levels_;  ///< time steps of each problem
 };
 
 /// Makes and stores the motions that a study compares with each other. Each motion is made only once.
@@ -192,7 +198,7 @@ std::vector<WorkPrecisionSetting> settings_of(const Study& study, const Motions&
   for (const std::string& curve : study.curves()) {
     for (std::size_t level = 0; level <= study.finest(); ++level) {
       WorkPrecisionSetting setting{study.name(problem), curve};
-      setting.reference_error = reference_error.value_or(MotionDifference{});
+      setting.reference_error = reference_error;
       const StudyRun run = {problem, curve, level};
       setting.outcome = motions.at(run).outcome;
       setting.is_expected = outcome_is_expected(study.load(run).scenario().expect, setting.outcome);
@@ -204,9 +210,10 @@ std::vector<WorkPrecisionSetting> settings_of(const Study& study, const Motions&
 }
 
 std::string reference_text(const Study& study) {
-  return fmt::format("{} at {} = {}{}", kReferenceIntegrator.info.name, kStepPath,
-                     level_text(study.levels(), study.reference_level()),
-                     study.checks_reference() ? ", checked by " + std::string(kCheckingIntegrator.info.name) : "");
+  return fmt::format("{} at {} = {}{}{}", kReferenceIntegrator.info.name, kStepPath,
+                     level_text(study.levels(0), study.reference_level()),
+                     study.checks_reference() ? ", checked by " + std::string(kCheckingIntegrator.info.name) : "",
+                     study.trials() > 1 ? fmt::format(", of the first of {} trials", study.trials()) : "");
 }
 
 /// Returns the cheapest setting with an expected outcome whose `error_of` is at most `max_error`; null if no setting
@@ -257,7 +264,8 @@ std::vector<WorkPrecisionProblem> work_precision(const WorkPrecisionQuestion& qu
   for (std::size_t p = 0; p < study.problems(); ++p) {
     WorkPrecisionProblem& problem = problems.emplace_back(WorkPrecisionProblem{study.name(p), reference_text(study)});
     problem.grown_shift = motions.grown_shift(p);
-    problem.is_predictable = problem.grown_shift <= question.max_error;
+    problem.noise = study.levels(p).no_order;
+    problem.is_predictable = problem.noise.empty() && problem.grown_shift <= question.max_error;
     problem.settings = settings_of(study, motions, p, problem.is_predictable);
     for (const std::string& curve : study.curves())
       for (std::size_t level = 0; level <= study.finest(); ++level) timed.push_back({p, curve, level});

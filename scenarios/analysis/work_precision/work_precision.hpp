@@ -49,21 +49,22 @@ struct WorkPrecisionSetting {
   /// True if the scenario expects the outcome. The error of a run with another outcome has no meaning: a tool that does
   /// not move has a small error.
   bool is_expected = true;
-  /// Difference from the reference solution. Empty if the problem is not predictable, if the runs for the reference
-  /// solution ended differently, or if the run ended otherwise than its reference.
+  /// Difference from the reference solution. Empty if the problem is not predictable, if the reference solution has no
+  /// error, or if the run ended otherwise than its reference.
   std::optional<MotionDifference> error = {};
-  MotionDifference reference_error = {};  ///< error of the reference solution
+  /// Error of the reference solution; empty if the runs for the reference solution ended differently.
+  std::optional<MotionDifference> reference_error = {};
   RunCost cost = {};
   /// True if the setting is on the Pareto front of the problem (mark_front()).
   bool on_front = false;
   bool is_knee = false;  ///< true for the knee of the front (pareto_front.hpp)
 
   /// Returns true if the position error is known and resolved. The outcome does not matter.
-  bool is_resolved() const { return error && error->position >= kResolvedError * reference_error.position; }
+  bool is_resolved() const { return error && error->position >= kResolvedError * reference_error->position; }
 
   // Bounds of the position error [m] by the triangle inequality. Precondition: the setting has an error.
-  double largest_error() const { return error->position + reference_error.position; }
-  double smallest_error() const { return std::max(error->position - reference_error.position, 0.0); }
+  double largest_error() const { return error->position + reference_error->position; }
+  double smallest_error() const { return std::max(error->position - reference_error->position, 0.0); }
 };
 
 /// A problem with its settings, ordered by integrator, then by decreasing time step.
@@ -72,7 +73,10 @@ struct WorkPrecisionProblem {
   std::string reference = {};  ///< description of the reference solution
   /// Rms distance [m] between two runs with the smallest time step whose starting positions are kInitialShift apart.
   double grown_shift = 0.0;
-  bool is_predictable = true;  ///< true if grown_shift is at most the requested error
+  /// Reason why runs with other time steps have another noise, so that their differences are no errors
+  /// (LevelSweep::no_order); empty if they have not.
+  std::string noise = {};
+  bool is_predictable = true;  ///< true without such a noise, and if grown_shift is at most the requested error
   std::vector<WorkPrecisionSetting> settings = {};
 
   /// Returns the cheapest setting with an expected outcome whose largest_error() is at most `max_error`; null if no

@@ -1,5 +1,6 @@
 #include "scenarios/analysis/convergence/levels.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -8,6 +9,7 @@
 
 #include "scenarios/analysis/convergence/observed_order.hpp"
 #include "scenarios/batch/run_all.hpp"
+#include "scenarios/input/bundled_scenarios.hpp"
 #include "sim/loop/integrators/table.hpp"
 #include "tests/results/files.hpp"
 #include "tests/scenarios/support/scenarios.hpp"
@@ -138,6 +140,39 @@ TEST(Converge, KeepsTheLengthOfDelays) {
   EXPECT_EQ(levels.axis.along[2].stride, 4);
   EXPECT_EQ(levels.axis.along[2].overrides, (std::vector<std::string>{"time.steps=160", "device.delay_samples=6"}));
   EXPECT_EQ(levels.formal_order, 1.0);
+  scene.erase("device");
+  scene["rendering"]["contacts"] = {{"every", 8}, {"delay_samples", 4}};
+  const LevelSweep late = level_sweep(load_scenario(ScenarioText{"x.json", scene}, {}), kStepPath, 3, 2.0);
+  EXPECT_EQ(late.axis.along[2].overrides, (std::vector<std::string>{"time.steps=160", "rendering.contacts.every=32",
+                                                                    "rendering.contacts.delay_samples=16"}));
+}
+
+/// Checks that only noise that is drawn in every step prevents an order, whatever draws it, and that it is named.
+TEST(Converge, HasNoOrderWithANoiseThatEveryStepDraws) {
+  Json impedance = {{"type", "impedance"}, {"handle_mass_kg", 0.1}}, admittance = {{"type", "admittance"}};
+  const auto reason = [](const char* section, const Json& fields) {
+    Json scene = spring(0.2, "leapfrog");
+    scene[section] = fields;
+    return level_sweep(load_scenario(ScenarioText{"x.json", scene}, {}), kStepPath, 3, 2.0).no_order;
+  };
+  EXPECT_EQ(reason("device", impedance), "");
+  impedance["position_noise_m"] = 1e-6;
+  EXPECT_NE(reason("device", impedance).find("device.position_noise_m"), std::string::npos);
+  admittance["sensor"] = {{"noise_N", 0.0}};
+  EXPECT_EQ(reason("device", admittance), "");
+  admittance["sensor"] = {{"noise_N", 0.01}};
+  EXPECT_NE(reason("device", admittance).find("device.sensor.noise_N"), std::string::npos);
+  const auto subject = [](double motor, double tilt) {
+    const std::string quiet = R"({"motor_noise_N":0,"tilt_noise_rad":0})",
+                      second = fmt::format(R"({{"motor_noise_N":{},"tilt_noise_rad":{}}})", motor, tilt);
+    const std::vector<std::string> fields = {R"(device={"type":"ideal"})",
+                                             fmt::format("hand.subjects=[{},{}]", quiet, second)};
+    const ScenarioText peg = read_scenario_text(find_scenario("vertical_peg_in_hole_shaped_stiffness"));
+    return level_sweep(load_scenario(peg, fields), kStepPath, 3, 2.0).no_order;
+  };
+  EXPECT_EQ(subject(0.0, 0.0), "");
+  EXPECT_NE(subject(0.01, 0.0).find("hand.subjects"), std::string::npos);
+  EXPECT_NE(subject(0.0, 0.01).find("hand.subjects"), std::string::npos);
 }
 
 }  // namespace

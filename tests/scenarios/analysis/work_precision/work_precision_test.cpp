@@ -30,8 +30,10 @@ ScenarioText oscillator() {
                  {"friction", {{"mu_s_N_s_per_m", 0}, {"mu_f_s_per_m", 0}}}}}}};
 }
 
-std::vector<WorkPrecisionProblem> study(const std::vector<std::string>& over, double max_error = 1e-6) {
+std::vector<WorkPrecisionProblem> study(const std::vector<std::string>& over, double max_error = 1e-6,
+                                        const std::vector<std::string>& overrides = {}) {
   WorkPrecisionQuestion question{oscillator()};
+  question.overrides = overrides;
   for (const std::string& axis : over) question.over.push_back(parse_axis(axis));
   question.max_error = max_error;
   return work_precision(question, {});
@@ -41,7 +43,7 @@ std::vector<WorkPrecisionProblem> study(const std::vector<std::string>& over, do
 WorkPrecisionSetting priced(double cost, double error) {
   WorkPrecisionSetting setting{"summation", "rk4"};
   setting.error = {.position = error};
-  setting.reference_error = {.position = 1.0};
+  setting.reference_error = MotionDifference{.position = 1.0};
   setting.cost = {.step_s = 1e-3 * cost, .time_step_s = 1e-3};
   return setting;
 }
@@ -131,10 +133,10 @@ TEST(WorkPrecision, GivesEqualTrajectoriesEqualErrors) {
     const WorkPrecisionSetting &rk4 = problem.settings[level], &event = problem.settings[8 + level];
     ASSERT_TRUE(rk4.error && event.error);
     EXPECT_EQ(rk4.error->position, event.error->position);
-    EXPECT_EQ(rk4.reference_error.position, event.reference_error.position);
+    EXPECT_EQ(rk4.reference_error->position, event.reference_error->position);
   }
   // The reference solution is as exact as its check by velocity_verlet shows.
-  EXPECT_GE(problem.settings[0].reference_error.position, 0.9 * exact_error_of_verlet(kStep / 128));
+  EXPECT_GE(problem.settings[0].reference_error->position, 0.9 * exact_error_of_verlet(kStep / 128));
 }
 
 TEST(WorkPrecision, TreatsEveryLawAsAProblem) {
@@ -150,6 +152,29 @@ TEST(WorkPrecision, StatesNoErrorOfATrajectoryThatCannotBePredicted) {
   const auto problems = study({"integrator.type=leapfrog"}, 1e-12);
   EXPECT_FALSE(problems[0].is_predictable);
   EXPECT_GT(problems[0].grown_shift, 0.1 * kInitialShift);
+  for (const WorkPrecisionSetting& setting : problems[0].settings) EXPECT_FALSE(setting.error);
+}
+
+/// Checks that each problem has the delay of its own: with the delay of the axis, the tool moves like in a study of a
+/// scene with this delay.
+TEST(WorkPrecision, KeepsTheDelayOfEachProblem) {
+  const std::string device = R"(device={"type":"impedance","handle_mass_kg":0.1})";
+  const auto both = study({"device.delay_samples=0,2"}, 1e-6, {device});
+  ASSERT_EQ(both.size(), 2u);
+  for (const std::size_t i : {0u, 1u}) {
+    const auto alone = study({}, 1e-6, {device, i == 0 ? "device.delay_samples=0" : "device.delay_samples=2"});
+    ASSERT_TRUE(both[i].settings[0].error && alone[0].settings[0].error);
+    EXPECT_EQ(both[i].settings[0].error->position, alone[0].settings[0].error->position) << i;
+  }
+  EXPECT_NE(both[0].settings[0].error->position, both[1].settings[0].error->position);
+}
+
+/// Checks that a noise that differs between time steps is named, and that no error is stated.
+TEST(WorkPrecision, StatesNoErrorIfEachTimeStepHasAnotherNoise) {
+  const auto problems =
+      study({"integrator.type=leapfrog", R"(device={"type":"admittance","sensor":{"noise_N":0.01}})"});
+  EXPECT_FALSE(problems[0].is_predictable);
+  EXPECT_NE(problems[0].noise.find("device.sensor.noise_N"), std::string::npos) << problems[0].noise;
   for (const WorkPrecisionSetting& setting : problems[0].settings) EXPECT_FALSE(setting.error);
 }
 
