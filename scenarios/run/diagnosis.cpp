@@ -1,9 +1,12 @@
 #include "scenarios/run/diagnosis.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <utility>
 
+#include "scenarios/input/text_lines.hpp"
 #include "scenarios/run/diagnosed_run.hpp"
 #include "scenarios/run/diagnosis_advice.hpp"
 #include "scenarios/run/expectations.hpp"
@@ -29,9 +32,10 @@ std::string no_more(const DiagnosedRun&) {
 
 /// Marks of rules.
 enum Mark : unsigned {
-  kLowVibration = 1,  ///< included in diagnosis_rules(true)
-  kWarns = 2,         ///< reported as a warning for runs without a diagnosis; such a rule uses metrics only
-  kByLaw = 4          ///< a law that pulls the tool into the surface can cause the problem
+  kFailure = 1,       ///< the rule has RuleKind::failure
+  kLowVibration = 2,  ///< the rule has RuleKind::low_vibration
+  kWarns = 4,         ///< reported as a warning for runs without a diagnosis; such a rule uses metrics only
+  kByLaw = 8          ///< a law that pulls the tool into the surface can cause the problem
 };
 
 /// A rule of the diagnosis.
@@ -48,27 +52,27 @@ struct Rule {
 constexpr Rule kRules[] = {
     {"fault", "1 if the law or a module failed, or gave a number that is not finite", "1", 0.5,
      "a fault of the force law or of a module ended the run", fault, against_fault,
-     [](const DiagnosedRun& r) { return ": " + divergence_text(r.result); }},
+     [](const DiagnosedRun& r) { return ": " + divergence_text(r.result); }, kFailure},
     {"diverged", "1 if the run diverged (left its bounds)", "1", 0.5, "the run diverged", diverged, against_divergence,
-     no_more, kByLaw},
+     no_more, kFailure | kByLaw},
     {"inward",
      "fraction of the steps in contact in which the spring force of a law in a module or in Python points deeper into "
      "the surface at every contact",
      "1", kMaxInward, "the law pulls the tool into the surface during {} of the contact time", inward_share,
      against_inward_force},
     {"sank", "1 if the tool passed through the surface", "1", 0.5, "the tool passed through the surface",
-     ended<Outcome::went_through>, against_sinking},
+     ended<Outcome::went_through>, against_sinking, no_more, kFailure},
     {"lost", "1 if the tool never touched the environment, or lost contact before the end", "1", 0.5,
      "the tool never touched the surface, or lost contact before the end",
-     ended<Outcome::no_contact, Outcome::lost_contact>, against_loss, no_more, kByLaw},
+     ended<Outcome::no_contact, Outcome::lost_contact>, against_loss, no_more, kFailure | kByLaw},
     {"stuck", "1 if the hand's target moved on and the tool did not", "1", 0.5, "the tool is stuck",
-     ended<Outcome::stuck, Outcome::not_dragged>, against_standstill},
+     ended<Outcome::stuck, Outcome::not_dragged>, against_standstill, no_more, kFailure},
     {"step", "largest displacement of the tip in one time step near the surface, divided by the tool's half width", "1",
      1.0, "near the surface the tool moves by up to {} times its half width in one time step", longest_step,
      against_long_steps},
     {"servo", "1 if hand and device are unstable without contact, by the eigenvalues of their loop", "1", 0.5,
      "the loop is unstable without contact", unstable_alone, against_unstable_servo,
-     [](const DiagnosedRun& r) { return ": " + unstable_without_wall(r.scenario()); }},
+     [](const DiagnosedRun& r) { return ": " + unstable_without_wall(r.scenario()); }, kFailure},
     {"edge",
      "K divided by the linear limit of the loop of device, hand, tool and contact (without dry friction and without a "
      "slow drift along the surface), in a run that vibrates, diverges or loses contact",
@@ -78,7 +82,7 @@ constexpr Rule kRules[] = {
      "1 if the loop of device, hand, tool and contact is unstable even at K / 10000, in a run that vibrates, diverges "
      "or loses contact",
      "1", 0.5, "the loop is unstable even at K / 10000: K is not the cause", unstable_loop, against_unstable_loop,
-     no_more, kByLaw},
+     no_more, kFailure | kByLaw},
     {"buzz", "rms of the force above 30 Hz, divided by the mean force in settled contact of a pressed tool", "1",
      kMaxBuzz, "the force vibrates: its rms above 30 Hz is {} times the mean force", buzz, against_buzz, buzz_frequency,
      kLowVibration | kByLaw},
@@ -162,6 +166,11 @@ constexpr Rule kRules[] = {
      against_drift},
 };
 
+RuleKind kind_of(const Rule& rule) {
+  if ((rule.marks & kFailure) != 0) return RuleKind::failure;
+  return (rule.marks & kLowVibration) != 0 ? RuleKind::low_vibration : RuleKind::hint;
+}
+
 /// Returns the advice of a rule. If the law pulls a free tool into the surface, this law can be the cause: the advice
 /// is then to correct the law, unless it is meant to attract.
 std::string advice(const Rule& rule, const DiagnosedRun& run) {
@@ -191,12 +200,25 @@ std::vector<Diagnosed> diagnosed(const DiagnosedRun& run, unsigned mark, bool be
 
 }  // namespace
 
-std::vector<Diagnosed> diagnosis_rules(bool low_vibration) {
+const char* rule_kind_name(RuleKind kind) noexcept {
+  if (kind == RuleKind::failure) return "failure";
+  return kind == RuleKind::low_vibration ? "vibration" : "hint";
+}
+
+std::vector<Diagnosed> diagnosis_rules(std::optional<RuleKind> kind) {
   std::vector<Diagnosed> rules;
   for (const Rule& rule : kRules)
-    if ((rule.marks & kLowVibration) != 0 || !low_vibration)
+    if (!kind || kind_of(rule) == *kind)
       rules.push_back({rule.name, rule.number, rule.unit, 0.0, rule.threshold, rule.says, ""});
   return rules;
+}
+
+std::string rule_names(RuleKind kind) {
+  return fmt::format("{}", fmt::join(names_of(diagnosis_rules(kind), &Diagnosed::rule), ", "));
+}
+
+RuleKind rule_kind(std::string_view rule) {
+  return kind_of(*std::ranges::find(kRules, rule, &Rule::name));
 }
 
 std::vector<Diagnosed> diagnosis_findings(const LoadedScenario& loaded, const Result& result,

@@ -1,6 +1,9 @@
 #pragma once
 
 #include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "results/summary/summary.hpp"
@@ -13,13 +16,25 @@
 /// quantity that DiagnosisObserver measures) with a threshold.
 namespace hapbench {
 
-/// Returns all rules with their thresholds but without values and advice, in the order of the report: first how
-/// the run ended, then possible causes. `says` has {} in place of the value. With `low_vibration`, returns only the
-/// rules for disturbances that a hand feels in addition to the force (vibration, force steps, force reversals, created
-/// energy).
-std::vector<Diagnosed> diagnosis_rules(bool low_vibration = false);
+/// What a rule states about a run.
+enum class RuleKind {
+  failure,        ///< the run failed, or its loop is unstable: no such run is recommended
+  low_vibration,  ///< the hand feels a disturbance in addition to the force: a vibration, force steps, force reversals,
+                  ///< or created energy. A user of `tune` may allow it
+  hint            ///< a property of the run that may be as intended, or the cause of another problem
+};
+/// Returns the name of a kind in result files: "failure", "vibration" or "hint".
+const char* rule_kind_name(RuleKind kind) noexcept;
 
-/// Returns the rules of diagnosis_rules(true) with their values for this result, including values below the
+/// Returns the rules of a kind, or all rules, with their thresholds but without values and advice, in the order of the
+/// report: first how the run ended, then possible causes. `says` has {} in place of the value.
+std::vector<Diagnosed> diagnosis_rules(std::optional<RuleKind> kind = {});
+/// Returns the names of the rules of a kind, separated by commas.
+std::string rule_names(RuleKind kind);
+/// Returns the kind of the rule with this name. Precondition: there is such a rule.
+RuleKind rule_kind(std::string_view rule);
+
+/// Returns the rules of RuleKind::low_vibration with their values for this result, including values below the
 /// thresholds. A rule whose number has no value is left out. `observations`, `tool` and `shell` as for
 /// diagnosis_findings(), so that both functions compare the same numbers with the thresholds.
 std::vector<Diagnosed> low_vibration_numbers(const LoadedScenario& loaded, const Result& result,

@@ -24,7 +24,7 @@ namespace hapbench {
 /// Rules of the diagnosis (diagnosis.hpp) that run_scenario() evaluates.
 enum class Diagnose {
   nothing,
-  low_vibration,  ///< the rules of diagnosis_rules(true), into Result::low_vibration
+  low_vibration,  ///< the rules of RuleKind::low_vibration, into Result::low_vibration
   everything      ///< all rules, into Result::diagnosis
 };
 

@@ -10,6 +10,7 @@
 #include "scenarios/run/diagnosis.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/scene/environments.hpp"
+#include "scenarios/scene/trials.hpp"
 
 namespace hapbench {
 namespace {
@@ -64,6 +65,7 @@ TrialRuns::TrialRuns(const TuneQuestion& question, const std::string& algorithm)
   // Build the surface, and collect the variants and the largest stiffness eigenvalue of springs in permanent contact.
   const LoadedScenario own = load({}, ranges_.stiffness.from);
   shell_ = make_shell(own.scenario, own.files);
+  trials_per_run_ = trials_of(own.scenario).size();
   for (const std::string& family : question_.families) {
     for (SceneVariant& variant : scene_variants(own, family)) {
       variant.family = family;
@@ -205,6 +207,10 @@ std::optional<TuneFailure> TrialRuns::vibration(const TuneSetting& setting, doub
   for (const Diagnosed& number : run_with_shell(scene, shell_, Diagnose::low_vibration).low_vibration)
     if (number.value > number.threshold) return TuneFailure{number.rule, number.says};
   return std::nullopt;
+}
+
+std::vector<Diagnosed> TrialRuns::findings(const TuneSetting& setting, double stiffness) const {
+  return *run_with_shell(checked(load(setting, stiffness)), shell_, Diagnose::everything).diagnosis;
 }
 
 // ---- Metrics

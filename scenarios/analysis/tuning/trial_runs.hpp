@@ -34,6 +34,8 @@ class TrialRuns {
 
   const TuneRanges& ranges() const { return ranges_; }
   std::size_t variant_count() const { return variants_.size(); }
+  /// Returns the number of simulations of a run: its trials. More than one only for a scene with subjects.
+  std::size_t trials_per_run() const { return trials_per_run_; }
   /// Returns true if the question includes the variants "hands" (scene_variants()).
   bool over_hands() const { return over_hands_; }
   /// Returns true if the scene renders springs in permanent contact. Their loop is known without a run.
@@ -70,6 +72,8 @@ class TrialRuns {
   /// Runs a variant of a trial with a further override, such as a larger K. Returns the reason if the run is not
   /// settled, or if its loop in contact is unstable between the trial's K and the run's K. Empty if neither.
   std::string failure_of(const TuneTrial& trial, std::size_t variant, const std::string& more) const;
+  /// Runs the scene itself in the same way as the command `run`, and returns the findings of its diagnosis.
+  std::vector<Diagnosed> findings(const TuneSetting& setting, double stiffness) const;
   /// Runs the scene itself. Returns how it vibrates: its verdict `vibrating` or `diverged` (with the binding
   /// "settled"), or after a second run a violated rule of low vibration. Empty if neither.
   std::optional<TuneFailure> vibration(const TuneSetting& setting, double stiffness) const;
@@ -96,6 +100,7 @@ class TrialRuns {
   TuneRanges ranges_;
   bool over_hands_;
   std::vector<SceneVariant> variants_;  ///< the scene itself first
+  std::size_t trials_per_run_ = 1;
   std::shared_ptr<const PointShell> shell_;
   /// Largest eigenvalue of the stiffness tensor of springs in permanent contact, in units of K; empty otherwise.
   std::optional<double> springs_lambda_;

@@ -43,7 +43,7 @@ Trials::Trials(const TuneQuestion& question, const std::string& algorithm)
       algorithm_(algorithm),
       trial_runs_(question, algorithm),
       limits_{question.limits, question.allow_vibration} {
-  for (const Diagnosed& rule : diagnosis_rules(/*low_vibration=*/true)) rules_[rule.rule] = rule.threshold;
+  for (const Diagnosed& rule : diagnosis_rules(RuleKind::low_vibration)) rules_[rule.rule] = rule.threshold;
 }
 
 // ---- Searches
@@ -209,6 +209,11 @@ std::optional<Failing> Trials::first_failing(const TuneTrial& trial, std::size_t
   return Failing{failing, why[failing]};
 }
 
+std::vector<Diagnosed> Trials::findings(const TuneTrial& trial) {
+  count_runs(1);
+  return trial_runs_.findings(trial.setting, trial.stiffness);
+}
+
 std::vector<std::optional<TuneFailure>> Trials::vibrations(const TuneSetting& setting,
                                                            const std::vector<double>& stiffnesses) {
   std::vector<std::optional<TuneFailure>> found(stiffnesses.size());
@@ -267,6 +272,7 @@ void Trials::in_parallel(std::span<TuneTrial* const> trials, const std::function
 }
 
 void Trials::count_runs(TuneTrial* trial, std::size_t count) {
+  count *= trial_runs_.trials_per_run();
   runs_ += count;
   if (trial == nullptr) return;
   trial->runs += count;
@@ -373,7 +379,7 @@ void Trials::judge_motion(TuneTrial& trial, std::size_t first, std::size_t last)
 
 void Trials::run_ahead(const TuneSetting& setting, std::span<const double> stiffnesses) {
   constexpr std::size_t kRuns = 3;  // largest number of simulations of a trial
-  if (search_runs_ + kRuns * stiffnesses.size() > kMaxTuneRuns) return;
+  if (search_runs_ + kRuns * trial_runs_.trials_per_run() * stiffnesses.size() > kMaxTuneRuns) return;
   // Each stage runs only trials that have not failed in the stage before.
   std::vector<TuneTrial*> trials;
   for (const double K : stiffnesses) {

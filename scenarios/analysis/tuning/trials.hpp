@@ -129,6 +129,9 @@ class Trials {
   std::optional<Failing> first_failing(const TuneTrial& trial, std::size_t count,
                                        const std::function<std::string(std::size_t run)>& more);
 
+  /// Runs the scene itself in a trial in the same way as the command `run`, and returns the findings of its diagnosis.
+  /// The run does not count for the search.
+  std::vector<Diagnosed> findings(const TuneTrial& trial);
   /// Runs the scene itself with a setting at each stiffness [N/m]. Returns for each run how it vibrates: its verdict
   /// `vibrating` or `diverged`, or a violated rule of low vibration; empty if neither. Makes one or two runs for
   /// each stiffness, which do not count for the search.
@@ -168,10 +171,10 @@ class Trials {
 
   // ---- Cost
 
-  /// Returns the number of simulations so far.
+  /// Returns the number of simulations so far. A run with several trials counts as one simulation for each trial.
   std::size_t runs() const { return runs_; }
-  /// Adds simulations that were made outside of this class.
-  void count_runs(std::size_t count) { runs_ += count; }
+  /// Adds runs that were made outside of this class.
+  void count_runs(std::size_t count) { runs_ += count * trial_runs_.trials_per_run(); }
   /// Sets the purpose of the next runs, which is passed to TuneQuestion::on_runs.
   void begin_purpose(std::string purpose);
   /// Sets the relaxation that the next searches are to confirm; empty: none.

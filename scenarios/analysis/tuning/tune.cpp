@@ -83,6 +83,7 @@ void explain_or_find(Trials& trials, TunedLaw& law) {
   }
   law.verified = 0;
   law.limits = {};
+  law.findings.clear();
   if (was_exhausted) {
     law.why =
         fmt::format("none was found in {} runs, the largest number of a search; nearest: {}", kMaxTuneRuns, law.why);

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "results/summary/summary.hpp"
 #include "scenarios/analysis/stability/field_limit.hpp"
 #include "scenarios/analysis/tuning/margins.hpp"
 #include "scenarios/analysis/tuning/trial.hpp"
@@ -29,8 +30,11 @@ struct TunedLaw {
   /// Error estimates: largest change of each metric of the scene's run if the time step is halved, the point spacing is
   /// halved, or depth is evaluated at every step. A metric that one of these runs lacks has no entry.
   MetricValues error;
-  std::vector<TuneTrial> trials;       ///< all trials, by setting and K
-  std::size_t runs = 0;                ///< total number of simulations
+  std::vector<TuneTrial> trials;  ///< all trials, by setting and K
+  std::size_t runs = 0;           ///< total number of simulations
+  /// What `run` finds in the scene with the choice (diagnosis_findings()). No finding is a failure, and none is a
+  /// vibration unless TuneQuestion::allow_vibration is true.
+  std::vector<Diagnosed> findings;
   std::size_t verified = 0;            ///< number of verification runs between K and G K, all of them settled
   std::vector<std::string> overrides;  ///< overrides that apply the choice to the scene
 };

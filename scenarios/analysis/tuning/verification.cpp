@@ -8,6 +8,7 @@
 #include <optional>
 #include <vector>
 
+#include "scenarios/run/diagnosis.hpp"
 #include "scenarios/run/scene_loop.hpp"
 #include "scenarios/run/scripted_motion.hpp"
 
@@ -15,7 +16,7 @@ namespace hapbench {
 namespace {
 
 // If a longer run is not settled, all stiffnesses above K / kStiffnessReduction are refuted, where K is the choice's
-// stiffness.
+// stiffness; if the diagnosis condemns the choice, the stiffnesses from there to K.
 constexpr double kStiffnessReduction = 1.25;
 
 /// Records that K is not settled. Refutes all stiffnesses from the smaller of K / G and the stiffness of the choice to
@@ -103,6 +104,22 @@ bool vibrates_nearby(Trials& trials, const TuneTrial& choice) {
   return true;
 }
 
+/// Returns true if the diagnosis of the scene's run reports a failure or a vibration that is not allowed. The run is
+/// the same that the command `run` makes with the recommended scenario, so that `run` does not contradict `tune`.
+bool is_condemned_by_run(Trials& trials, const TuneTrial& choice, TunedLaw& law) {
+  law.findings = trials.findings(choice);
+  const auto condemns = [&](const Diagnosed& found) {
+    const RuleKind kind = rule_kind(found.rule);
+    return kind == RuleKind::failure || (kind == RuleKind::low_vibration && !trials.limits().allow_vibration);
+  };
+  const auto found = std::ranges::find_if(law.findings, condemns);
+  if (found == law.findings.end()) return false;
+  trials.refute(choice.setting, choice.stiffness / kStiffnessReduction, choice.stiffness * (1.0 + kTuneResolution),
+                found->rule,
+                fmt::format("{} (K = {:.4g} N/m{})", found->says, choice.stiffness, setting_text(choice.setting)));
+  return true;
+}
+
 }  // namespace
 
 std::string with_gain(const TuneTrial& trial, double gain) {
@@ -110,8 +127,9 @@ std::string with_gain(const TuneTrial& trial, double gain) {
 }
 
 bool is_verified(Trials& trials, const TuneTrial& choice, TunedLaw& law) {
-  return !vibrates_nearby(trials, choice) && !fails_between(trials, choice, law) &&
-         !scene_limit_is_near(trials, choice, law) && !fails_in_longer_run(trials, choice);
+  return !is_condemned_by_run(trials, choice, law) && !vibrates_nearby(trials, choice) &&
+         !fails_between(trials, choice, law) && !scene_limit_is_near(trials, choice, law) &&
+         !fails_in_longer_run(trials, choice);
 }
 
 }  // namespace hapbench

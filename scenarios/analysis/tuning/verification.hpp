@@ -13,6 +13,8 @@ namespace hapbench {
 std::string with_gain(const TuneTrial& trial, double gain);
 
 /// Returns true if a choice passes all verifications, the cheapest first:
+/// - the diagnosis of the scene's run, as the command `run` makes it, reports no failure and, unless
+///   TuneLimits::allow_vibration is true, no vibration (RuleKind);
 /// - from kLowVibrationFrom x K to K, the run of the scene does not vibrate: neither in the known trials of the setting
 ///   nor at kLowVibrationSamples further stiffnesses (Trials::vibrations()). This check is skipped if
 ///   TuneLimits::allow_vibration is true;
@@ -21,7 +23,8 @@ std::string with_gain(const TuneTrial& trial, double gain);
 /// - it is settled in runs twice as long. This check is skipped if a script would move the tool on after the scene's
 ///   end.
 ///
-/// If a verification fails, refutes the choice in `trials` (Trials::refute). Writes TunedLaw::verified and limits.
+/// If a verification fails, refutes the choice in `trials` (Trials::refute). Writes TunedLaw::findings, verified and
+/// limits.
 bool is_verified(Trials& trials, const TuneTrial& choice, TunedLaw& law);
 
 }  // namespace hapbench

@@ -136,8 +136,13 @@ Description describe_stability(const Layout& layout) {
 
 Description describe_diagnosis(const Layout& layout) {
   Description d{
-      "Rules of the diagnosis. `run` prints each rule whose number exceeds its threshold, and writes it to "
-      "summary.json.\n\n",
+      layout.wrapped(
+          fmt::format("Rules of the diagnosis. `run` prints each rule whose number exceeds its threshold, and "
+                      "writes it to summary.json. `tune` recommends no run to which one of the rules {} "
+                      "applies and, unless --allow-vibration is given, none to which {} applies.",
+                      rule_names(RuleKind::failure), rule_names(RuleKind::low_vibration)),
+          0) +
+          "\n",
       Json::array()};
   for (const Diagnosed& rule : diagnosis_rules()) {
     const std::string unit = rule.unit == "1" ? "" : " " + rule.unit;
@@ -146,6 +151,7 @@ Description describe_diagnosis(const Layout& layout) {
                       {"number", rule.number},
                       {"unit", rule.unit},
                       {"threshold", rule.threshold},
+                      {"kind", rule_kind_name(rule_kind(rule.rule))},
                       {"says", rule.says}});
   }
   return d;

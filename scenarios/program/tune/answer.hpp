@@ -20,8 +20,6 @@ struct Tuning {
   std::vector<TunedLaw> laws;
   std::vector<const TunedLaw*> ranking;  ///< laws with a feasible choice, best first
   std::size_t runs = 0;                  ///< number of simulations over all laws
-  /// Diagnosis rules whose thresholds a run with the choice of the best law exceeds.
-  std::vector<Diagnosed> findings;
 };
 
 /// Returns the laws with a feasible choice, best first. The best law has the smallest settled depth (metric

@@ -17,10 +17,6 @@
 #include "scenarios/run/diagnosis_advice.hpp"
 
 namespace hapbench {
-std::string low_vibration_rules() {
-  return fmt::format("{}", fmt::join(names_of(diagnosis_rules(/*low_vibration=*/true), &Diagnosed::rule), ", "));
-}
-
 namespace {
 
 /// Returns the advice `attempt` of a diagnosis with the option of tune in place of the field that tune chooses.
@@ -43,7 +39,7 @@ std::string limits_text(const Tuning& tuning) {
     text += fmt::format(
         ". The runs at K and at {} stiffnesses from {:g} K to K have low vibration: none of the rules {} applies "
         "(\"hapbench describe diagnosis\")",
-        kLowVibrationSamples, kLowVibrationFrom, low_vibration_rules());
+        kLowVibrationSamples, kLowVibrationFrom, rule_names(RuleKind::low_vibration));
   for (const auto& [name, bound] : tuning.question.limits) {
     if (bound.min) text += fmt::format(". At K {} >= {:g}", name, *bound.min);
     if (bound.max) text += fmt::format(". At K {} <= {:g}", name, *bound.max);
@@ -88,10 +84,10 @@ std::string recommendation_text(const Tuning& tuning, const Layout& layout) {
        fmt::format("by {} full-length runs between K and {:g} K, all settled: at most {:.0f} % of this interval may be "
                    "unstable (95 % confidence); {} runs in total",
                    best->verified, tuning.question.margin, 100.0 * may_fail_share(kVerificationSamples), tuning.runs));
-  line("diagnosis", tuning.findings.empty()
+  line("diagnosis", best->findings.empty()
                         ? "\"hapbench run\" reports no problem at K"
                         : "at K, \"hapbench run\" reports problems that do not violate a constraint of tune:");
-  for (const Diagnosed& found : tuning.findings)
+  for (const Diagnosed& found : best->findings)
     line("", fmt::format("{} (rule {}: {}); try: {}, then tune again", found.says, found.rule,
                          value_and_threshold_text(found), as_options_of_tune(found.attempt)));
   line("metrics at K",

@@ -1,17 +1,11 @@
 #pragma once
 
-#include <string>
-
 #include "scenarios/program/layout.hpp"
 #include "scenarios/program/report.hpp"
 #include "scenarios/program/tune/answer.hpp"
 
 /// The printed text of `tune`.
 namespace hapbench {
-
-/// Returns the names of the diagnosis rules whose thresholds a run with low vibration must not exceed, separated by
-/// commas.
-std::string low_vibration_rules();
 
 /// Reports the question, the recommendation, the table of the laws, and the reason why a law has no feasible
 /// choice.

@@ -22,8 +22,8 @@
 #include "scenarios/program/tune/question.hpp"
 #include "scenarios/program/tune/text.hpp"
 #include "scenarios/run/checked_scenario.hpp"
+#include "scenarios/run/diagnosis.hpp"
 #include "scenarios/run/progress_bar.hpp"
-#include "scenarios/run/run_scenario.hpp"
 #include "scenarios/scene/field_files.hpp"
 #include "scenarios/scene/load_scenario.hpp"
 
@@ -53,12 +53,6 @@ void tune_laws(const std::vector<std::string>& algorithms, bool quiet, Tuning& t
   }
   tuning.question.on_runs = {};
   tuning.ranking = ranking_of(tuning.laws);
-}
-
-/// Returns what the diagnosis reports for a run with the setting and the stiffness that were chosen for a law.
-std::vector<Diagnosed> findings_at(const Tuning& tuning, const TunedLaw& law) {
-  const CheckedScenario choice = checked(load_scenario(tuning.question.scenario, law.overrides));
-  return *run_scenario(choice, std::nullopt, false, nullptr, Diagnose::everything).diagnosis;
 }
 
 int tune(const TuneOptions& options, ProgramContext& context) {
@@ -93,7 +87,6 @@ int tune(const TuneOptions& options, ProgramContext& context) {
   if (tuning.ranking.empty()) report.files().remove(tuned_file);
   if (!tuning.ranking.empty()) {
     tuned = tuned_file;
-    tuning.findings = findings_at(tuning, *tuning.ranking[0]);
     tuned_json = tuned_scenario(tuning, *tuning.ranking[0], out);
     report.files().write(tuned, json_text(tuned_json));
   }
@@ -146,9 +139,10 @@ void add_tune(CommandLine& line) {
       "Time step: time.step_s of the scenario is the period of the loop; for a loop of 1 kHz, --set "
       "time.step_s=0.001.\n\n"
       "Requirements: the scenario's run and the runs of each family are stable at K and at margin x K, the linear "
-      "limit is at least margin x K, every --bound holds at K, and a force is rendered. Unless --allow-vibration is "
-      "given, the scenario's run has low vibration at K and at {} stiffnesses from {:g} K to K: none of the rules {} "
-      "applies (\"hapbench describe diagnosis\").\n\n"
+      "limit is at least margin x K, every --bound holds at K, and a force is rendered. The scenario's run at K does not "
+      "fail: none of the rules {} applies (\"hapbench describe diagnosis\"). Unless --allow-vibration is given, the "
+      "scenario's run has low vibration at K and at {} stiffnesses from {:g} K to K: none of the rules {} "
+      "applies.\n\n"
       "Result: K, zeta and law, the binding constraint, the margins that are left, and the expected metrics with their "
       "errors. {} verification samples between K and margin x K must be stable; otherwise the search continues with "
       "another K.\n\n"
@@ -159,10 +153,12 @@ void add_tune(CommandLine& line) {
       "Files: NAME_tuned.json is the tuned scenario, for \"hapbench run\". tune.csv has one row per law, "
       "tune_trials.csv one row per trial. They replace the files of an earlier tune in the same folder; if nothing is "
       "feasible, an earlier NAME_tuned.json is removed.\n\n"
-      "Time: seconds to minutes; a search for a law ends after {} runs.\n\n"
+      "Time: a search for a law ends after {} simulations, each at most as long as hapbench run without files. This is "
+      "seconds to minutes if a run takes less than 0.1 s, and hours if it takes more than 1 s. A run with several trials "
+      "counts as one simulation for each trial.\n\n"
       "Exit status: 0 also if nothing is feasible; 2 bad input; 130 stopped by Ctrl-C.",
-      kLowVibrationSamples, kLowVibrationFrom, low_vibration_rules(), kVerificationSamples + kSamplesNearLimit,
-      kMaxTuneRuns));
+      rule_names(RuleKind::failure), kLowVibrationSamples, kLowVibrationFrom, rule_names(RuleKind::low_vibration),
+      kVerificationSamples + kSamplesNearLimit, kMaxTuneRuns));
 }
 
 }  // namespace hapbench

@@ -566,7 +566,7 @@ TEST(Diagnosis, LowVibrationComparesTheSameNumbers) {
       EXPECT_EQ(found->says, number.says);
       beyond.push_back(number.rule);
     }
-    for (const Diagnosed& rule : diagnosis_rules(/*low_vibration=*/true))
+    for (const Diagnosed& rule : diagnosis_rules(RuleKind::low_vibration))
       EXPECT_EQ(finding(diagnosed, rule.rule) != nullptr, std::ranges::count(beyond, rule.rule) == 1)
           << scene.name << ": " << rule.rule;
     for (const std::string& rule : expected) EXPECT_EQ(std::ranges::count(beyond, rule), 1) << scene.name;

@@ -113,8 +113,30 @@ TEST(Tune, KeepsLimitsAndNamesTheBindingConstraint) {
   EXPECT_LE(quiet.choice->largest.at("force_rms_above_30Hz_N").value, 0.7 * buzz);
   EXPECT_LE(quiet.choice->stiffness, 1.01 * free.choice->stiffness);
   // The metrics reported for the choice are the metrics of a run.
-  const Result run = run_scenario(checked(load_scenario(asked.scenario, quiet.overrides)), std::nullopt, false);
+  const CheckedScenario chosen = checked(load_scenario(asked.scenario, quiet.overrides));
+  const Result run = run_scenario(chosen, std::nullopt, false, nullptr, Diagnose::everything);
   for (const auto& [name, value] : quiet.choice->metrics) EXPECT_EQ(number_of(run.metrics, name), value) << name;
+  // So are the findings of the diagnosis, none of which condemns the choice.
+  EXPECT_EQ(names_of(quiet.findings, &Diagnosed::rule), names_of(*run.diagnosis, &Diagnosed::rule));
+  for (const Diagnosed& found : quiet.findings) EXPECT_EQ(rule_kind(found.rule), RuleKind::hint) << found.rule;
+}
+
+/// Checks that every trial of an experiment counts. The damping of the second hand is above 2 M / dt, where leapfrog is
+/// unstable, so that its trial diverges at every K, which no permitted vibration allows.
+TEST(Tune, RecommendsNothingIfATrialOfTheExperimentDiverges) {
+  const auto tuned = [](const std::string& subjects) {
+    TuneQuestion asked =
+        question("vertical_peg_in_hole_shaped_stiffness",
+                 {"hand.subjects=[" + subjects + "]", "hand.trials=1", "hand.task.places_m=[[0,0,-0.005]]",
+                  R"(device={"type":"ideal"})", "time.duration_s=0.5"});
+    asked.threads = 2;
+    asked.damping_ratio = {0.7, 0.75};
+    asked.allow_vibration = true;
+    return tuned_law(asked, "shaped_stiffness");
+  };
+  const std::string gentle = R"({"press_N":1})", rigid = R"({"press_N":1,"damping_N_s_per_m":500})";
+  EXPECT_TRUE(tuned(gentle + "," + gentle).choice);
+  EXPECT_FALSE(tuned(gentle + "," + rigid).choice);
 }
 
 /// Checks that the search accepts a stiffness at which a hand is too soft to pull the tool on. A trial with the
@@ -170,7 +192,7 @@ TEST(Tune, RecommendsNoStiffnessBesideAVibration) {
   for (const TuneTrial& trial : law.trials) {
     if (!(trial.setting == law.choice->setting)) continue;
     if (trial.stiffness < nearby.from || trial.stiffness > nearby.to) continue;
-    for (const Diagnosed& rule : diagnosis_rules(/*low_vibration=*/true)) {
+    for (const Diagnosed& rule : diagnosis_rules(RuleKind::low_vibration)) {
       const auto found = trial.largest.find(rule.rule);
       if (found == trial.largest.end()) continue;
       EXPECT_LE(found->second.value, rule.threshold) << trial.stiffness << " N/m: " << found->second.text;
