@@ -207,8 +207,8 @@ Finding judge_springs_limited(const Measured& runs, const PublishedNumbers& p) {
                       names.empty() ? "no other algorithm is smooth without the limits and fluctuates with them"
                                     : "smooth without the limits, but fluctuating with the limits: " + names),
           "number of swings, first without the limits, then with them: " + text,
-          fmt::format("proposed algorithm: {}; with other algorithms, the limits cause fluctuation in {} of {} cases{}",
-                      swings, fluctuating.size(), others, names.empty() ? "" : fmt::format(" ({})", names))};
+          fmt::format("proposed algorithm: {}; of {} cases with other algorithms, {} fluctuate only with the limits{}",
+                      swings, others, fluctuating.size(), names.empty() ? "" : fmt::format(" ({})", names))};
 }
 
 // ---- A4: the integrator's stability limits. One case for each published number, in the order of the thesis.

@@ -158,14 +158,15 @@ Finding judge_experiment(const Measured& measured, const PublishedNumbers& publi
     append_item(text, fmt::format("{} {:.2g} ± {:.1g} vs {:.2g} ± {:.1g} (t = {:.3g})", m.name, mean_of(a),
                                   standard_error(a), mean_of(b), standard_error(b), c.t));
   }
-  return {in_simulation(consistent),
-          (deviating.empty() ? std::string("every measure agrees with the thesis in direction and significance")
-                             : "measures that differ from the published result: " + deviating) +
-              fmt::format(
-                  ". No mean differs from its published value by more than {:.2g} standard errors ({}). The mean force "
-                  "is nearly an input, because subjects regulate the force that the gauge shows",
-                  largest, farthest),
-          text, number};
+  return {
+      in_simulation(consistent),
+      (deviating.empty() ? std::string("every measure agrees with the thesis in direction and significance")
+                         : "measures that differ from the published result: " + deviating) +
+          fmt::format(
+              ". No mean differs from its published value by more than {:.2g} standard errors; the largest "
+              "difference is that of the {}. The mean force is nearly an input, because subjects regulate the force that the gauge shows",
+              largest, farthest),
+      text, number};
 }
 
 /// The earlier rule of D1 to D4 also compared the numbers with the published numbers, and two means that would be

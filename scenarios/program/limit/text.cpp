@@ -175,8 +175,8 @@ std::string notes_text(const LimitTable& table, const Layout& layout) {
                                      table.first().question.search.smallest ? "to" : "from")},
       {table.is_grid(),
        "linear limit: limit by the eigenvalues of the loop of device, hand and contact, without dry friction, encoder "
-       "and force stage; no end: the loop is stable to the end of the range; none stable: it is stable at no value; "
-       "-: the eigenvalues give no limit (column no_linear_reason of limit.csv)"},
+       "and force stage. \"no end\": the loop is stable to the end of the range; \"none stable\": it is stable at no "
+       "value; \"-\": there is no linear limit (column no_linear_reason of limit.csv has the reason)"},
       {true,
        fmt::format(
            "first unstable: class of the first unstable run beyond the simulated limit ({}); if no value is stable, "
@@ -190,8 +190,8 @@ std::string notes_text(const LimitTable& table, const Layout& layout) {
        "if it is not 0, the simulated limit depends on the values that were tried. limit_runs.csv has the class of "
        "each run"},
       {table.is_grid(),
-       "these limits were not verified by further runs. For verified limits, run \"hapbench limit\" with one scene and "
-       "one algorithm, without --device and --over"},
+       "these limits were not verified by further runs. For verified limits, write the device into the field device of a "
+       "scenario, and run \"hapbench limit\" with this scenario and one algorithm, without --device and --over"},
       {std::ranges::any_of(table.devices, is_published),
        "published: largest stable stiffness of a wall [N/m] that was published (\"hapbench describe DEVICE\" names the "
        "source)"},
@@ -203,7 +203,7 @@ std::string notes_text(const LimitTable& table, const Layout& layout) {
            kPresetRanges)},
       {is_marked("[friction*"), "[friction*2]: the preset with its dry friction multiplied by this factor"},
       {table.first().question.path == kStiffnessPath && friction.has_value(),
-       "device_model/README.md, \"Which K to quote?\", explains which of these stiffnesses to quote"},
+       "device_model/STABILITY.md, \"Which K to quote\", explains which of these stiffnesses to quote"},
       {friction > 0.0,
        "dry friction can hold the tool if the hand presses slowly. The limit then depends on the handle's speed at the "
        "touch and on the force of the hand, and is no property of the device." +
