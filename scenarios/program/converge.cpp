@@ -218,13 +218,15 @@ std::string verdict_text(const ConvergeStudy& study) {
 
 /// Returns a sentence that names the coarsest level from which on all levels have relative errors below `max_error`,
 /// and the cost of this level. If the error of the finest level is not below `max_error`, names the value of the field
-/// at which an extrapolation reaches `max_error`. If the order is not asymptotic, says that no value is known.
-std::string sufficient_level_text(const ConvergeStudy& study, double max_error) {
+/// at which an extrapolation reaches `max_error`. If the order is not asymptotic, says that no value is known. The same
+/// if the levels differ in their noise (LevelSweep::has_noise).
+std::string sufficient_level_text(const ConvergeStudy& study, bool has_noise, double max_error) {
   // Find the first level from which on all errors are below the bound.
   const std::vector<LevelRow>& levels = study.levels;
   std::size_t first = levels.size();
   while (first > 0 && levels[first - 1].share && *levels[first - 1].share < max_error) --first;
   const std::string below = fmt::format("error below {:g} %: ", 100.0 * max_error);
+  if (has_noise) return below + "not known, because the levels differ in their noise";
   if (first < levels.size()) {
     const LevelRow& sufficient = levels[first];
     const std::string cost = fmt::format(", {:.2g} s per run, {:.2g} times the time of the first level",
@@ -355,7 +357,7 @@ int converge(const ConvergeOptions& options, ProgramContext& context) {
     rows.insert(rows.end(), study.levels.begin(), study.levels.end());
     report.show(level_columns(study).table(study.levels, fmt::format("convergence of {}", metric), layout.in_full()));
     report.add_text("\n" + layout.wrapped(verdict_text(study), 0));
-    if (max_error) report.add_text(layout.wrapped(sufficient_level_text(study, *max_error), 0));
+    if (max_error) report.add_text(layout.wrapped(sufficient_level_text(study, levels.has_noise, *max_error), 0));
     report.add_text("\n");
     report.json().push_back(study_json(study));
   }
@@ -423,7 +425,9 @@ void add_converge(CommandLine& line) {
       "files.\n\n"
       "Run time against error: --over compares each setting with a converged solution, computed by rk4 with a time "
       "step at least 16 times smaller. Errors are rms differences of the tip's position and of the force over the run. "
-      "Each law has its own converged solution. Files: convergence.csv (errors) and convergence_timing.csv.\n\n"
+      "Each law has its own converged solution. No error is stated if each time step has another noise, or if the "
+      "trajectory cannot be predicted; of several trials, the first runs. Files: convergence.csv (errors) and "
+      "convergence_timing.csv.\n\n"
       "Reference force: in a scene with a reference_force (hapbench new fidelity), --over compares the laws with this "
       "force instead: direction and size of the error, and median and 99.9th percentile of the time of a step. Files: "
       "convergence_model.csv and convergence_model_timing.csv.\n\n"

@@ -201,7 +201,10 @@ void report_work_precision(const std::vector<WorkPrecisionProblem>& problems, do
       report.add_text(layout.wrapped(fmt::format("reference: {}; {}", problem.reference, error), 0));
     }
     report.add_text("\n");
-    Json json = {{"problem", problem.name}, {"predictable", problem.is_predictable}, {"reference", problem.reference}};
+    Json json = {{"problem", problem.name},
+                 {"predictable", problem.is_predictable},
+                 {"noise", problem.noise},
+                 {"reference", problem.reference}};
     json["settings"] = Json::array();
     for (const Setting& setting : problem.settings) {
       Json& row = json["settings"].emplace_back(error_columns(max_error).json(setting));

@@ -41,11 +41,15 @@ Number springs_limit(const DiagnosedRun& run, const Scenario& scenario) {
   const double K = scenario.rendering.stiffness;
   if (!lambda || !(*lambda > 0.0) || contact_step_matrix(scenario, *lambda).size() == 0) return std::nullopt;
   constexpr double kMax = 2.0;  // upper end of the search range, in units of K; a limit above it is not relevant
-  Scenario at = scenario;
-  return first_stability_limit(kSmallestStiffness * K, kMax * K, [&](double stiffness) {
-    at.rendering.stiffness = stiffness;
-    return contact_step_matrix(at, *lambda);
-  });
+  Number smallest;
+  for (Scenario& at : with_each_subject(scenario)) {
+    const double limit = first_stability_limit(kSmallestStiffness * K, kMax * K, [&](double stiffness) {
+      at.rendering.stiffness = stiffness;
+      return contact_step_matrix(at, *lambda);
+    });
+    smallest = std::min(smallest.value_or(limit), limit);
+  }
+  return smallest;
 }
 
 /// Returns the largest K [N/m] at which the linear loop is stable, with the contact linearised near the last step in

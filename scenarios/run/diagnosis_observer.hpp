@@ -15,8 +15,9 @@
 
 namespace hapbench {
 
-/// Quantities that the diagnosis rules need, accumulated over the steps of all trials of a run. `last_quarter` is the
-/// exception: it covers only the quarter of the planned duration in which the last trial ended.
+/// Quantities that the diagnosis rules need, accumulated over the steps of all trials of a run. The exceptions:
+/// `last_quarter` covers only the quarter of the planned duration in which the last trial ended, and the other members
+/// with `last` in their names are of the last trial, too.
 struct RunObservations {
   std::uint64_t in_contact = 0;  ///< number of steps in contact
   /// Number of steps in contact whose rendered force reaches the force limit of device or rendering.

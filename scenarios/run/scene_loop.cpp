@@ -5,6 +5,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <functional>
+#include <utility>
 
 #include "algorithms/stages/damping_and_limits.hpp"
 #include "scenarios/input/writer.hpp"
@@ -38,27 +39,30 @@ SampledHand sampled_hand(const Scenario& scenario) {
   return {};
 }
 
-/// Returns the scenario with each of its subjects alone, because each subject closes a loop of its own. Returns only
-/// the scenario itself if it has no subjects.
-std::vector<Scenario> with_each_subject(const Scenario& scenario) {
-  const auto* tracking = std::get_if<TrackingHandFields>(&scenario.hand);
-  if (tracking == nullptr) return {scenario};
-  std::vector<Scenario> scenes(tracking->subjects.size(), scenario);
-  for (std::size_t i = 0; i < scenes.size(); ++i)
-    std::get<TrackingHandFields>(scenes[i].hand).subjects = {tracking->subjects[i]};
-  return scenes;
+/// Returns true if two subjects have the same loop.
+bool have_equal_loops(const Subject& a, const Subject& b) {
+  return a.stiffness == b.stiffness && a.damping == b.damping;
 }
 
-/// Returns the contact with the hand of each subject. `contact` has the hand of the first subject. All hands of
-/// subjects act equally along the axes along which the tool moves. Returns only `contact` if the scenario has no
-/// subjects.
+/// Returns the subjects of a tracking hand whose loops differ.
+std::vector<Subject> distinct_subjects(const TrackingHandFields& hand) {
+  std::vector<Subject> distinct;
+  for (const Subject& subject : hand.subjects)
+    if (std::ranges::none_of(distinct, [&](const Subject& known) { return have_equal_loops(known, subject); }))
+      distinct.push_back(subject);
+  return distinct;
+}
+
+/// Returns the contact with the hand of each subject that has a loop of its own. `contact` has the hand of the first
+/// subject. All hands of subjects act equally along the axes along which the tool moves. Returns only `contact` if the
+/// scenario has no subjects.
 std::vector<LinearContact> with_each_hand(const Scenario& scenario, const LinearContact& contact) {
   const auto* tracking = std::get_if<TrackingHandFields>(&scenario.hand);
   if (tracking == nullptr) return {contact};
   const Mat3 along = contact.hand.stiffness / tracking->subjects[0].stiffness;
-  std::vector<LinearContact> contacts(tracking->subjects.size(), contact);
-  for (std::size_t i = 0; i < contacts.size(); ++i)
-    contacts[i].hand = {tracking->subjects[i].stiffness * along, tracking->subjects[i].damping * along};
+  std::vector<LinearContact> contacts;
+  for (const Subject& subject : distinct_subjects(*tracking))
+    contacts.emplace_back(contact).hand = {subject.stiffness * along, subject.damping * along};
   return contacts;
 }
 
@@ -145,6 +149,15 @@ constexpr std::string_view kKnownToTheory[] = {"/handle_mass_kg",
 
 }  // namespace
 
+std::vector<Scenario> with_each_subject(const Scenario& scenario) {
+  const auto* tracking = std::get_if<TrackingHandFields>(&scenario.hand);
+  if (tracking == nullptr) return {scenario};
+  std::vector<Scenario> scenes;
+  for (const Subject& subject : distinct_subjects(*tracking))
+    std::get<TrackingHandFields>(scenes.emplace_back(scenario).hand).subjects = {subject};
+  return scenes;
+}
+
 bool has_permanent_springs(const Scenario& scenario) {
   const auto* springs = std::get_if<SpringsEnvironment>(&scenario.environment);
   const RenderingConfig& r = scenario.rendering;
@@ -223,15 +236,15 @@ bool has_linear_loop(const Scenario& scenario) {
 }
 
 Eigen::MatrixXd contact_step_matrix(const Scenario& scenario, double lambda) {
-  if (device_acts_on_tool(scenario) && !has_linear_loop(scenario)) return {};
-  Eigen::MatrixXd all;
-  for (const Scenario& scene : with_each_subject(scenario)) {
-    const Eigen::MatrixXd own = device_acts_on_tool(scene) ? device_loop(scene, lambda).state_matrix()
-                                                           : Eigen::MatrixXd(step_matrix_with_hand(scene, lambda));
-    const Eigen::Index rows = all.rows(), more = own.rows();
-    all.conservativeResizeLike(Eigen::MatrixXd::Zero(rows + more, rows + more));
-    all.bottomRightCorner(more, more) = own;
-  }
+  if (!device_acts_on_tool(scenario)) return step_matrix_with_hand(scenario, lambda);
+  if (!has_linear_loop(scenario)) return {};
+  return device_loop(scenario, lambda).state_matrix();
+}
+
+std::vector<Eigen::MatrixXd> contact_step_matrices(const Scenario& scenario, double lambda) {
+  std::vector<Eigen::MatrixXd> all;
+  for (const Scenario& scene : with_each_subject(scenario))
+    if (Eigen::MatrixXd own = contact_step_matrix(scene, lambda); own.size() > 0) all.push_back(std::move(own));
   return all;
 }
 
@@ -277,7 +290,7 @@ std::string unstable_without_wall(const Scenario& scenario) {
   Scenario alone = scenario;
   alone.rendering.stiffness = 0.0;
   alone.rendering.damping = 0.0;
-  if (is_stable_loop({contact_step_matrix(alone, 1.0)})) return "";
+  if (is_stable_loop(contact_step_matrices(alone, 1.0))) return "";
   if (!device_acts_on_tool(scenario)) return "the hand";
   const bool has_servo = std::holds_alternative<AdmittanceDeviceConfig>(scenario.device);
   alone.hand = NoHandFields{};
@@ -318,9 +331,9 @@ std::vector<NamedLoop> contact_loops(const Scenario& scenario, const LinearConta
 }
 
 std::vector<NamedLoop> wall_loops(const Scenario& scenario, double lambda, bool over_hands) {
-  const Eigen::MatrixXd own = contact_step_matrix(scenario, lambda);
-  if (own.size() == 0) return {};
-  std::vector<NamedLoop> all = {{"", {own}}};
+  std::vector<Eigen::MatrixXd> own = contact_step_matrices(scenario, lambda);
+  if (own.empty()) return {};
+  std::vector<NamedLoop> all = {{"", std::move(own)}};
   if (over_hands)
     for_typical_hands(scenario, lambda, [&](std::string name, const SampledLoop& loop) {
       all.push_back({std::move(name), {loop.state_matrix()}});

@@ -30,6 +30,10 @@ inline bool has_device(const Scenario& scenario) {
 /// not depend on the handle: the servo then moves only the handle, and the tool moves as with an ideal device.
 bool device_acts_on_tool(const Scenario& scenario);
 
+/// Returns the scenario with each of its subjects alone, because each subject closes a loop of its own. Of subjects
+/// with equal loops, returns only the first. Returns only the scenario itself if it has no subjects.
+std::vector<Scenario> with_each_subject(const Scenario& scenario);
+
 /// Returns the eigenvalues of the stiffness tensor S under the scenario's algorithm, in units of K, in
 /// ascending order. Precondition: has_permanent_springs(scenario).
 Vec3 stiffness_eigenvalues(Scenario scenario);
@@ -91,9 +95,10 @@ std::vector<NamedLoop> wall_loops(const Scenario& scenario, double lambda, bool 
 std::string unstable_without_wall(const Scenario& scenario);
 
 /// Returns the state matrix of one step of the tool in contact with a wall of stiffness lambda K and damping
-/// lambda B. If device_acts_on_tool(), this is the matrix of device_loop(), otherwise step_matrix_with_hand(). For a
-/// scenario with several subjects, the matrix has a block for the loop of each subject. Empty if has_linear_loop() is
-/// false.
+/// lambda B. If device_acts_on_tool(), this is the matrix of device_loop(), otherwise step_matrix_with_hand(). Of
+/// several subjects, the hand of the first is in the loop. Empty if has_linear_loop() is false.
 Eigen::MatrixXd contact_step_matrix(const Scenario& scenario, double lambda);
+/// Returns the contact_step_matrix() of each scenario of with_each_subject(). Empty if has_linear_loop() is false.
+std::vector<Eigen::MatrixXd> contact_step_matrices(const Scenario& scenario, double lambda);
 
 }  // namespace hapbench

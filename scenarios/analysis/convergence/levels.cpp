@@ -41,8 +41,9 @@ std::string noise_reason(const Scenario& scenario) {
     return fmt::format("{} is drawn anew at every step, so that a finer step is another signal", noise);
   };
   if (const auto* tracking = std::get_if<TrackingHandFields>(&scenario.hand);
-      tracking != nullptr && std::ranges::any_of(tracking->subjects, [](const Subject& subject) {
-        return subject.motor_noise > 0.0 || subject.tilt_noise > 0.0;
+      tracking != nullptr && std::ranges::any_of(tracking->subjects, [tracking](const Subject& subject) {
+        const bool tilts = tracking->task.display == TargetDisplay::height;
+        return subject.motor_noise > 0.0 || (tilts && subject.tilt_noise > 0.0);
       }))
     return drawn("the noise of the hand (motor_noise_N and tilt_noise_rad in hand.subjects)");
   if (const auto* device = std::get_if<AdmittanceDeviceConfig>(&scenario.device);
@@ -75,6 +76,7 @@ LevelSweep step_levels(const Scenario& scenario, std::size_t levels, double rati
                    fmt::format("got {}; allowed for {}: whole numbers, so that the rows of all levels coincide", ratio,
                                kStepPath));
   LevelSweep sweep{{kStepPath}, ratio, order_in_step(scenario), noise_reason(scenario)};
+  sweep.has_noise = !sweep.no_order.empty();
   std::int64_t times = 1;
   for (std::size_t i = 0; i < levels; ++i, times *= static_cast<std::int64_t>(ratio)) {
     std::vector<std::string> overrides = {fmt::format("time.steps={}", times * scenario.time.steps)};

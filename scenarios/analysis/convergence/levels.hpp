@@ -18,6 +18,7 @@ struct LevelSweep {
   double ratio = 2.0;         ///< r, ratio of each value to the next value
   double formal_order = 2.0;  ///< expected order of convergence in the time step; 2 for a point spacing
   std::string no_order = {};  ///< why metrics of this scene have no convergence order; empty if they can have an order
+  bool has_noise = false;     ///< true if every level has another noise, so that differences of levels are no errors
 };
 
 /// Returns `levels` levels of the field at `path`, each finer by `ratio`.

@@ -110,6 +110,13 @@ RunStability judged(const CheckedScenario& checked, const std::shared_ptr<const 
   return run;
 }
 
+/// Raises the largest values of a settled state to those of another trial.
+void add_extremes(SettledState& state, const SettledState& other) {
+  state.vibration = std::max(state.vibration, other.vibration);  // an empty value is the smallest
+  state.touch_speed = std::max(state.touch_speed, other.touch_speed);
+  state.hand_force_max = std::max(state.hand_force_max, other.hand_force_max);
+}
+
 /// Judges the trials of the scenario up to the first trial that the rule does not count as stable.
 RunStability judged_trials(const CheckedScenario& checked, const std::shared_ptr<const PointShell>& shell,
                            const StabilityRule& rule) {
@@ -125,6 +132,8 @@ RunStability judged_trials(const CheckedScenario& checked, const std::shared_ptr
     if (!rule.holds(next.verdict) || (is_stable(run.verdict) && !is_stable(next.verdict))) {
       run = std::move(next);
     } else {
+      if (is_stable(next.verdict)) run.verdict = std::max(run.verdict, next.verdict);
+      add_extremes(run.settled, next.settled);
       run.undecided |= next.undecided;
       run.motion_hash = next.motion_hash;
     }

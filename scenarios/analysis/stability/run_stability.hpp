@@ -19,7 +19,9 @@ namespace hapbench {
 /// on the first trial that the rule (StabilityRule::holds) does not count as stable.
 struct RunStability {
   RunVerdict verdict = RunVerdict::stable;
-  SettledState settled;           ///< state of the trial that has the verdict; the first such trial
+  /// State of the trial that the rule does not count as stable, or of the first trial. In the second case, `vibration`,
+  /// `touch_speed` and `hand_force_max` are the largest over all trials.
+  SettledState settled;
   std::uint64_t motion_hash = 0;  ///< hash of all positions of the handle; equal for bitwise equal motions
   /// True if even the longest run was too short to judge: the tool still moves but does not oscillate.
   bool undecided = false;

@@ -78,7 +78,7 @@ struct TuneTrial {
   /// Violated constraint; empty if the trial is feasible. "settled": not settled at K. "margin": not settled at G K.
   /// "no_force": no force is rendered. "friction": explicit integration of friction is unstable in the run. "runs": the
   /// maximum number of runs is reached. "range": K would be above the upper end of the searched range. Otherwise the
-  /// name of the metric whose limit is violated.
+  /// name of the metric whose limit is violated, or of the rule of the diagnosis that applies (RuleKind).
   std::string binding = {};
   std::string why = {};       ///< reason of the violation, for the user
   bool too_soft = false;      ///< true if a larger K may keep the constraint

@@ -10,7 +10,6 @@
 #include "scenarios/run/diagnosis.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/scene/environments.hpp"
-#include "scenarios/scene/trials.hpp"
 
 namespace hapbench {
 namespace {
@@ -65,7 +64,6 @@ TrialRuns::TrialRuns(const TuneQuestion& question, const std::string& algorithm)
   // Build the surface, and collect the variants and the largest stiffness eigenvalue of springs in permanent contact.
   const LoadedScenario own = load({}, ranges_.stiffness.from);
   shell_ = make_shell(own.scenario, own.files);
-  trials_per_run_ = trials_of(own.scenario).size();
   for (const std::string& family : question_.families) {
     for (SceneVariant& variant : scene_variants(own, family)) {
       variant.family = family;

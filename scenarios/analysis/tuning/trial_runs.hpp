@@ -34,8 +34,6 @@ class TrialRuns {
 
   const TuneRanges& ranges() const { return ranges_; }
   std::size_t variant_count() const { return variants_.size(); }
-  /// Returns the number of simulations of a run: its trials. More than one only for a scene with subjects.
-  std::size_t trials_per_run() const { return trials_per_run_; }
   /// Returns true if the question includes the variants "hands" (scene_variants()).
   bool over_hands() const { return over_hands_; }
   /// Returns true if the scene renders springs in permanent contact. Their loop is known without a run.
@@ -100,7 +98,6 @@ class TrialRuns {
   TuneRanges ranges_;
   bool over_hands_;
   std::vector<SceneVariant> variants_;  ///< the scene itself first
-  std::size_t trials_per_run_ = 1;
   std::shared_ptr<const PointShell> shell_;
   /// Largest eigenvalue of the stiffness tensor of springs in permanent contact, in units of K; empty otherwise.
   std::optional<double> springs_lambda_;

@@ -272,7 +272,6 @@ void Trials::in_parallel(std::span<TuneTrial* const> trials, const std::function
 }
 
 void Trials::count_runs(TuneTrial* trial, std::size_t count) {
-  count *= trial_runs_.trials_per_run();
   runs_ += count;
   if (trial == nullptr) return;
   trial->runs += count;
@@ -379,7 +378,7 @@ void Trials::judge_motion(TuneTrial& trial, std::size_t first, std::size_t last)
 
 void Trials::run_ahead(const TuneSetting& setting, std::span<const double> stiffnesses) {
   constexpr std::size_t kRuns = 3;  // largest number of simulations of a trial
-  if (search_runs_ + kRuns * trial_runs_.trials_per_run() * stiffnesses.size() > kMaxTuneRuns) return;
+  if (search_runs_ + kRuns * stiffnesses.size() > kMaxTuneRuns) return;
   // Each stage runs only trials that have not failed in the stage before.
   std::vector<TuneTrial*> trials;
   for (const double K : stiffnesses) {

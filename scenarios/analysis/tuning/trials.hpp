@@ -171,10 +171,10 @@ class Trials {
 
   // ---- Cost
 
-  /// Returns the number of simulations so far. A run with several trials counts as one simulation for each trial.
+  /// Returns the number of runs so far.
   std::size_t runs() const { return runs_; }
   /// Adds runs that were made outside of this class.
-  void count_runs(std::size_t count) { runs_ += count * trial_runs_.trials_per_run(); }
+  void count_runs(std::size_t count) { runs_ += count; }
   /// Sets the purpose of the next runs, which is passed to TuneQuestion::on_runs.
   void begin_purpose(std::string purpose);
   /// Sets the relaxation that the next searches are to confirm; empty: none.

@@ -13,8 +13,8 @@
 /// The inputs of `tune`, and the ranges that it searches.
 namespace hapbench {
 
-/// Largest number of simulations of the search for one law. A run with several trials counts as one simulation for each
-/// trial. Margins, error estimates and verification need a few hundred runs more.
+/// Largest number of runs of a search. The search for one law is repeated with other limits if nothing is feasible.
+/// Margins, error estimates and verification need a few hundred runs more.
 inline constexpr std::size_t kMaxTuneRuns = 6000;
 /// Number of stiffnesses below the K of a choice at which the run of the scene must have low vibration, too, unless
 /// TuneQuestion::allow_vibration is true.

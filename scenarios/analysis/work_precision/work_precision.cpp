@@ -16,7 +16,6 @@
 #include "scenarios/run/checked_scenario.hpp"
 #include "scenarios/run/expectations.hpp"
 #include "scenarios/scene/field_files.hpp"
-#include "scenarios/scene/trials.hpp"
 #include "sim/core/math.hpp"
 #include "sim/loop/integrators/table.hpp"
 
@@ -71,7 +70,10 @@ class Study {
     if (curves_.empty()) curves_ = {std::string(loaded_.scenario.integrator.type->info.name)};
     const Cases problems({question.scenario}, question.overrides, axes_);
     for (std::size_t i = 0; i < problems.size(); ++i) {
-      const LoadedScenario problem = problems.load(i);
+      LoadedScenario problem = problems.load(i);
+      trials_.push_back(trial_count(problem.scenario.hand));
+      // The study runs the first trial, so the noise of other subjects does not matter.
+      if (auto* tracking = std::get_if<TrackingHandFields>(&problem.scenario.hand)) tracking->subjects.resize(1);
       levels_.push_back(with_file(problem, [&] {
         return level_sweep(problem, kStepPath, question.levels + reference_levels(question.ratio), question.ratio);
       }));
@@ -86,8 +88,8 @@ class Study {
   std::size_t reference_level() const { return levels_.front().axis.values.size() - 1; }
   /// Returns the time steps of a problem, with the problem's own values of other fields.
   const LevelSweep& levels(std::size_t problem) const { return levels_[problem]; }
-  /// Returns the number of trials of the scene, of which the study runs the first.
-  std::size_t trials() const { return trials_of(loaded_.scenario).size(); }
+  /// Returns the number of trials of a problem, of which the study runs the first.
+  double trials(std::size_t problem) const { return trials_[problem]; }
 
   /// Returns the name of a problem: the values of its axes, or the law if no axis defines problems.
   std::string name(std::size_t problem) const {
@@ -110,6 +112,7 @@ class Study {
   std::vector<Axis> axes_;  ///< fields that define problems
   std::vector<std::string> curves_;
   std::vector<LevelSweep> levels_;  ///< time steps of each problem
+  std::vector<double> trials_;      ///< number of trials of each problem
 };
 
 /// Makes and stores the motions that a study compares with each other. Each motion is made only once.
@@ -194,7 +197,9 @@ class Motions {
 std::vector<WorkPrecisionSetting> settings_of(const Study& study, const Motions& motions, std::size_t problem,
                                               bool is_predictable) {
   std::vector<WorkPrecisionSetting> settings;
-  const auto reference_error = motions.reference_error(problem);
+  // The difference between two runs with different noise is no error.
+  const bool has_noise = !study.levels(problem).no_order.empty();
+  const auto reference_error = has_noise ? std::nullopt : motions.reference_error(problem);
   for (const std::string& curve : study.curves()) {
     for (std::size_t level = 0; level <= study.finest(); ++level) {
       WorkPrecisionSetting setting{study.name(problem), curve};
@@ -209,11 +214,12 @@ std::vector<WorkPrecisionSetting> settings_of(const Study& study, const Motions&
   return settings;
 }
 
-std::string reference_text(const Study& study) {
-  return fmt::format("{} at {} = {}{}{}", kReferenceIntegrator.info.name, kStepPath,
-                     level_text(study.levels(0), study.reference_level()),
-                     study.checks_reference() ? ", checked by " + std::string(kCheckingIntegrator.info.name) : "",
-                     study.trials() > 1 ? fmt::format(", of the first of {} trials", study.trials()) : "");
+std::string reference_text(const Study& study, std::size_t problem) {
+  return fmt::format(
+      "{} at {} = {}{}{}", kReferenceIntegrator.info.name, kStepPath,
+      level_text(study.levels(problem), study.reference_level()),
+      study.checks_reference() ? ", checked by " + std::string(kCheckingIntegrator.info.name) : "",
+      study.trials(problem) > 1.0 ? fmt::format(", of the first of {:.0f} trials", study.trials(problem)) : "");
 }
 
 /// Returns the cheapest setting with an expected outcome whose `error_of` is at most `max_error`; null if no setting
@@ -262,7 +268,8 @@ std::vector<WorkPrecisionProblem> work_precision(const WorkPrecisionQuestion& qu
   std::vector<WorkPrecisionProblem> problems;
   std::vector<StudyRun> timed;
   for (std::size_t p = 0; p < study.problems(); ++p) {
-    WorkPrecisionProblem& problem = problems.emplace_back(WorkPrecisionProblem{study.name(p), reference_text(study)});
+    WorkPrecisionProblem& problem =
+        problems.emplace_back(WorkPrecisionProblem{study.name(p), reference_text(study, p)});
     problem.grown_shift = motions.grown_shift(p);
     problem.noise = study.levels(p).no_order;
     problem.is_predictable = problem.noise.empty() && problem.grown_shift <= question.max_error;

@@ -80,10 +80,13 @@ void report_times(const Comparison& comparison, const std::vector<Result>& repor
   report.write(kTimesFile, columns, rows);
   report.add_text("\n");
   report.show(columns.table(rows, "processor time of the laws", layout.in_full()));
-  report.add_text(
-      layout.wrapped("processor time in runs without observers and files, one run at a time: smallest of five "
-                     "repetitions; equal ranks mean that the difference is within the spreads",
-                     0));
+  bool has_trials = false;
+  for (const Cases& scene : comparison.scenes) has_trials |= trial_count(scene.load(0).scenario.hand) > 1.0;
+  report.add_text(layout.wrapped(
+      fmt::format("processor time in runs{} without observers and files, one run at a time: smallest of five "
+                  "repetitions; equal ranks mean that the difference is within the spreads",
+                  has_trials ? " (of an experiment: in its first trial)" : ""),
+      0));
   if (report.json().is_array()) report.json() = {{"runs", std::move(report.json())}};
   report.json()["times"] = columns.json_list(rows);
 }

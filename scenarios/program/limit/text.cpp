@@ -19,7 +19,6 @@
 #include "scenarios/program/limit/columns.hpp"
 #include "scenarios/program/names.hpp"
 #include "scenarios/run/scripted_motion.hpp"
-#include "scenarios/scene/trials.hpp"
 
 namespace hapbench {
 namespace {
@@ -40,9 +39,9 @@ std::string resolution_text(const LimitQuestion& question) {
 
 /// Returns the number of steps of a run, and the number of trials if a run has several.
 std::string run_length_text(const Scenario& scenario) {
-  const std::size_t trials = trials_of(scenario).size();
-  if (trials == 1) return fmt::format("{} steps", scenario.time.steps);
-  return fmt::format("{} trials, all of which must be stable, of up to {} steps", trials, scenario.time.steps);
+  const double trials = trial_count(scenario.hand);
+  if (trials == 1.0) return fmt::format("{} steps", scenario.time.steps);
+  return fmt::format("{:.0f} trials, all of which must be stable, of up to {} steps", trials, scenario.time.steps);
 }
 
 /// States the question for one scene. `over`: true if other fields vary too; values that depend on these fields are

@@ -47,7 +47,7 @@ Columns<TunedLaw> choice_columns() {
        of_choice(&TuneTrial::lambda_max)},
       {"binding", "",
        "binding constraint, the first constraint that a larger K violates: settled, margin, no_force, friction, a "
-       "bounded metric, a rule of low vibration, or range (the end of the search range)",
+       "bounded metric, a rule of failure or low vibration, or range (the end of the search range)",
        &Row::binding},
       {"why", "", "explanation of the binding constraint", &Row::why},
       {"relax", "",
@@ -127,7 +127,7 @@ Columns<TuneTrial> trial_columns() {
       {"binding", "",
        "first violated constraint that the search found: settled (at K), margin (at stiffnesses up to G K), no_force "
        "(no force is rendered), friction (explicit integration of friction is unstable), a bounded metric, a rule of "
-       "low vibration, or runs (the largest number of runs was reached)",
+       "failure or low vibration, or runs (the largest number of runs was reached)",
        &Row::binding},
       {"why", "", "explanation of the violated constraint", &Row::why}};
   for (const char* name : {kTuneMetrics[0], kTuneMetrics[1], kTuneMetrics[2]}) {

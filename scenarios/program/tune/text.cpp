@@ -35,10 +35,11 @@ std::string limits_text(const Tuning& tuning) {
       "of the contact (at most 1 mm/s rms above 30 Hz)",
       tuning.ranges.damping_ratio ? ", with damping B = 2 zeta sqrt(K M) and M = rendering.mass_kg" : "",
       tuning.question.margin);
+  text += fmt::format(". The run at K does not fail: none of the rules {} applies (\"hapbench describe diagnosis\")",
+                      rule_names(RuleKind::failure));
   if (!tuning.question.allow_vibration)
     text += fmt::format(
-        ". The runs at K and at {} stiffnesses from {:g} K to K have low vibration: none of the rules {} applies "
-        "(\"hapbench describe diagnosis\")",
+        ". The runs at K and at {} stiffnesses from {:g} K to K have low vibration: none of the rules {} applies",
         kLowVibrationSamples, kLowVibrationFrom, rule_names(RuleKind::low_vibration));
   for (const auto& [name, bound] : tuning.question.limits) {
     if (bound.min) text += fmt::format(". At K {} >= {:g}", name, *bound.min);

@@ -153,9 +153,9 @@ void add_tune(CommandLine& line) {
       "Files: NAME_tuned.json is the tuned scenario, for \"hapbench run\". tune.csv has one row per law, "
       "tune_trials.csv one row per trial. They replace the files of an earlier tune in the same folder; if nothing is "
       "feasible, an earlier NAME_tuned.json is removed.\n\n"
-      "Time: a search for a law ends after {} simulations, each at most as long as hapbench run without files. This is "
-      "seconds to minutes if a run takes less than 0.1 s, and hours if it takes more than 1 s. A run with several trials "
-      "counts as one simulation for each trial.\n\n"
+      "Time: seconds to minutes if \"hapbench run\" takes less than 0.1 s, and hours if it takes seconds. A search for a "
+      "law ends after {} runs; verification, error estimates and, if nothing is feasible, searches with other bounds "
+      "come in addition.\n\n"
       "Exit status: 0 also if nothing is feasible; 2 bad input; 130 stopped by Ctrl-C.",
       rule_names(RuleKind::failure), kLowVibrationSamples, kLowVibrationFrom, rule_names(RuleKind::low_vibration),
       kVerificationSamples + kSamplesNearLimit, kMaxTuneRuns));

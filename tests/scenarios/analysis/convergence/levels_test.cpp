@@ -162,17 +162,19 @@ TEST(Converge, HasNoOrderWithANoiseThatEveryStepDraws) {
   EXPECT_EQ(reason("device", admittance), "");
   admittance["sensor"] = {{"noise_N", 0.01}};
   EXPECT_NE(reason("device", admittance).find("device.sensor.noise_N"), std::string::npos);
-  const auto subject = [](double motor, double tilt) {
+  const auto subject = [](const char* scene, double motor, double tilt) {
     const std::string quiet = R"({"motor_noise_N":0,"tilt_noise_rad":0})",
                       second = fmt::format(R"({{"motor_noise_N":{},"tilt_noise_rad":{}}})", motor, tilt);
     const std::vector<std::string> fields = {R"(device={"type":"ideal"})",
                                              fmt::format("hand.subjects=[{},{}]", quiet, second)};
-    const ScenarioText peg = read_scenario_text(find_scenario("vertical_peg_in_hole_shaped_stiffness"));
+    const ScenarioText peg = read_scenario_text(find_scenario(scene));
     return level_sweep(load_scenario(peg, fields), kStepPath, 3, 2.0).no_order;
   };
-  EXPECT_EQ(subject(0.0, 0.0), "");
-  EXPECT_NE(subject(0.01, 0.0).find("hand.subjects"), std::string::npos);
-  EXPECT_NE(subject(0.0, 0.01).find("hand.subjects"), std::string::npos);
+  const char *upright = "vertical_peg_in_hole_shaped_stiffness", *turning = "rotational_peg_in_hole_shaped_stiffness";
+  EXPECT_EQ(subject(upright, 0.0, 0.0), "");
+  EXPECT_NE(subject(upright, 0.01, 0.0).find("hand.subjects"), std::string::npos);
+  EXPECT_EQ(subject(upright, 0.0, 0.01), "") << "a subject tilts the tool only if the task displays heights";
+  EXPECT_NE(subject(turning, 0.0, 0.01).find("hand.subjects"), std::string::npos);
 }
 
 }  // namespace
