@@ -164,7 +164,8 @@ Finding judge_experiment(const Measured& measured, const PublishedNumbers& publi
                          : "measures that differ from the published result: " + deviating) +
           fmt::format(
               ". No mean differs from its published value by more than {:.2g} standard errors; the largest "
-              "difference is that of the {}. The mean force is nearly an input, because subjects regulate the force that the gauge shows",
+              "difference is that of the {}. The mean force is nearly an input, because subjects regulate the force "
+              "that the gauge shows",
               largest, farthest),
       text, number};
 }

@@ -22,7 +22,7 @@ GROUPS = ("examples", "beyond", "thesis", "limits", "validation")
 DEVICES = ("own", "touch", "omega.3")
 BOUNDS = {"force_rms_above_30Hz_N": 0.05, "inside_max_m": 5e-4}
 # Rules of the diagnosis that condemn a recommendation: the run fails, or a hand feels more than the force. Other rules
-# give hints that do not concern stiffness, damping and law, such as a motor that saturates. The list stands here, and is
+# give hints that do not concern stiffness, damping and law, such as a motor that saturates. The list stands here and is
 # not read from the program, because `tune` rejects a choice by the program's list.
 CONDEMN = {"fault", "diverged", "sank", "lost", "stuck", "servo", "edge", "loop"}
 CONDEMN |= {"buzz", "pop", "shake", "bounces", "chatter", "energy"}

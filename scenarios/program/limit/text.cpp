@@ -189,8 +189,8 @@ std::string notes_text(const LimitTable& table, const Layout& layout) {
        "if it is not 0, the simulated limit depends on the values that were tried. limit_runs.csv has the class of "
        "each run"},
       {table.is_grid(),
-       "these limits were not verified by further runs. For verified limits, write the device into the field device of a "
-       "scenario, and run \"hapbench limit\" with this scenario and one algorithm, without --device and --over"},
+       "these limits were not verified by further runs. For verified limits, write the device into the field device of "
+       "a scenario, and run \"hapbench limit\" with this scenario and one algorithm, without --device and --over"},
       {std::ranges::any_of(table.devices, is_published),
        "published: largest stable stiffness of a wall [N/m] that was published (\"hapbench describe DEVICE\" names the "
        "source)"},

@@ -139,9 +139,9 @@ void add_tune(CommandLine& line) {
       "Time step: time.step_s of the scenario is the period of the loop; for a loop of 1 kHz, --set "
       "time.step_s=0.001.\n\n"
       "Requirements: the scenario's run and the runs of each family are stable at K and at margin x K, the linear "
-      "limit is at least margin x K, every --bound holds at K, and a force is rendered. The scenario's run at K does not "
-      "fail: none of the rules {} applies (\"hapbench describe diagnosis\"). Unless --allow-vibration is given, the "
-      "scenario's run has low vibration at K and at {} stiffnesses from {:g} K to K: none of the rules {} "
+      "limit is at least margin x K, every --bound holds at K, and a force is rendered. The scenario's run at K does "
+      "not fail: none of the rules {} applies (\"hapbench describe diagnosis\"). Unless --allow-vibration is given, "
+      "the scenario's run has low vibration at K and at {} stiffnesses from {:g} K to K: none of the rules {} "
       "applies.\n\n"
       "Result: K, zeta and law, the binding constraint, the margins that are left, and the expected metrics with their "
       "errors. {} verification samples between K and margin x K must be stable; otherwise the search continues with "
@@ -153,8 +153,8 @@ void add_tune(CommandLine& line) {
       "Files: NAME_tuned.json is the tuned scenario, for \"hapbench run\". tune.csv has one row per law, "
       "tune_trials.csv one row per trial. They replace the files of an earlier tune in the same folder; if nothing is "
       "feasible, an earlier NAME_tuned.json is removed.\n\n"
-      "Time: seconds to minutes if \"hapbench run\" takes less than 0.1 s, and hours if it takes seconds. A search for a "
-      "law ends after {} runs; verification, error estimates and, if nothing is feasible, searches with other bounds "
+      "Time: seconds to minutes if \"hapbench run\" takes less than 0.1 s, and hours if it takes seconds. A search for "
+      "a law ends after {} runs; verification, error estimates and, if nothing is feasible, searches with other bounds "
       "come in addition.\n\n"
       "Exit status: 0 also if nothing is feasible; 2 bad input; 130 stopped by Ctrl-C.",
       rule_names(RuleKind::failure), kLowVibrationSamples, kLowVibrationFrom, rule_names(RuleKind::low_vibration),
