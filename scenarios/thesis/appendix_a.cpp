@@ -202,13 +202,15 @@ Finding judge_springs_limited(const Measured& runs, const PublishedNumbers& p) {
                                   with["arrives"] == 1.0 ? "" : " (does not arrive)"));
   }
   const std::string names = fmt::format("{}", fmt::join(fluctuating, ", "));
-  return {decide(keeps && published_pairs, keeps && !fluctuating.empty()),
-          fmt::format("the proposed algorithm {} its performance; {}", keeps ? "keeps" : "does not keep",
-                      names.empty() ? "no other algorithm is smooth without the limits and fluctuates with them"
-                                    : "smooth without the limits, but fluctuating with the limits: " + names),
-          "number of swings, first without the limits, then with them: " + text,
-          fmt::format("proposed algorithm: {}; of {} cases with other algorithms, {} fluctuate only with the limits{}",
-                      swings, others, fluctuating.size(), names.empty() ? "" : fmt::format(" ({})", names))};
+  return {
+      decide(keeps && published_pairs, keeps && !fluctuating.empty()),
+      fmt::format("the proposed algorithm {} its performance; {}", keeps ? "keeps" : "does not keep",
+                  names.empty() ? "no other algorithm is smooth without the limits and fluctuates with them"
+                                : "smooth without the limits, but fluctuating with the limits: " + names),
+      "number of swings, first without the limits, then with them: " + text,
+      fmt::format("proposed algorithm: {}; in {} of {} cases with other algorithms, the limits cause fluctuation{}; "
+                  "every other case is smooth with the limits, or fluctuates without them, too",
+                  swings, fluctuating.size(), others, names.empty() ? "" : fmt::format(" ({})", names))};
 }
 
 // ---- A4: the integrator's stability limits. One case for each published number, in the order of the thesis.

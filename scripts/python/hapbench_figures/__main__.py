@@ -35,8 +35,8 @@ PAGE = """# Stored figures
 *Reference.* This page shows every figure of the thesis that a simulation can draw, and some figures of this project.
 `scripts/figures RESULTS --out DIR --record results/reference/figures` draws them from the results of
 `scripts/reproduce`. *Data: ours* marks numbers that hapbench computed, *published* marks numbers of the thesis. Numbers
-such as 3.2 and C.4.2 are sections of the thesis. *Raw points* are the colliding points before the reduction. *Differs*
-states how a figure differs from the thesis's figure, and why.
+such as 3.2 and C.4.2 are sections of the thesis. *Raw points* are the colliding points before local average and
+reduction. *Differs* states how a figure differs from the thesis's figure, and why.
 """
 
 
