@@ -349,7 +349,7 @@ std::string ledger_markdown(const Json& ledger) {
       "contact. *Raw points* are the colliding points before the reduction. The surface points of the block with the "
       "hole are computed from a *density* field: `signed_distance` or `binary`. *Tandpasta* is a law of "
       "appendix F, which weakens springs that oppose each other. In task 1, the drill is pressed "
-      "on a flat surface and dragged. In task 2, it rotates to and fro in a hole. In task 3, it moves along the wall "
+      "on a flat surface and dragged. In task 2, it tilts to and fro in a hole. In task 3, it moves along the wall "
       "of a hole, around the axis. The [glossary](../../scenarios/GLOSSARY.md) has the other terms.\n\n"
       "## 1. What the abstract claims\n\n" +
       abstract_table(ledger) + "\nVerdicts:\n\n";
