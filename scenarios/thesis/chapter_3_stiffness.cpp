@@ -245,7 +245,7 @@ Finding judge_convergence(const MeasuredCase& m, const PublishedNumbers& p) {
 
 // ---- R2: the largest stiffness in any direction, in units of K, over contact sets found by a random search. One case
 // for each number of iterations. After one or more iterations, the largest stiffness is at most (1 + sqrt 3)/2, and at
-// most (1 + sqrt 2)/2 if all directions lie in a plane; the proof is in results/reference/BEYOND.md. The search shows
+// most (1 + sqrt 2)/2 if all directions lie in a plane; the proof is in algorithms/SHAPING.md. The search shows
 // that the bound is sharp, and would reveal an error in the proof.
 
 /// Value of `iterations` that selects the exact limit of infinitely many iterations.

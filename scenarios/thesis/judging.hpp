@@ -43,7 +43,7 @@ inline constexpr VerdictText kVerdicts[] = {
      "the published numbers (as in the ACM badge \"Results Replicated\", version 1.1)"},
     {"qualitatively replicated", "the direction or the mechanism is as published; the numbers are not"},
     {"not replicated", "neither the numbers nor the direction are as published, in this model of device and hand"},
-    {"contradicted", "an exact result contradicts the claim"},
+    {"contradicted", "a closed form or a counterexample contradicts the claim"},
     {"not testable", "no simulation can test the claim, because it is about people or about the trainer's hardware"},
     {"consistent in simulation",
      "simulated subjects show the published differences between the algorithms; they replicate no experiment with "
