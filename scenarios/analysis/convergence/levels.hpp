@@ -25,9 +25,9 @@ struct LevelSweep {
 ///
 /// If the field is the time step, the duration of the run, the delays [s] of devices, and period [s] and delay [s] of
 /// multi-rate contacts stay constant, and metrics of motion, force and contact are sampled at the times of the coarsest
-/// level. If the field is a mesh spacing that the
-/// scenario does not give, the first level is the mean distance between neighbouring vertices. Throws InputError if the
-/// field is not a floating-point number > 0, or if the ratio of time steps is not an integer.
+/// level. If the field is a mesh spacing that the scenario does not give, the first level is the mean distance between
+/// neighbouring vertices. Throws InputError if the field is not a floating-point number > 0, or if the ratio of time
+/// steps is not an integer.
 LevelSweep level_sweep(const LoadedScenario& loaded, const std::string& path, std::size_t levels, double ratio);
 
 /// Returns the value of level i for messages: a number with six significant digits, other text unchanged.
