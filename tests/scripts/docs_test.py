@@ -220,6 +220,16 @@ class Pages(unittest.TestCase):
                     else:
                         width = None
 
+    def test_fences_of_code_stand_alone(self):
+        """A fence that was wrapped with its code is shown as a paragraph."""
+        for manual in MANUALS:
+            fences = [line for line in manual.text.splitlines() if "```" in line]
+            with self.subTest(file=manual.file):
+                self.assertEqual(
+                    [line for line in fences if not re.fullmatch(r"\s*```\w*", line)], []
+                )
+                self.assertEqual(len(fences) % 2, 0)
+
     def test_the_first_page_keeps_its_size(self):
         lines = text_of("README.md").splitlines()
         self.assertLess(len(lines), 70)
