@@ -187,7 +187,10 @@ Finding judge_springs_limited(const Measured& runs, const PublishedNumbers& p) {
   for (std::size_t i = 0; i + 1 < runs.size(); i += 2) {
     const MeasuredCase &without = runs[i], &with = runs[i + 1];
     if (with.name == kProposedLaw) {
-      append_item(swings, fmt::format("{} times with {} pairs", with["swings"], with["pairs"]), ", ");
+      append_item(swings,
+                  fmt::format("{} times {}with {} pairs", with["swings"], swings.empty() ? "about the origin " : "",
+                              with["pairs"]),
+                  ", ");
       keeps = keeps && with["arrives"] == 1.0 && with["swings"] <= without["swings"] &&
               with["overshoot"] <= (1.0 + threshold(p, "same_overshoot")) * without["overshoot"];
     } else {
@@ -209,9 +212,8 @@ Finding judge_springs_limited(const Measured& runs, const PublishedNumbers& p) {
                                 : "smooth without the limits, but fluctuating with the limits: " + names),
       "number of swings, first without the limits, then with them: " + text,
       fmt::format(
-          "with the limits and the proposed algorithm, the mass swings about the origin {}; in {} of {} cases with "
-          "other algorithms, the limits cause fluctuation{}; every other case is smooth with the limits, or fluctuates "
-          "without them, too",
+          "proposed algorithm with the limits: the mass swings {}; other algorithms: {} of {} cases fluctuate because "
+          "of the limits{}",
           swings, fluctuating.size(), others, names.empty() ? "" : fmt::format(" ({})", names))};
 }
 

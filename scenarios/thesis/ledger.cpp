@@ -140,33 +140,6 @@ std::string failures(const Json& claims) {
   return text;
 }
 
-/// Returns a table with a row for each assumption: the values, other than the recorded value, with which claims have
-/// another verdict. Empty if no value changes a verdict.
-std::string other_values(const Json& claims) {
-  std::map<std::string, std::string> cells;
-  for (const Json& claim : claims)
-    for (const Json& one : claim.at("cases_moved"))
-      if (was_judged(text_at(one, "verdict")))
-        append_item(cells[text_at(one, "assumption")],
-                    fmt::format("`{}`: {} *{}*, {}", text_at(one, "value"), link_to(claim), text_at(one, "verdict"),
-                                text_at(one, "number")),
-                    "<br>");
-  if (cells.empty()) return "";
-  std::string text =
-      "\n### The effect of other assumptions\n\nEach row has an assumption. Each entry of a row has another "
-      "value of the assumption, a claim whose verdict changes with this value, the changed verdict, and the number "
-      "measured with this value. A rule can use more numbers than the printed number: for example, the rule of F4 "
-      "compares three hands, the rules of D1 to D4 and D6 use further measures, and the rule of C3 compares the net "
-      "force with that of one wall. A verdict can therefore change although the printed number does not. The values of "
-      "`numerics.step`, `subjects.bandwidth` and other rows are factors on the recorded value. "
-      "[Sensitivity](../../scenarios/thesis/README.md#sensitivity) states the meaning of "
-      "each assumption and its recorded value. For example, `local.average` is `true` on record, and `false` means "
-      "that the local average is off.\n"
-      "\n| assumption | other value: claim with its verdict |\n|---|---|\n";
-  for (const auto& [assumption, cell] : cells) text += fmt::format("| `{}` | {} |\n", assumption, cell);
-  return text;
-}
-
 /// Returns a table of claims for each chapter.
 std::string chapters(const Json& claims) {
   std::map<std::string, std::string> tables;
@@ -351,22 +324,25 @@ std::string ledger_markdown(const Json& ledger) {
       "block with the hole are computed from a *density* field: `signed_distance` or `binary`. *Tandpasta* is a law of "
       "appendix F, which weakens springs that oppose each other. In task 1, the drill is pressed "
       "on a flat surface and dragged. In task 2, it tilts to and fro in a hole. In task 3, it moves along the wall "
-      "of a hole, around the axis. The [glossary](../../scenarios/GLOSSARY.md) has the other terms.\n\n"
+      "of a hole, around the axis. The vertical and the rotational task of claims D1 to D7 are the two experiments of "
+      "appendix D, in which people reach targets with a drill in a hole. The "
+      "[glossary](../../scenarios/GLOSSARY.md) has the other terms.\n\n"
       "## 1. What the abstract claims\n\n" +
       abstract_table(ledger) + "\nVerdicts:\n\n";
   for (const VerdictText& verdict : kVerdicts) text += fmt::format("- *{}*: {}.\n", verdict.name, verdict.meaning);
   text +=
       "\nDecided by: the thesis leaves some values open, so hapbench assumes them. Each assumption was set to each of "
       "its plausible values, one at a time, and calibrated hands were calibrated again. `hapbench describe NAME` "
-      "explains an assumption or a claim.\n\n"
+      "explains an assumption or a claim; the claim pages have each value that changes a verdict, with the new verdict "
+      "and number.\n\n"
       "- *exact*: no assumption enters the claim.\n"
       "- *robust*: no other value of a single assumption changes the verdict.\n"
       "- *sensitive to* an assumption: only this assumption changes the verdict.\n"
       "- *depends on several*: each of the named assumptions changes the verdict alone.\n"
       "- *not sampled*: no other values were tried.\n";
   const std::string failing = failures(claims);
-  text += "\n## 2. Claims that failed, and the effect of other assumptions\n\n" +
-          (failing.empty() ? "" : "Part 4 has the claims about computing time.\n\n" + failing) + other_values(claims);
+  text += "\n## 2. Claims that failed\n\n" +
+          (failing.empty() ? "" : "Part 4 has the claims about computing time.\n\n" + failing);
   text += "\n## 3. All claims, by chapter\n" + chapters(claims);
   text += "\n## 4. Computing times, claims that are not testable, changed rules and findings of this project\n";
   text += table_of(claims, "Computing time, on one machine (medians)",
