@@ -16,7 +16,7 @@
 /// quantity that DiagnosisObserver measures) with a threshold.
 namespace hapbench {
 
-/// What a rule states about a run.
+/// Kind of a diagnosis rule: a failed run, a vibration, or a hint.
 enum class RuleKind {
   failure,        ///< the run failed, or its loop is unstable: no such run is recommended
   low_vibration,  ///< the hand feels a disturbance in addition to the force: a vibration, force steps, force reversals,

@@ -160,9 +160,8 @@ Finding judge_experiment(const Measured& measured, const PublishedNumbers& publi
   }
   return {
       in_simulation(consistent),
-      (deviating.empty()
-           ? std::string("every measure agrees with the thesis in direction and significance")
-           : "measures in which the difference between the algorithms is not as published: " + deviating) +
+      (deviating.empty() ? std::string("every measure agrees with the thesis in direction and significance")
+                         : "in these measures, the algorithms do not differ as published: " + deviating) +
           fmt::format(
               ". No mean differs from its published value by more than {:.2g} standard errors; the largest "
               "difference is that of the {}. The mean force is nearly an input, because subjects regulate the force "

@@ -32,8 +32,8 @@ struct TunedLaw {
   MetricValues error;
   std::vector<TuneTrial> trials;  ///< all trials, by setting and K
   std::size_t runs = 0;           ///< total number of simulations
-  /// What `run` finds in the scene with the choice (diagnosis_findings()). No finding is a failure, and none is a
-  /// vibration unless TuneQuestion::allow_vibration is true.
+  /// Findings of the diagnosis that `run` prints for the scene with the choice (diagnosis_findings()). No finding is a
+  /// failure, and none is a vibration unless TuneQuestion::allow_vibration is true.
   std::vector<Diagnosed> findings;
   std::size_t verified = 0;            ///< number of verification runs between K and G K, all of them settled
   std::vector<std::string> overrides;  ///< overrides that apply the choice to the scene

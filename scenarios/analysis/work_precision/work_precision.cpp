@@ -198,8 +198,7 @@ std::vector<WorkPrecisionSetting> settings_of(const Study& study, const Motions&
                                               bool is_predictable) {
   std::vector<WorkPrecisionSetting> settings;
   // The difference between two runs with different noise is no error.
-  const bool has_noise = !study.levels(problem).no_order.empty();
-  const auto reference_error = has_noise ? std::nullopt : motions.reference_error(problem);
+  const auto reference_error = study.levels(problem).has_noise ? std::nullopt : motions.reference_error(problem);
   for (const std::string& curve : study.curves()) {
     for (std::size_t level = 0; level <= study.finest(); ++level) {
       WorkPrecisionSetting setting{study.name(problem), curve};
