@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "sim/contact/grid_index.hpp"
+#include "sim/geometry/grid_index.hpp"
 #include "sim/geometry/point_shell.hpp"
 #include "sim/loop/device.hpp"
 #include "sim/tool/motion.hpp"
@@ -23,8 +23,9 @@ namespace hapbench {
 /// is the plane through c with normal n.
 class SmoothedSurface {
  public:
-  /// `radius`: R > 0 [m]. Precondition: the shell has a point and outlives this object. Cost: O(points).
-  SmoothedSurface(const PointShell& shell, double radius) : shell_(shell), grid_(shell), radius_(radius) {}
+  /// `radius`: R > 0 [m]. Precondition: the shell has a point and outlives this object. Cost: O(points), if no search
+  /// was made in the shell before.
+  SmoothedSurface(const PointShell& shell, double radius) : shell_(shell), grid_(shell.grid()), radius_(radius) {}
 
   double radius() const { return radius_; }
   /// Returns the projection of `at` [m] onto the surface, and the outward normal there. The first position is the
@@ -38,7 +39,7 @@ class SmoothedSurface {
   std::size_t nearest_point(const Vec3& at) const;
 
   const PointShell& shell_;
-  GridIndex grid_;
+  const GridIndex& grid_;
   double radius_;
 };
 

@@ -13,8 +13,8 @@
 #include "scenarios/input/size_limits.hpp"
 #include "scenarios/input/writer.hpp"
 #include "scenarios/scene/field_checks.hpp"
-#include "sim/contact/grid_index.hpp"
 #include "sim/core/random.hpp"
+#include "sim/geometry/grid_index.hpp"
 #include "sim/mesh/marching_cubes.hpp"
 
 namespace hapbench {

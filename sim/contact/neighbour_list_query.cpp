@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "sim/contact/grid_index.hpp"
 #include "sim/core/simd.hpp"
+#include "sim/geometry/grid_index.hpp"
 
 namespace hapbench {
 namespace {
@@ -40,13 +40,13 @@ double largest_scale(const PointShell& shell, const ToolShape& tool) {
 /// point, at most kMaxDoublings times. Until the tool has moved by this thickness, a step costs one comparison.
 class NeighbourListQuery final : public ContactQuery {
  public:
-  /// Builds the grid. O(n).
+  /// O(n) for the first search in a shell; later searches share its grid (PointShell::grid).
   NeighbourListQuery(const PointShell& shell, const ToolShape& tool)
       : shell_(&shell),
         tool_(&tool),
         normal_skin_(kSkinPerHalfWidth * tool.half_width()),
         capacity_(max_points_in(shell, tool.cover(margin_of(normal_skin_, largest_scale(shell, tool))))),
-        grid_(shell),
+        grid_(shell.grid()),
         // A contiguous range of n points overlaps with at most n / 8 + 2 SIMD packs of eight points.
         marks_(shell.size() / simd::lanes + 2 * grid_.columns()),
         list_(simd::padded(capacity_) + simd::lanes) {
@@ -160,7 +160,7 @@ class NeighbourListQuery final : public ContactQuery {
   const ToolShape* tool_;
   double normal_skin_;  ///< thickness of the skin before any doubling [m]
   std::size_t capacity_;
-  GridIndex grid_;
+  const GridIndex& grid_;
   std::vector<PackRange> runs_;      ///< ranges of the grid's points near the tool
   std::vector<std::uint8_t> marks_;  ///< one byte for each pack of the ranges, one bit for each point
 
@@ -180,6 +180,10 @@ class NeighbourListQuery final : public ContactQuery {
 };
 
 }  // namespace
+
+std::size_t max_points_in(const PointShell& shell, const ToolShape::Cover& cover) {
+  return std::min(shell.size(), cover.balls * shell.max_points_in_ball(cover.radius));
+}
 
 std::unique_ptr<ContactQuery> make_neighbour_list_query(const PointShell& shell, const ToolShape& tool) {
   return std::make_unique<NeighbourListQuery>(shell, tool);

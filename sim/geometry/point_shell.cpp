@@ -3,7 +3,10 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <mutex>
 #include <utility>
+
+#include "sim/geometry/grid_index.hpp"
 
 namespace hapbench {
 
@@ -14,12 +17,19 @@ Box bounds_of(const std::vector<SurfacePoint>& points) {
   return box;
 }
 
+struct PointShell::ForSearches {
+  std::mutex mutex;
+  std::unique_ptr<const GridIndex> grid;
+  std::map<double, std::size_t> max_points_in_ball;  ///< by the radius [m]
+};
+
 PointShell::PointShell(const std::vector<SurfacePoint>& points, double cell_size, std::vector<std::uint32_t> cells)
     : size_(points.size()),
       cell_size_(cell_size),
       bounds_(bounds_of(points)),
       columns_(points.size()),
-      cells_(std::move(cells)) {
+      cells_(std::move(cells)),
+      for_searches_(std::make_shared<ForSearches>()) {
   for (std::size_t i = 0; i < size_; ++i) columns_.set(i, points[i].position, points[i].normal);
 }
 
@@ -40,6 +50,19 @@ std::vector<std::uint32_t> PointShell::cell_of_points() const {
     cell[i] = cells.try_emplace(key, static_cast<std::uint32_t>(cells.size())).first->second;
   }
   return cell;
+}
+
+const GridIndex& PointShell::grid() const {
+  const std::lock_guard lock(for_searches_->mutex);
+  if (!for_searches_->grid) for_searches_->grid = std::make_unique<const GridIndex>(*this);
+  return *for_searches_->grid;
+}
+
+std::size_t PointShell::max_points_in_ball(double radius) const {
+  const std::lock_guard lock(for_searches_->mutex);
+  std::map<double, std::size_t>& known = for_searches_->max_points_in_ball;
+  if (const auto found = known.find(radius); found != known.end()) return found->second;
+  return known.emplace(radius, max_points_in_cube(*this, radius)).first->second;
 }
 
 }  // namespace hapbench

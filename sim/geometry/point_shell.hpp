@@ -1,12 +1,15 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "sim/core/aligned.hpp"
 #include "sim/core/types.hpp"
 
 namespace hapbench {
+
+class GridIndex;
 
 /// Point on the surface of an environment object: position [m] and outward unit normal, world frame.
 struct SurfacePoint {
@@ -78,12 +81,22 @@ class PointShell {
   /// run, not in a step.
   std::vector<std::uint32_t> cell_of_points() const;
 
+  /// Returns the points sorted by the cells of a grid (grid_index.hpp). The first call builds it, O(size). Later calls,
+  /// also those of copies of this shell, return it again: the runs of a search share it. Thread-safe.
+  const GridIndex& grid() const;
+  /// Returns an upper bound of the number of points in a ball with this radius [m], wherever the ball is. The first
+  /// call with a radius is O(size); later calls return the same number. Thread-safe.
+  std::size_t max_points_in_ball(double radius) const;
+
  private:
+  struct ForSearches;
+
   std::size_t size_;
   double cell_size_;
   Box bounds_;
   ShellColumns columns_;
   std::vector<std::uint32_t> cells_;
+  std::shared_ptr<ForSearches> for_searches_;  ///< computed when first asked for, and shared by copies
 };
 
 }  // namespace hapbench

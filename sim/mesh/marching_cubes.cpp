@@ -6,8 +6,8 @@
 #include <numbers>
 #include <utility>
 
-#include "sim/contact/grid_index.hpp"
 #include "sim/core/parallel.hpp"
+#include "sim/geometry/grid_index.hpp"
 #include "sim/geometry/triangle_tree.hpp"
 
 namespace hapbench {

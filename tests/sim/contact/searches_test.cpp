@@ -6,7 +6,7 @@
 #include <numbers>
 #include <numeric>
 
-#include "sim/contact/grid_index.hpp"
+#include "sim/contact/neighbour_list_query.hpp"
 #include "sim/geometry/analytic_shells.hpp"
 #include "tests/support/searches.hpp"
 #include "tests/support/tool_kinds.hpp"

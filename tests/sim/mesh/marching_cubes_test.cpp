@@ -9,8 +9,8 @@
 #include <numbers>
 #include <set>
 
-#include "sim/contact/grid_index.hpp"
 #include "sim/core/random.hpp"
+#include "sim/geometry/grid_index.hpp"
 #include "tests/support/meshes.hpp"
 #include "tests/support/scale.hpp"
 

@@ -6,7 +6,6 @@
 #include "sim/core/aligned.hpp"
 #include "sim/core/types.hpp"
 #include "sim/geometry/point_shell.hpp"
-#include "sim/tool/tool_shape.hpp"
 
 namespace hapbench {
 
@@ -96,10 +95,8 @@ std::vector<std::uint32_t> grid_order(const std::vector<SurfacePoint>& points, d
 /// (GridIndex::keeps_order).
 std::vector<SurfacePoint> in_grid_order(const std::vector<SurfacePoint>& points, double cell_size);
 
-/// Returns an upper bound of the number of shell points that can lie in the balls of `cover` at once, wherever the
-/// balls are. Used as the capacity of buffers. The bound is the number of balls times the largest number of points in a
-/// cube of grid cells that is large enough for one ball. For the drill and the block of the thesis, the bound is a
-/// sixth of the block's points. O(shell size).
-std::size_t max_points_in(const PointShell& shell, const ToolShape::Cover& cover);
+/// Returns the largest number of shell points in a cube of grid cells that is large enough for a ball with this radius
+/// [m], wherever the ball is. O(shell size). PointShell::max_points_in_ball() remembers the result.
+std::size_t max_points_in_cube(const PointShell& shell, double radius);
 
 }  // namespace hapbench

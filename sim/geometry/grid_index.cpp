@@ -1,4 +1,4 @@
-#include "sim/contact/grid_index.hpp"
+#include "sim/geometry/grid_index.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -122,12 +122,12 @@ std::vector<SurfacePoint> in_grid_order(const std::vector<SurfacePoint>& points,
   return ordered;
 }
 
-std::size_t max_points_in(const PointShell& shell, const ToolShape::Cover& cover) {
+std::size_t max_points_in_cube(const PointShell& shell, double radius) {
   if (shell.size() == 0) return 0;
-  // Count the points in cells slightly larger than the balls' radius, so that an interval of one diameter meets
+  // Count the points in cells slightly larger than the radius, so that an interval of one diameter meets
   // at most three cells.
-  const GridCells cells(shell.bounds(), shell.size(), cover.radius * (1.0 + 1e-6));
-  const auto window = static_cast<std::size_t>(std::floor(2.0 * cover.radius / cells.size())) + 2;
+  const GridCells cells(shell.bounds(), shell.size(), radius * (1.0 + 1e-6));
+  const auto window = static_cast<std::size_t>(std::floor(2.0 * radius / cells.size())) + 2;
   std::vector<std::uint32_t> points(cells.count());
   for (std::size_t i = 0; i < shell.size(); ++i) ++points[cells.cell_of(shell.point(i).position)];
   // Sum the counts over cubes of `window` cells, along z, then y, then x.
@@ -137,7 +137,7 @@ std::size_t max_points_in(const PointShell& shell, const ToolShape::Cover& cover
     for (std::size_t k = 0; k < nz; ++k) sum_windows(&points[i * ny * nz + k], ny, nz, window);
   }
   for (std::size_t k = 0; k < ny * nz; ++k) sum_windows(&points[k], nx, ny * nz, window);
-  return std::min(shell.size(), cover.balls * *std::max_element(points.begin(), points.end()));
+  return *std::max_element(points.begin(), points.end());
 }
 
 }  // namespace hapbench
