@@ -101,7 +101,7 @@ FolderLock locked_file(const fs::path& file, const char* option, ProgramContext&
 /// keeps these results and does not run the scenario.
 void provide(ThesisRun& run, const fs::path& directory, bool rerun) {
   if (run.seconds) return;
-  run.seconds = seconds_of(1, [&] {
+  run.seconds = seconds_of([&] {
     const fs::path results = directory / run.name;
     const CheckedScenario scene = checked(load_scenario(run.file));
     if (rerun || !is_current(results, scene.loaded())) run.unmet = run_scenario(scene, results, false).unmet;
@@ -127,12 +127,12 @@ std::vector<JudgedClaim> judge(const std::vector<Claim>& claims, const Published
     const auto provide_run = [&](const std::string& scenario) {
       used.insert(scenario);
       if (const auto run = run_of(scenario); run != runs.end())
-        providing += seconds_of(1, [&] { provide(*run, options.runs(), options.rerun); });
+        providing += seconds_of([&] { provide(*run, options.runs(), options.rerun); });
     };
     Finding finding;
     const Evidence evidence{
         published, options.runs(), provide_run, {}, [&](const std::string& scenario) { used.insert(scenario); }};
-    const double took = seconds_of(1, [&] { finding = measurements.finding(claim, evidence); });
+    const double took = seconds_of([&] { finding = measurements.finding(claim, evidence); });
     // The time of a claim includes the runs of its scenarios, and the measurement that it shares with other claims.
     double seconds = measuring.try_emplace(claim.measure, took - providing).first->second;
     for (const std::string& scenario : used)
@@ -268,9 +268,8 @@ void add_reproduce(CommandLine& line) {
       "results/reference/sensitivity.json.\n\n"
       "Earlier results: runs in OUT/thesis of the same scenario by the same build are used again, unless the build has "
       "uncommitted changes; a ledger is replaced.\n\n"
-      "Time: about 5 minutes on two processors; a single claim takes seconds to a minute. An assumption set that "
-      "changes all claims also takes about 5 minutes; a whole record of --sensitivity takes about an hour of one "
-      "processor.\n\n"
+      "Time: about a minute on two processors, as long for an assumption set that changes all claims; a single claim "
+      "takes seconds to a minute, and a whole record of --sensitivity about an hour of one processor.\n\n"
       "Exit status: 0 whatever the verdicts are; 3 if a run did not end as its scenario expects; 130 stopped by "
       "Ctrl-C.");
 }

@@ -340,10 +340,11 @@ MeasuredValues measure_depth_cost(const Evidence& e) {
   // The difference of the times of 17 evaluations and of one does not contain the time of copying the contact sets,
   // which is longer than one evaluation.
   constexpr int kFurther = 16;
+  ContactBuffer copy(largest_size(sets));
   const auto seconds_further = [&](const char* model) {
     const auto depth = find_depth_model(model)->make();
     const auto seconds_of_evaluations = [&](int count) {
-      return seconds_with(sets, 1, [&](ContactBuffer& set) {
+      return seconds_of_pass(sets, copy, [&](ContactBuffer& set) {
         for (int i = 0; i < count; ++i) depth->evaluate(kDrill, kUpright, set);
       });
     };

@@ -91,8 +91,8 @@ class ToolShape {
   virtual Box box_near(const ToolPose& pose, double margin, const Box& bounds) const noexcept = 0;
   /// Number and radius [m] of balls. For the margin given to `cover`, the union of the balls contains the body and
   /// every point that `mark_near` marks with this margin. Used to bound the number of points that the body can touch
-  /// (max_points_in, neighbour_list_query.hpp); many small balls give a tighter bound than one ball. The default is one ball,
-  /// which is valid if `mark_near` marks no point farther away from the body than twice the margin.
+  /// (max_points_in, neighbour_list_query.hpp); many small balls give a tighter bound than one ball. The default is one
+  /// ball, which is valid if `mark_near` marks no point farther away from the body than twice the margin.
   struct Cover {
     std::size_t balls;
     double radius;

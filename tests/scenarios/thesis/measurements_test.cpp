@@ -1,0 +1,61 @@
+#include "scenarios/thesis/measurements.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstddef>
+#include <vector>
+
+namespace hapbench::measurements_test {
+namespace {
+
+/// Returns a set of `size` contacts.
+ContactBuffer contacts(std::size_t size) {
+  ContactBuffer set(size);
+  for (std::size_t i = 0; i < size; ++i) set.push(static_cast<std::uint32_t>(i), Vec3::Zero(), Vec3::UnitZ());
+  set.pad();
+  return set;
+}
+
+/// Uses the processor for at least this time [s].
+void work_for(double seconds) {
+  const double start = processor_seconds();
+  while (processor_seconds() - start < seconds) {
+  }
+}
+
+/// The work takes as long as the copying, so a time with the copying would be twice the time of the work. The bounds
+/// are in the middle between one and two times, and as far below.
+TEST(ComputingTime, OfWorkDoesNotIncludeTheCopyingOfContactSets) {
+  constexpr int kRepetitions = 21;
+  const std::vector<ContactBuffer> sets(3, contacts(100'000));
+  ContactBuffer copy(largest_size(sets));
+  std::vector<double> of_copying;
+  for (int i = 0; i < kRepetitions; ++i) of_copying.push_back(seconds_of_pass(sets, copy, [](ContactBuffer&) {}));
+  const double copying = median(of_copying), work = copying / static_cast<double>(sets.size());
+  const double measured = seconds_with(sets, kRepetitions, [work](ContactBuffer&) { work_for(work); });
+  EXPECT_GT(measured, 0.5 * copying);
+  EXPECT_LT(measured, 1.5 * copying);
+}
+
+/// Contact sets that are computed with (here: shrunk) are whole again in the next pass.
+TEST(ComputingTime, IsOfTheWholeContactSetInEachRepetition) {
+  const std::vector<ContactBuffer> sets(1, contacts(10));
+  seconds_with(sets, 3, [](ContactBuffer& set) {
+    EXPECT_EQ(set.size(), 10U);
+    set.shrink(1);
+    work_for(20e-6);
+  });
+}
+
+TEST(ComputingTime, OfNoWorkIsNotMeasured) {
+  // Each repetition takes the difference of two passes that do the same. It is above 0 as often as below, so some of
+  // 50 medians of one difference are not above 0 (all are above with a probability of 2^-50).
+  const std::vector<ContactBuffer> sets(1, contacts(10));
+  const auto measure_nothing = [&] {
+    for (int i = 0; i < 50; ++i) seconds_with(sets, 1, [](ContactBuffer&) {});
+  };
+  EXPECT_THROW(measure_nothing(), NothingToMeasure);
+}
+
+}  // namespace
+}  // namespace hapbench::measurements_test
