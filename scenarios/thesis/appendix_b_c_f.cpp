@@ -223,14 +223,13 @@ Measured measure_density(const Evidence& e) {
 Finding judge_density(const Measured& measured, const PublishedNumbers& p) {
   const double all = measured.front()["x40"], reduced = measured.front()["x40_reduced"], limit = measured.back()["x40"],
                small = threshold(p, "negligible");
-  return {
-      decide(reduced <= small, std::min(all, limit) <= small),
-      fmt::format(
-          "without the reduction, {} updates of stiffness shaping {}, and infinitely many updates {}; the reduction, "
-          "which removes points with similar gradients, {} it with any law",
-          measured.front()["updates"],
-          all <= small ? "decouple the force from the density" : "do not decouple the force from the density",
-          limit <= small ? "decouple it" : "do not", reduced <= small ? "decouples" : "does not decouple")};
+  return {decide(reduced <= small, std::min(all, limit) <= small),
+          fmt::format(
+              "without the reduction, {} updates of stiffness shaping {}, and 1000 updates {}; the reduction, which "
+              "removes points with similar gradients, {} it",
+              measured.front()["updates"],
+              all <= small ? "decouple the force from the density" : "do not decouple the force from the density",
+              limit <= small ? "decouple it" : "do not", reduced <= small ? "decouples" : "does not decouple")};
 }
 
 /// The earlier rule of P1 asked first for the force without the reduction.
@@ -290,7 +289,9 @@ Finding judge_relative_damping(const Measured& measured, const PublishedNumbers&
     same = same && off <= threshold(p, "same_damping");  // false for NaN
     worst = std::max(worst, off);
   }
-  return {decide(same, false), fmt::format("√ρ times that of one spring to {:.2g} %", 100.0 * worst)};
+  return {decide(same, false),
+          fmt::format("the damping ratio is √ρ times that of one spring, with an error of at most {:.2g} %",
+                      100.0 * worst)};
 }
 
 // ---- F1: the normal projection, compared with stiffness shaping and the depth model surface_normal.

@@ -156,8 +156,8 @@ Finding judge_range(const Measured& measured, const PublishedNumbers& p, double 
           inside < 1.0 ? ", but in a part of the steps, a ratio is outside the range" : ""),
       "",
       averaged ? fmt::format("mean over the steps: smallest ratio {:.2f}, largest ratio {:.2f}", low, high)
-               : fmt::format("in {:.0f} % of the steps, all ratios are within {} to {}", 100.0 * inside,
-                             plain(once.at_least), plain(once.at_most))};
+               : fmt::format("in {:.0f} % of the steps of the worst run, all ratios are within {} to {}",
+                             100.0 * inside, plain(once.at_least), plain(once.at_most))};
 }
 
 Finding judge_first_update(const Measured& measured, const PublishedNumbers& p) {
@@ -205,8 +205,8 @@ Finding judge_relative_damping_of_tasks(const Measured& measured, const Publishe
           fmt::format("steps in which √ρ is within a factor {} of 1 for all contacts: {}", plain(around),
                       of_tasks(measured, "damped_3", "{:.0f} %", 100.0)),
           fmt::format(
-              "in {:.0f} % of the steps, the damping ratio of combined contacts is within a factor {} of the damping "
-              "ratio of one contact",
+              "in {:.0f} % of the steps of the worst run, the damping ratio of combined contacts is within a factor {} "
+              "of the damping ratio of one contact",
               100.0 * share, plain(around))};
 }
 

@@ -56,7 +56,7 @@ Finding judge_trajectory(const MeasuredCase& m, const PublishedNumbers& publishe
   return {
       decide(follows && offset && on_line && shallow, follows && offset),
       fmt::format(
-          "below 2 N, the tip {} the ideal trajectory; above 2 N, the error of the height {}, the lateral error is {}, "
+          "below 2 N, the height of the tip {} the ideal trajectory; above 2 N, its error {}, the lateral error is {}, "
           "and the depth in the wall is {}",
           follows ? "follows" : "leaves", offset ? "is larger" : "is not larger",
           on_line ? "as published" : "larger than published", shallow ? "as published" : "larger than published")};

@@ -87,7 +87,7 @@ Finding judge_sinking(const Measured& m, const PublishedNumbers& p) {
   const double law = deepest(m.at(1)), shaped = deepest(m.at(0));
   const bool easily = law >= threshold(p, "easily") * shaped, more = law > shaped;
   return {decide(easily, more),
-          fmt::format("with {} the drill sinks in {}", m.at(1).name,
+          fmt::format("with `{}` the drill sinks in {}", m.at(1).name,
                       easily ? "easily"
                       : more ? "deeper than with stiffness shaping, but not easily"
                              : "no deeper than with stiffness shaping"),
@@ -432,8 +432,8 @@ Finding judge_over_reduction(const MeasuredCase& m, const PublishedNumbers& p) {
 // (C7). The damping of the thesis, which ignores the angular velocity, is compared with a damping that includes it.
 
 Measured measure_turn_into_wall(const Evidence& e, const std::vector<std::string>& overrides) {
-  return {vibration("as in the thesis", e.run("turned_into_wall", overrides)),
-          vibration("damping sees the turn", e.run("turned_into_wall_angular_damping", overrides))};
+  return {vibration("damping from the velocity of the tip", e.run("turned_into_wall", overrides)),
+          vibration("damping also from the rotation", e.run("turned_into_wall_angular_damping", overrides))};
 }
 
 Finding judge_turn_into_wall(const Measured& measured, const PublishedNumbers& p) {

@@ -59,7 +59,7 @@ std::string link_to(const Json& claim) {
 
 /// Returns the robustness of a claim as Markdown with the names of assumptions in code style, such as "sensitive to
 /// `local.average`". Names the first `max_names` assumptions and counts the others.
-std::string decided_by(const Json& claim, std::size_t max_names) {
+std::string robustness_text(const Json& claim, std::size_t max_names) {
   auto deciders = claim.at("deciders").get<std::vector<std::string>>();
   if (deciders.empty()) return text_at(claim, "robustness");
   const std::size_t count = deciders.size();
@@ -69,8 +69,8 @@ std::string decided_by(const Json& claim, std::size_t max_names) {
                      count > max_names ? fmt::format(" and {} more", count - max_names) : "");
 }
 
-std::string decided_by(const Json& claim) {
-  return decided_by(claim, std::numeric_limits<std::size_t>::max());
+std::string robustness_text(const Json& claim) {
+  return robustness_text(claim, std::numeric_limits<std::size_t>::max());
 }
 
 std::string seconds_text(const Json& claim) {
@@ -85,11 +85,11 @@ std::string ours(const Json& claim) {
 }
 
 constexpr const char* kHeading =
-    "| id | claim | published | ours | verdict | decided by |\n|---|---|---|---|---|---|\n";
+    "| id | claim | published | ours | verdict | robustness |\n|---|---|---|---|---|---|\n";
 
 std::string row_of(const Json& claim) {
   return fmt::format("| {} | {} | {} | {} | {} | {} |\n", link_to(claim), text_at(claim, "claim"),
-                     text_at(claim, "published"), ours(claim), text_at(claim, "verdict"), decided_by(claim));
+                     text_at(claim, "published"), ours(claim), text_at(claim, "verdict"), robustness_text(claim));
 }
 
 /// Returns a cell of the abstract's table: the text of each claim, after its id if there are several claims.
@@ -103,7 +103,7 @@ std::string joined(const std::vector<const Json*>& claims, const std::function<s
 /// Returns the table of the abstract's sentences.
 std::string abstract_table(const Json& ledger) {
   std::string text =
-      "| claim of the abstract | published | ours | verdict | decided by | figure | command |\n"
+      "| claim of the abstract | published | ours | verdict | robustness | figure | command |\n"
       "|---|---|---|---|---|---|---|\n";
   for (const Json& sentence : ledger.at("abstract")) {
     std::vector<const Json*> claims;
@@ -119,7 +119,7 @@ std::string abstract_table(const Json& ledger) {
         }
     if (claims.empty()) continue;         // a run with --only may not have judged the claim
     constexpr std::size_t kMaxNames = 2;  // the page of the claim names all assumptions
-    const auto deciders = [](const Json& claim) { return decided_by(claim, kMaxNames); };
+    const auto deciders = [](const Json& claim) { return robustness_text(claim, kMaxNames); };
     const auto member = [](const char* key) { return [key](const Json& claim) { return text_at(claim, key); }; };
     text += fmt::format("| {} | {} | {} | {} | {} | {} | `hapbench reproduce --only {}` ({:.0f} s) |\n",
                         text_at(sentence, "sentence"), joined(claims, member("published_short")), joined(claims, ours),
@@ -134,7 +134,7 @@ std::string failures(const Json& claims) {
   for (const Json& claim : claims) {
     if (is(claim, "ours") || is(claim, "timing") || !failed(claim)) continue;
     text += fmt::format("- {}, {} ({}): *{}*; measured: {}; {}. Why: {}.\n", link_to(claim), text_at(claim, "claim"),
-                        text_at(claim, "place"), text_at(claim, "verdict"), ours(claim), decided_by(claim),
+                        text_at(claim, "place"), text_at(claim, "verdict"), ours(claim), robustness_text(claim),
                         text_at(claim, "why"));
   }
   return text;
@@ -331,7 +331,7 @@ std::string ledger_markdown(const Json& ledger) {
       abstract_table(ledger) + "\nVerdicts:\n\n";
   for (const VerdictText& verdict : kVerdicts) text += fmt::format("- *{}*: {}.\n", verdict.name, verdict.meaning);
   text +=
-      "\nDecided by: the thesis leaves some values open, so hapbench assumes them. Each assumption was set to each of "
+      "\nRobustness: the thesis leaves some values open, so hapbench assumes them. Each assumption was set to each of "
       "its plausible values, one at a time, and calibrated hands were calibrated again. `hapbench describe NAME` "
       "explains an assumption or a claim; the claim pages have each value that changes a verdict, with the new verdict "
       "and number.\n\n"
@@ -367,15 +367,21 @@ std::string claim_pages(const Json& ledger) {
       "# Claims, one section each\n\n*Reference.* This page has a section for each claim of [the ledger](claims.md). "
       "`hapbench describe ID` prints the section of a claim.\n\n"
       "- **Published** and **Number**: the number of the thesis and the number of hapbench.\n"
-      "- **Cases**: the numbers of all runs of the claim. `signed_distance` and `binary` are the two density fields "
-      "from which the surface points of the block are computed.\n"
+      "- **Cases**: what was measured. `signed_distance` and `binary` are the two density fields from which the "
+      "surface points of the block are computed.\n"
       "- **Rule**: the conditions of the verdict. After *qualitatively* follows the weaker condition, of the verdict "
       "*qualitatively replicated*. **Rule before** has the conditions of an earlier rule.\n"
-      "- **Sensitivity**: assumptions with another value, each with the verdict and the number that this value gives. "
-      "Cases without a verdict (*not judged*, *not measured*) are listed but decide nothing.\n";
+      "- **Robustness**: the assumptions of which another value changes the verdict; *robust* if there is none, "
+      "*exact* if no assumption enters the claim, *not sampled* if no other value was tried.\n"
+      "- **Sensitivity**: values of assumptions that change the verdict, each with its verdict and number. If a value "
+      "gives *not judged*, the calibrated hand misses the published number that it is fitted to, or the run has "
+      "nothing to measure; such a value does not count for the robustness.\n"
+      "- A section that begins with *Finding of this project* is about no claim of the thesis; its verdict is *holds* "
+      "or *does not hold*.\n";
   for (const Json& claim : ledger.at("claims")) {
-    text +=
-        fmt::format("\n## {}\n\n{} ({}).\n\n", text_at(claim, "id"), text_at(claim, "claim"), text_at(claim, "place"));
+    text += fmt::format("\n## {}\n\n{}{} ({}).\n\n", text_at(claim, "id"),
+                        is(claim, "ours") ? "*Finding of this project*: " : "", text_at(claim, "claim"),
+                        text_at(claim, "place"));
     const auto item = [&text](const char* title, const std::string& of) {
       if (!of.empty()) text += fmt::format("- **{}**: {}\n", title, of);
     };
@@ -388,9 +394,9 @@ std::string claim_pages(const Json& ledger) {
     if (claim.contains("revised")) {
       const Json& before = claim.at("revised");
       item("Rule before", fmt::format("{}. Verdict: {}; {}. Changed because {}", text_at(before, "rule"),
-                                      text_at(before, "verdict"), decided_by(before), text_at(before, "reason")));
+                                      text_at(before, "verdict"), robustness_text(before), text_at(before, "reason")));
     }
-    item("Decided by", decided_by(claim));
+    item("Robustness", robustness_text(claim));
     std::string moved;
     for (const Json& one : claim.at("cases_moved"))
       append_item(moved, fmt::format("`{}` = {}: {}{}{}", text_at(one, "assumption"), text_at(one, "value"),

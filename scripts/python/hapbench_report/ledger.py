@@ -106,7 +106,7 @@ def main_results(claims, abstract):
                 cell(f"<code>hapbench reproduce --only {text(only)}</code>"),
             ]
         )
-    titles = ("The abstract claims", "Published", "Ours", "Verdict", "Decided by", "Command")
+    titles = ("The abstract claims", "Published", "Ours", "Verdict", "Robustness", "Command")
     headings = [heading_cell(title) for title in titles]
     title = "<b>What the abstract claims</b>"
     return table(headings, rows, title, "stack", "main-results") if rows else ""
@@ -141,13 +141,13 @@ def ledger_section(claims, figures):
     ours = [claim_row(claim, figures) for claim in claims if claim.get("ours")]
     headings = [
         heading_cell(title)
-        for title in ("Id", "Verdict", "Claim", "Published", "Measured", "Decided by")
+        for title in ("Id", "Verdict", "Claim", "Published", "Measured", "Robustness")
     ]
     return (
         "<p>The table lists each claim of the thesis with the published number, the measured number of our runs, and a "
         "verdict. A row unfolds to show the rule of the verdict, figures and scenarios. "
         "Hands are calibrated to mean and standard deviation of the number of raw colliding points; all other numbers "
-        "are predictions. Column “Decided by”: each assumption that the thesis leaves open "
+        "are predictions. Column “Robustness”: each assumption that the thesis leaves open "
         "(<code>results/reference/assumptions.json</code>) was set to its other plausible values, one at a time, and "
         "the column names the assumptions that change the verdict. Exact: the claim depends on no assumption; robust: "
         "no assumption changes the verdict.</p>"

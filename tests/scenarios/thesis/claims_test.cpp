@@ -431,6 +431,31 @@ TEST(Claims, OfTheRangeAfterOneUpdateCoverBothReadingsOfTheFigure) {
   EXPECT_NE(claim("R1").judge(measured, averaged).why.find("0.80, 0.73 and 0.68"), std::string::npos);
 }
 
+/// The rule of D6 judges the easiest offset and the easiest height, so its number has both.
+TEST(Claims, OfThePilotExperimentsNameTheRateAtEachJudgedPosition) {
+  const Finding finding = claim("D6").judge(
+      cases_in("offset: value=0.4e-3 original=0.9 shaped=0.25 | value=0.6e-3 original=0.05 shaped=1 | "
+               "height: value=2e-3 original=0.02 | value=4e-3 original=0.3"),
+      published());
+  EXPECT_EQ(finding.verdict, not_consistent);
+  EXPECT_EQ(finding.number,
+            "largest success rate with the original algorithm: 0.05 for targets more than 0.52 mm from the axis, 0.02 "
+            "for targets lower than 3 mm; at the easiest offset 0.90, at the easiest height 0.30");
+  EXPECT_NE(finding.why.find("lower with stiffness shaping: offset 0.40 mm (0.25, with the original algorithm 0.90)"),
+            std::string::npos)
+      << finding.why;
+}
+
+/// The force is not judged in the experiments, but the reason names a force that is far from the published one.
+TEST(Claims, OfTheExperimentsNameEveryMeasureThatIsFarFromItsPublishedValue) {
+  const Finding finding =
+      claim("D3").judge(cases_in("success rate: original=0,0.04,0.1 shaped=1,1,1 | model force: original=1.9,2,1.95 "
+                                 "shaped=1.7,1.75,1.8"),
+                        published());
+  EXPECT_EQ(finding.verdict, consistent);
+  EXPECT_NE(finding.why.find("model force 1.9"), std::string::npos) << finding.why;
+}
+
 /// Checks that ledger and program have the same claims. The texts of the rules contain the thresholds, so this test
 /// also covers the thresholds.
 TEST(Claims, AreThoseOfTheLedger) {
