@@ -209,9 +209,9 @@ Finding judge_springs_limited(const Measured& runs, const PublishedNumbers& p) {
   const std::string names = fmt::format("{}", fmt::join(fluctuating, ", "));
   return {
       decide(keeps && published_pairs, keeps && !fluctuating.empty()),
-      fmt::format("the proposed algorithm {} its performance; {}", keeps ? "keeps" : "does not keep",
-                  names.empty() ? "no other algorithm is smooth without the limits and fluctuates with them"
-                                : "smooth without the limits, but fluctuating with the limits: " + names),
+      fmt::format("the proposed algorithm {} its performance; other algorithms that are smooth without the limits, but "
+                  "fluctuate with them: {}",
+                  keeps ? "keeps" : "does not keep", names.empty() ? "none" : names),
       "number of swings, first without the limits, then with them: " + text,
       fmt::format(
           "proposed algorithm with the limits: the mass swings {}; other algorithms: {} of {} cases fluctuate because "

@@ -92,7 +92,7 @@ Finding judge_groove(const Measured& measured, const PublishedNumbers& p) {
                   with > majority ? "does not hide" : "hides"),
       "",
       fmt::format(
-          "under-damped at {} of {} angles without friction, at {} of {} with the scene's friction, mu_s = {} N s/m",
+          "under-damped at {} of {} angles without friction, at {} of {} with the scene's viscous friction of {} N s/m",
           without, measured.size(), with, measured.size(), plain(measured.front()["groove_friction_mu_s"]))};
 }
 
@@ -379,17 +379,17 @@ Finding judge_tandpasta(const MeasuredCase& m, const PublishedNumbers& p) {
   const std::vector<double>& boosts = m.all("boosts");
   const double smallest = boosts.empty() ? 0.0 : *std::min_element(boosts.begin(), boosts.end());
   const bool unchanged = std::abs(m["energy_ratio"] - 1.0) <= kEnergyKept;
-  return {
-      decide(unchanged && smallest >= threshold(p, "boosted"), unchanged && smallest > 1.0),
-      fmt::format(
-          "the weights {} the elastic energy and {} the outward force; with the time step of the thesis, the peg "
-          "leaves after 5 steps because the explicit friction diverges, not because of the law",
-          unchanged ? "keep" : "change", smallest > 1.0 ? "raise" : "do not raise"),
-      fmt::format("energy ratio {:.12g}; outward force at tilts of {} rad {:.1f} times that of the plain springs; in a "
-                  "converged run the peg leaves after {:.3f} s, with summation after {:.3f}, with stiffness shaping "
-                  "after {:.3f}",
-                  m["energy_ratio"], fmt::join(kBoostTilts, ", "), fmt::join(boosts, ", "), m["tandpasta"],
-                  m["summation"], m["shaped_stiffness"])};
+  return {decide(unchanged && smallest >= threshold(p, "boosted"), unchanged && smallest > 1.0),
+          fmt::format(
+              "the weights {} the elastic energy and {} the outward force; with the time step of the thesis, the peg "
+              "leaves after 5 steps because the explicit friction diverges, not because of the law",
+              unchanged ? "keep" : "change", smallest > 1.0 ? "raise" : "do not raise"),
+          fmt::format(
+              "energy ratio {:.12g}; outward force at tilts of {} rad {:.1f} times that of the plain springs; with a "
+              "time step that is short enough, the peg leaves the hole after {:.3f} s with tandpasta, {:.3f} s "
+              "with summation, {:.3f} s with stiffness shaping",
+              m["energy_ratio"], fmt::join(kBoostTilts, ", "), fmt::join(boosts, ", "), m["tandpasta"], m["summation"],
+              m["shaped_stiffness"])};
 }
 
 // ---- F4: largest depth of the drill in the block in task 2 [m], while a hand of constant force presses it. Compares

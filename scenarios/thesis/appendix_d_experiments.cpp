@@ -83,11 +83,13 @@ double half_a_digit(double printed) {
 struct Compared {
   bool significant = false;  ///< true if the algorithms differ significantly
   bool agrees = false;       ///< true if significance and direction of the difference are as published
-  bool near = false;         ///< true if both means are near the published means
   double t = 0.0;            ///< paired t statistic of original minus shaped
-  /// Larger of two differences [standard errors of the difference]: measured against published mean with the original
-  /// algorithm, and measured against published mean with stiffness shaping.
-  double farthest = 0.0;
+  /// Differences of the measured from the published means [standard errors of the difference], beyond the rounding of
+  /// the published mean: with the original algorithm, and with stiffness shaping.
+  double of_original = 0.0, of_shaped = 0.0;
+
+  double farthest() const { return std::max(of_original, of_shaped); }
+  bool near() const { return farthest() <= kStandardErrors; }
 };
 
 /// Compares a measure with the published values. `id`, `published_difference`: see judge_experiment().
@@ -105,8 +107,8 @@ Compared compare(const MeasuredCase& m, const PublishedNumbers& published, const
   c.t = paired_t(original, shaped);
   c.significant = std::abs(c.t) > critical_t(original.empty() ? 0 : original.size() - 1);
   c.agrees = published_difference ? c.significant && c.t * (of_original.mean - of_shaped.mean) > 0.0 : !c.significant;
-  c.farthest = std::max(difference(original, of_original), difference(shaped, of_shaped));
-  c.near = c.farthest <= kStandardErrors;
+  c.of_original = difference(original, of_original);
+  c.of_shaped = difference(shaped, of_shaped);
   return c;
 }
 
@@ -115,22 +117,39 @@ bool is_consistent(const MeasuredCase& m, const Compared& c, bool published_diff
   if (m.name == kModelForce) return true;  // subjects regulate the force, so it is an input
   // If the thesis reports no difference, the success rates must also be near the published rates: two rates of 0 do not
   // differ either.
-  const bool near = published_difference || m.name != kSuccessRate || c.near;
+  const bool near = published_difference || m.name != kSuccessRate || c.near();
   return c.agrees && near;
 }
 
-/// Returns the means of a measure with both algorithms, and how they differ from the published result; empty if they do
-/// not differ.
-std::string deviation_text(const MeasuredCase& m, const Compared& c, bool published_difference) {
-  if (c.agrees && c.near) return "";
+/// Returns how the difference between the algorithms is not as published; empty if it is as published.
+std::string wrong_difference(const Compared& c, bool published_difference) {
+  return c.agrees                ? ""
+         : !published_difference ? "a significant difference, unlike in the thesis"
+         : c.significant         ? "a difference in the opposite direction"
+                                 : "a difference that is not significant";
+}
+
+/// Returns which means are far from the published means; empty if both are near.
+std::string far_means(const Compared& c) {
+  const bool original = c.of_original > kStandardErrors, shaped = c.of_shaped > kStandardErrors;
+  return original && shaped ? "far from the published means"
+         : original         ? "far from the published mean with the original algorithm"
+         : shaped           ? "far from the published mean with stiffness shaping"
+                            : "";
+}
+
+/// Returns the means of a measure with both algorithms, followed by `deviation`; empty if `deviation` is empty.
+std::string with_means(const MeasuredCase& m, const std::string& deviation) {
+  if (deviation.empty()) return "";
   if (m.all("original").empty())
     return fmt::format("{}: not compared, because no subject has values for both algorithms", m.name);
-  const char* how = c.agrees                ? "far from the published values"
-                    : !published_difference ? "a significant difference, unlike in the thesis"
-                    : c.significant         ? "a difference in the opposite direction"
-                                            : "a difference that is not significant";
   return fmt::format("{} {:.2g} (original) against {:.2g}{} (shaping), {}", m.name, mean_of(m.all("original")),
-                     mean_of(m.all("shaped")), column_of(m).unit, how);
+                     mean_of(m.all("shaped")), column_of(m).unit, deviation);
+}
+
+/// Returns the paired t statistic as text.
+std::string t_text(double t) {
+  return std::isfinite(t) ? fmt::format("t = {:.3g}", t) : "the same difference for every subject";
 }
 
 /// Judges an experiment by all its measures except the force. `id`: D1 to D4. `published_difference`: true if the
@@ -143,30 +162,34 @@ Finding judge_experiment(const Measured& measured, const PublishedNumbers& publi
   double largest = -1.0;
   for (const MeasuredCase& m : measured) {
     const Compared c = compare(m, published, id, published_difference);
-    if (c.farthest > largest) farthest = m.name;
-    largest = std::max(largest, c.farthest);
+    if (c.farthest() > largest) farthest = m.name;
+    largest = std::max(largest, c.farthest());
     const bool as_published = is_consistent(m, c, published_difference);
     consistent = consistent && as_published;
-    const std::string deviation = deviation_text(m, c, published_difference);
-    if (!deviation.empty()) append_item(deviating, deviation);
+    std::string deviation = wrong_difference(c, published_difference);
     const std::vector<double>&a = m.all("original"), &b = m.all("shaped");
     if (m.name == kSuccessRate)
       append_item(number,
                   fmt::format("success rate {:.2f} (original) against {:.2f} (shaping)", mean_of(a), mean_of(b)));
     else if (!as_published)
-      append_item(number, deviation);
-    append_item(text, fmt::format("{} {:.2g} ± {:.1g} vs {:.2g} ± {:.1g} (t = {:.3g})", m.name, mean_of(a),
-                                  standard_error(a), mean_of(b), standard_error(b), c.t));
+      append_item(number, with_means(m, deviation));
+    if (const std::string means = far_means(c); !means.empty()) append_item(deviation, means, " and ");
+    if (!deviation.empty()) append_item(deviating, with_means(m, deviation));
+    append_item(text, fmt::format("{} {:.2g} ± {:.1g} vs {:.2g} ± {:.1g} ({})", m.name, mean_of(a), standard_error(a),
+                                  mean_of(b), standard_error(b), t_text(c.t)));
   }
-  return {
-      in_simulation(consistent),
-      (deviating.empty() ? std::string("every measure is as published") : "not as published: " + deviating) +
-          fmt::format(
-              ". Beyond the rounding of the published numbers, no mean differs from its published value by more than "
-              "{:.2g} standard errors of this difference; the largest difference is that of the {}. The mean force is "
-              "nearly an input, because subjects regulate the force that the gauge shows",
-              largest, farthest),
-      text, number};
+  const char* result = !consistent            ? "at least one judged measure is not as published"
+                       : published_difference ? "the algorithms differ as published in every judged measure"
+                                              : "no judged measure differs significantly between the algorithms";
+  return {in_simulation(consistent),
+          fmt::format("{}{}. The largest deviation from a published mean, beyond the rounding of the mean, is that of "
+                      "the {}: {:.2g} standard errors of the deviation. The mean force is nearly an input, because "
+                      "subjects regulate the force that the gauge shows",
+                      result,
+                      deviating.empty() ? ", and all means are near the published means"
+                                        : (consistent ? ", with these deviations: " : ": ") + deviating,
+                      farthest, largest),
+          text, number};
 }
 
 /// The earlier rule of D1 to D4 also compared the numbers with the published numbers, and two means that would be
@@ -183,8 +206,8 @@ Verdict judge_experiment_before(const Measured& measured, const PublishedNumbers
     const double difference = std::abs(mean_of(m.all("original")) - mean_of(m.all("shaped")));
     const bool equal = difference <= half("original_averaging") + half(kProposedLaw);
     const bool agrees = c.agrees || (!published_difference && equal);
-    all = all && agrees && (c.near || m.name == kModelForce);  // subjects regulate the force
-    if (m.name == kSuccessRate) success = agrees && (published_difference || c.near);
+    all = all && agrees && (c.near() || m.name == kModelForce);  // subjects regulate the force
+    if (m.name == kSuccessRate) success = agrees && (published_difference || c.near());
   }
   return decide(all, success);
 }

@@ -85,9 +85,9 @@ std::pair<bool, bool> nearness(const MeasuredCase& c, const std::string& counts,
 
 /// Agreement of the counts of one density with a published recording, from section 3.3 or from appendix C.3.
 struct CountsAgree {
-  bool raw = false;    ///< true if mean and spread of the raw counts agree
-  bool mean = false;   ///< true if, in addition, the mean after the reduction agrees
-  bool whole = false;  ///< true if, in addition, the spread after the reduction agrees and no step reaches the bound
+  std::string raw = {};  ///< recordings whose mean and spread of the raw counts agree, such as "3.3"
+  bool mean = false;     ///< true if, in addition, the mean after the reduction agrees
+  bool whole = false;    ///< true if, in addition, the spread after the reduction agrees and no step reaches the bound
 };
 
 /// Compares the counts of one density with both published recordings of a task, in thesis 3.3 and in appendix C.3. The
@@ -100,7 +100,7 @@ CountsAgree agreement(const MeasuredCase& c, const PublishedNumbers& published, 
     const auto [mean_left, spread_left] =
         nearness(c, "reduced", published[task + ".reduced" + one], published[task + ".reduced" + other]);
     if (!raw_mean || !raw_spread) continue;
-    agree.raw = true;
+    append_item(agree.raw, *one == '\0' ? "3.3" : "C.3", " and ");
     agree.mean = agree.mean || mean_left;
     agree.whole = agree.whole || (mean_left && spread_left && bounded);
   }
@@ -109,8 +109,8 @@ CountsAgree agreement(const MeasuredCase& c, const PublishedNumbers& published, 
 
 std::string agreement_text(const CountsAgree& agree, bool bounded, double bound) {
   if (agree.whole) return "as published";
-  if (!agree.raw) return "the raw counts differ from the published counts";
-  if (!agree.mean) return "the number of points left differs from the published number";
+  if (agree.raw.empty()) return "the raw counts are near those of neither 3.3 nor C.3";
+  if (!agree.mean) return "the raw counts are near those of " + agree.raw + ", but the number of points left is not";
   return "the number of points left is as published, " + (bounded
                                                               ? std::string("but its standard deviation is not")
                                                               : fmt::format("but some steps keep {} or more", bound));
@@ -129,7 +129,7 @@ AgreeingDensities agreeing_densities(const Measured& counts, const PublishedNumb
   for (const MeasuredCase& c : counts) {
     const bool bounded = c["outside_taps"] < bound;
     const CountsAgree agree = agreement(c, published, task, bounded);
-    densities.raw += agree.raw ? 1U : 0U;
+    densities.raw += agree.raw.empty() ? 0U : 1U;
     densities.mean += agree.mean ? 1U : 0U;
     densities.whole += agree.whole ? 1U : 0U;
     append_item(densities.text, fmt::format("density field {}: {}", c.name, agreement_text(agree, bounded, bound)));

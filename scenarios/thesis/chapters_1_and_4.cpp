@@ -189,8 +189,9 @@ Verdict judge_pop_through_before(const Measured& measured, const PublishedNumber
 // direction. Each case has the values of vibration(), and the value "diverges" (1 or 0).
 
 /// Returns four cases: planar peg with the law, planar peg with shaping, task with the law, task with shaping.
+/// `task_name`: name of the scenario `task` in the cases.
 Measured vibrations_beside_shaping(const Evidence& e, const std::string& law, const std::string& task,
-                                   const std::vector<std::string>& overrides_of_task) {
+                                   const std::string& task_name, const std::vector<std::string>& overrides_of_task) {
   Measured measured;
   for (const std::string& scene : {std::string("peg_in_hole_2d_frictionless_shaped_stiffness"), task}) {
     for (const std::string& algorithm : {law, std::string(kProposedLaw)}) {
@@ -199,7 +200,7 @@ Measured vibrations_beside_shaping(const Evidence& e, const std::string& law, co
       if (scene == task) overrides.insert(overrides.end(), overrides_of_task.begin(), overrides_of_task.end());
       const Result run = e.run(scene, overrides);
       const auto measure = algorithm == kProposedLaw ? reference_vibration : vibration;
-      measured.push_back(measure(algorithm + (scene == task ? ", task 2" : ", planar peg"), run));
+      measured.push_back(measure(algorithm + ", " + (scene == task ? task_name : "planar peg"), run));
       measured.back().values["diverges"] = {run.end.outcome == Outcome::diverges ? 1.0 : 0.0};
     }
   }
@@ -212,9 +213,12 @@ Finding judge_summation(const Measured& m, const PublishedNumbers& p) {
     return stable_reference && (m.at(i)["diverges"] == 1.0 || vibrates_much_more(m.at(i), m.at(i + 1), p));
   };
   const bool peg = unstable(0), task = unstable(2);
-  return {decide(peg && task, peg || task),
-          fmt::format("n contacts have a stiffness of up to n K: the sum is {} with the planar peg and {} in task 2",
-                      peg ? "unstable" : "stable", task ? "unstable" : "stable")};
+  return {
+      decide(peg && task, peg || task),
+      fmt::format(
+          "n contacts have a stiffness of up to n K: the sum is {} with the planar peg and {} with the drill held in "
+          "the hole",
+          peg ? "unstable" : "stable", task ? "unstable" : "stable")};
 }
 
 Finding judge_highest_depth(const Measured& m, const PublishedNumbers& p) {
@@ -476,40 +480,42 @@ Finding judge_parallel_faces(const MeasuredCase& m, const PublishedNumbers& p) {
 }  // namespace
 
 std::vector<ClaimRule> chapters_1_and_4() {
-  return {
-      {"V1", measure_averaging, judge_sinking, {judge_sinking_at_every_tilt}},
-      {"V2",
-       [](const Evidence& e) {
-         return Measured{pressed(e, kProposedLaw, "press_towards_rim"),
-                         pressed(e, "virtual coupling", "press_coupled")};
-       },
-       judge_sinking,
-       {judge_sinking_at_every_tilt}},
-      {"S1",
-       [](const Evidence& e) { return vibrations_beside_shaping(e, "summation", "task2_held", {"metrics.from_s=0"}); },
-       judge_summation,
-       {judge_summation_before}},
-      {"B1b", measure_original, judge_original, {judge_original_before}},
-      single_case<measure_pop_through, judge_pop_through>("B5", {judge_pop_through_before}),
-      single_case<measure_median_line, judge_median_line>("G1"),
-      single_case<measure_underestimation, judge_underestimation>("G1b"),
-      single_case<measure_depth_cost, judge_depth_cost>("G2"),
-      {"B4",
-       [](const Evidence& e) {
-         return vibrations_beside_shaping(e, "highest_depth", "task2_rotate_signed_distance",
-                                          {"time.duration_s=6", "record.ideal_trajectory=false"});
-       },
-       judge_highest_depth,
-       {judge_highest_depth_before}},
-      single_case<measure_one_direction, judge_one_direction>("C8"),
-      single_case<measure_over_reduction, judge_over_reduction>("C1"),
-      {"C2", [](const Evidence& e) { return measure_turn_into_wall(e, {}); }, judge_turn_into_wall},
-      {"C7",
-       [](const Evidence& e) {
-         return measure_turn_into_wall(e, {"motion.orientation.tilt_rad.period_s=6", "time.duration_s=6"});
-       },
-       judge_slow_turn},
-      single_case<measure_parallel_faces, judge_parallel_faces>("C3")};
+  return {{"V1", measure_averaging, judge_sinking, {judge_sinking_at_every_tilt}},
+          {"V2",
+           [](const Evidence& e) {
+             return Measured{pressed(e, kProposedLaw, "press_towards_rim"),
+                             pressed(e, "virtual coupling", "press_coupled")};
+           },
+           judge_sinking,
+           {judge_sinking_at_every_tilt}},
+          {"S1",
+           [](const Evidence& e) {
+             return vibrations_beside_shaping(e, "summation", "task2_held", "drill held in the hole",
+                                              {"metrics.from_s=0"});
+           },
+           judge_summation,
+           {judge_summation_before}},
+          {"B1b", measure_original, judge_original, {judge_original_before}},
+          single_case<measure_pop_through, judge_pop_through>("B5", {judge_pop_through_before}),
+          single_case<measure_median_line, judge_median_line>("G1"),
+          single_case<measure_underestimation, judge_underestimation>("G1b"),
+          single_case<measure_depth_cost, judge_depth_cost>("G2"),
+          {"B4",
+           [](const Evidence& e) {
+             return vibrations_beside_shaping(e, "highest_depth", "task2_rotate_signed_distance", "task 2",
+                                              {"time.duration_s=6", "record.ideal_trajectory=false"});
+           },
+           judge_highest_depth,
+           {judge_highest_depth_before}},
+          single_case<measure_one_direction, judge_one_direction>("C8"),
+          single_case<measure_over_reduction, judge_over_reduction>("C1"),
+          {"C2", [](const Evidence& e) { return measure_turn_into_wall(e, {}); }, judge_turn_into_wall},
+          {"C7",
+           [](const Evidence& e) {
+             return measure_turn_into_wall(e, {"motion.orientation.tilt_rad.period_s=6", "time.duration_s=6"});
+           },
+           judge_slow_turn},
+          single_case<measure_parallel_faces, judge_parallel_faces>("C3")};
 }
 
 }  // namespace hapbench

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <thread>
+#include <vector>
 
 #include "sim/geometry/analytic_shells.hpp"
 #include "sim/geometry/grid_index.hpp"
@@ -18,12 +19,11 @@ PointShell plane_shell() {
 
 TEST(PointShell, BuildsItsGridOnceForItselfAndItsCopies) {
   const PointShell shell = plane_shell();
-  const PointShell early_copy = shell;
+  std::vector<PointShell> copies = {shell};
   const GridIndex& grid = shell.grid();
-  const PointShell late_copy = shell;
+  copies.push_back(shell);
   EXPECT_EQ(&shell.grid(), &grid);
-  EXPECT_EQ(&early_copy.grid(), &grid);
-  EXPECT_EQ(&late_copy.grid(), &grid);
+  for (const PointShell& copy : copies) EXPECT_EQ(&copy.grid(), &grid);
   EXPECT_NE(&plane_shell().grid(), &grid);
 }
 
