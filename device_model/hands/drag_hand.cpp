@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "sim/geometry/grid_index.hpp"
+
 namespace hapbench {
 
 /// Number of projections of a position onto the local plane in SmoothedSurface::nearest.

@@ -6,7 +6,6 @@
 #include <utility>
 #include <vector>
 
-#include "sim/geometry/grid_index.hpp"
 #include "sim/geometry/point_shell.hpp"
 #include "sim/loop/device.hpp"
 #include "sim/tool/motion.hpp"

@@ -268,8 +268,8 @@ void add_reproduce(CommandLine& line) {
       "results/reference/sensitivity.json.\n\n"
       "Earlier results: runs in OUT/thesis of the same scenario by the same build are used again, unless the build has "
       "uncommitted changes; a ledger is replaced.\n\n"
-      "Time: about a minute on two processors, as long for an assumption set that changes all claims; a single claim "
-      "takes seconds to a minute, and a whole record of --sensitivity about an hour of one processor.\n\n"
+      "Time: about a minute on two processors for all claims, or for an assumption set that changes all claims. A "
+      "single claim takes seconds to a minute, a whole record of --sensitivity about an hour of one processor.\n\n"
       "Exit status: 0 whatever the verdicts are; 3 if a run did not end as its scenario expects; 130 stopped by "
       "Ctrl-C.");
 }

@@ -247,7 +247,8 @@ struct BuildSolid {
 
 Shell make_shell(const Scenario& scenario, const NamedFiles& files) {
   if (std::holds_alternative<SpringsEnvironment>(scenario.environment)) return nullptr;
-  const auto bytes = [](const PointShell& shell) { return 100 * shell.size(); };  // estimated: 100 bytes a point
+  // Estimated: 52 bytes for each point, and up to 60 bytes for its place in the search grid.
+  const auto bytes = [](const PointShell& shell) { return 112 * shell.size(); };
   return shared_cache().get<PointShell>(
       "shell " + environment_content(scenario, files).dump(),
       [&] { return std::visit(Build{files}, scenario.environment); }, bytes);

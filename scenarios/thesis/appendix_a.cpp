@@ -212,7 +212,7 @@ Finding judge_springs_limited(const Measured& runs, const PublishedNumbers& p) {
       fmt::format("the proposed algorithm {} its performance; other algorithms that are smooth without the limits, but "
                   "fluctuate with them: {}",
                   keeps ? "keeps" : "does not keep", names.empty() ? "none" : names),
-      "number of swings, first without the limits, then with them: " + text,
+      "number of swings, with signed depths, first without the limits, then with them: " + text,
       fmt::format(
           "proposed algorithm with the limits: the mass swings {}; other algorithms: {} of {} cases fluctuate because "
           "of the limits{}",
@@ -282,8 +282,8 @@ Finding judge_damping_at_limit(const MeasuredCase& m, const PublishedNumbers& p)
   const double alone = std::abs(m["alone"] / p["A4.damping"].mean - 1.0);
   const bool before = m["there"] > m["alone"];
   return {decide(before && std::max(there, alone) <= threshold(p, "same_limit"), before),
-          before ? "the damping at the largest stiffness is unstable without any spring"
-                 : "the damping at the largest stiffness is stable without a spring"};
+          before ? "the damping that belongs to the largest stiffness without damping is unstable even without a spring"
+                 : "the damping that belongs to the largest stiffness without damping is stable without a spring"};
 }
 
 // ---- A6: energies of an undamped mass on a spring, whose motion is computed by Eq. A.1.

@@ -87,9 +87,10 @@ Finding judge_groove(const Measured& measured, const PublishedNumbers& p) {
                majority = threshold(p, "most") * static_cast<double>(measured.size());
   return {
       decide(with > majority, without > majority),
-      fmt::format("true of the normal damping, which acts only along the merged direction; the friction of Table B.1 "
-                  "{} the missing damping across this direction",
-                  with > majority ? "does not hide" : "hides"),
+      fmt::format(
+          "true of the damping along the contact normals, which acts only along the merged direction; the friction of "
+          "Table B.1 {} the missing damping across this direction",
+          with > majority ? "does not hide" : "hides"),
       "",
       fmt::format(
           "under-damped at {} of {} angles without friction, at {} of {} with the scene's viscous friction of {} N s/m",
@@ -223,13 +224,14 @@ Measured measure_density(const Evidence& e) {
 Finding judge_density(const Measured& measured, const PublishedNumbers& p) {
   const double all = measured.front()["x40"], reduced = measured.front()["x40_reduced"], limit = measured.back()["x40"],
                small = threshold(p, "negligible");
-  return {decide(reduced <= small, std::min(all, limit) <= small),
-          fmt::format(
-              "without the reduction, {} updates of stiffness shaping {}, and 1000 updates {}; the reduction, which "
-              "removes points with similar gradients, {} it",
-              measured.front()["updates"],
-              all <= small ? "decouple the force from the density" : "do not decouple the force from the density",
-              limit <= small ? "decouple it" : "do not", reduced <= small ? "decouples" : "does not decouple")};
+  return {
+      decide(reduced <= small, std::min(all, limit) <= small),
+      fmt::format("without the reduction, {} updates of stiffness shaping {}, and {} updates {}; the reduction, which "
+                  "removes points with similar gradients, {} it",
+                  measured.front()["updates"],
+                  all <= small ? "decouple the force from the density" : "do not decouple the force from the density",
+                  kUpdates[std::size(kUpdates) - 1], limit <= small ? "decouple it" : "do not",
+                  reduced <= small ? "decouples" : "does not decouple")};
 }
 
 /// The earlier rule of P1 asked first for the force without the reduction.
@@ -394,7 +396,8 @@ Finding judge_tandpasta(const MeasuredCase& m, const PublishedNumbers& p) {
 
 // ---- F4: largest depth of the drill in the block in task 2 [m], while a hand of constant force presses it. Compares
 // the laws tandpasta and summation: tandpasta keeps the elastic energy of summation. All contact points are rendered,
-// without reduction and local average. One case for each force.
+// without reduction and local average. One case for each force. For a run that diverges, see
+// MeasuredCase::set_diverged().
 
 constexpr double kTurningHands[] = {0.5, 1.0, 2.0};  ///< [N]
 
@@ -411,20 +414,32 @@ Measured measure_quick_penetration(const Evidence& e) {
         depth = std::max(depth, deepest.value_or(0.0));
       }
       m.values[law] = {depth};
+      if (run.end.outcome == Outcome::diverges) m.set_diverged(law, depth);
     }
   }
   return measured;
 }
 
 Finding judge_quick_penetration(const Measured& measured, const PublishedNumbers&) {
+  const auto judged = std::ranges::count_if(
+      measured, [](const MeasuredCase& m) { return !std::isnan(m["tandpasta"]) && !std::isnan(m["summation"]); });
   const auto less =
       std::ranges::count_if(measured, [](const MeasuredCase& m) { return m["tandpasta"] < m["summation"]; });
-  const auto all = static_cast<std::ptrdiff_t>(measured.size());
-  return {
-      decide(less == all, less > 0),
-      fmt::format("for {} of {} hands, the drill sinks in less deep with tandpasta than with the plain sum; n contacts "
-                  "have a stiffness of up to n K, so the drill hardly sinks in with either law",
-                  less, all)};
+  const std::string of_hands = fmt::format("{} of {} hands", judged, measured.size());
+  return {judged == 0 ? Verdict::not_judged : decide(less == judged, less > 0),
+          judged == 0 ? "with every hand, a run diverges, because n contacts have a stiffness of up to n K"
+                      : fmt::format("for {} hands, neither run diverges; for {} of them, the drill sinks in less deep "
+                                    "with tandpasta than with the plain sum",
+                                    judged, less),
+          "", fmt::format("neither law diverges: {}; less deep with tandpasta: {}", of_hands, less)};
+}
+
+/// The earlier rule of F4 judged the depths of diverging runs.
+Verdict judge_quick_penetration_before(const Measured& measured, const PublishedNumbers&) {
+  const auto less = std::ranges::count_if(measured, [](const MeasuredCase& m) {
+    return m.until_divergence("tandpasta") < m.until_divergence("summation");
+  });
+  return decide(less == static_cast<std::ptrdiff_t>(measured.size()), less > 0);
 }
 
 }  // namespace
@@ -435,7 +450,7 @@ std::vector<ClaimRule> appendix_b_c_f() {
           single_case<measure_added_points, judge_added_points>("B3"),
           {"P1", measure_density, judge_density, {judge_density_before}},
           single_case<measure_information, judge_information>("T6"),
-          {"F4", measure_quick_penetration, judge_quick_penetration},
+          {"F4", measure_quick_penetration, judge_quick_penetration, {judge_quick_penetration_before}},
           {"C6", measure_relative_damping, judge_relative_damping},
           single_case<measure_normal_projection, judge_normal_projection>("F1"),
           single_case<measure_tandpasta, judge_tandpasta>("F2")};

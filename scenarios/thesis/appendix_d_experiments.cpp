@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "scenarios/batch/comparison.hpp"
 #include "scenarios/batch/statistics.hpp"
@@ -88,7 +89,11 @@ struct Compared {
   /// the published mean: with the original algorithm, and with stiffness shaping.
   double of_original = 0.0, of_shaped = 0.0;
 
-  double farthest() const { return std::max(of_original, of_shaped); }
+  /// Returns the larger difference; NaN if a mean is missing.
+  double farthest() const {
+    return std::isnan(of_original) || std::isnan(of_shaped) ? std::numeric_limits<double>::quiet_NaN()
+                                                            : std::max(of_original, of_shaped);
+  }
   bool near() const { return farthest() <= kStandardErrors; }
 };
 
@@ -131,7 +136,8 @@ std::string wrong_difference(const Compared& c, bool published_difference) {
 
 /// Returns which means are far from the published means; empty if both are near.
 std::string far_means(const Compared& c) {
-  const bool original = c.of_original > kStandardErrors, shaped = c.of_shaped > kStandardErrors;
+  // A missing mean (NaN) is not near.
+  const bool original = !(c.of_original <= kStandardErrors), shaped = !(c.of_shaped <= kStandardErrors);
   return original && shaped ? "far from the published means"
          : original         ? "far from the published mean with the original algorithm"
          : shaped           ? "far from the published mean with stiffness shaping"
@@ -182,13 +188,14 @@ Finding judge_experiment(const Measured& measured, const PublishedNumbers& publi
                        : published_difference ? "the algorithms differ as published in every judged measure"
                                               : "no judged measure differs significantly between the algorithms";
   return {in_simulation(consistent),
-          fmt::format("{}{}. The largest deviation from a published mean, beyond the rounding of the mean, is that of "
-                      "the {}: {:.2g} standard errors of the deviation. The mean force is nearly an input, because "
-                      "subjects regulate the force that the gauge shows",
-                      result,
-                      deviating.empty() ? ", and all means are near the published means"
-                                        : (consistent ? ", with these deviations: " : ": ") + deviating,
-                      farthest, largest),
+          fmt::format(
+              "{}{}. The {} has the largest deviation from a published mean: {:.2g} standard errors of the deviation, "
+              "after half a printed digit is subtracted for rounding. The model force is not judged; it is nearly an "
+              "input, because subjects regulate the force that the gauge shows",
+              result,
+              deviating.empty() ? ", and all means are near the published means"
+                                : (consistent ? ", with these deviations: " : ": ") + deviating,
+              farthest, largest),
           text, number};
 }
 
@@ -302,7 +309,9 @@ struct PilotResult {
   /// with stiffness shaping.
   bool somewhere = false;
 
-  bool as_published() const { return easiest >= kMajorityOfTargets && beyond <= kHardlyAnyTarget; }
+  bool complete = true;  ///< false if a rate is NaN, which satisfies no rule
+
+  bool as_published() const { return complete && easiest >= kMajorityOfTargets && beyond <= kHardlyAnyTarget; }
   const char* text() const {
     return as_published() ? "as published" : somewhere ? "another threshold" : "no threshold";
   }
@@ -323,6 +332,7 @@ Pilots pilot_results(const Measured& measured, const PublishedNumbers& published
   Pilots pilots;
   for (const MeasuredCase& m : measured) {
     PilotResult& pilot = m.name == "offset" ? pilots.offset : pilots.height;
+    pilot.complete = pilot.complete && !std::isnan(m["original"]);
     pilot.easiest = std::max(pilot.easiest, m["original"]);
     if (is_beyond(m, published)) pilot.beyond = std::max(pilot.beyond, m["original"]);
     pilot.somewhere = pilot.somewhere || (m["original"] <= kHardlyAnyTarget && m["shaped"] >= kMajorityOfTargets);

@@ -99,8 +99,8 @@ Finding judge_tensor_deadline(const MeasuredCase& m, const PublishedNumbers& pub
 
 MeasuredValues measure_loop_load(const Evidence& e) {
   const LoadedScenario task = e.load("task3_spin_signed_distance");
-  std::vector<ContactBuffer> sets = contact_sets(task.scenario, 128);
-  const std::size_t largest = largest_size(sets);
+  const std::vector<ContactBuffer> sets = contact_sets(task.scenario, 128);
+  const std::size_t largest = largest_of(sets).size();
   DenseShaping dense(largest);
   const auto reduction = make_gradient_reduction({});
   reduction->prepare({});

@@ -109,7 +109,7 @@ CountsAgree agreement(const MeasuredCase& c, const PublishedNumbers& published, 
 
 std::string agreement_text(const CountsAgree& agree, bool bounded, double bound) {
   if (agree.whole) return "as published";
-  if (agree.raw.empty()) return "the raw counts are near those of neither 3.3 nor C.3";
+  if (agree.raw.empty()) return "the raw counts are near neither those of 3.3 nor those of C.3";
   if (!agree.mean) return "the raw counts are near those of " + agree.raw + ", but the number of points left is not";
   return "the number of points left is as published, " + (bounded
                                                               ? std::string("but its standard deviation is not")

@@ -223,11 +223,12 @@ Finding judge_summation(const Measured& m, const PublishedNumbers& p) {
 
 Finding judge_highest_depth(const Measured& m, const PublishedNumbers& p) {
   const bool peg = vibrates_much_more(m.at(0), m.at(1), p), task = vibrates_much_more(m.at(2), m.at(3), p);
-  return {decide(peg || task, vibrates_more(m.at(0), m.at(1)) && vibrates_more(m.at(2), m.at(3))),
-          fmt::format(
-              "the averaged direction turns quickly where gradients cancel: the tool {} with the planar peg and {} in "
-              "task 2",
-              peg ? "vibrates" : "does not vibrate much more", task ? "vibrates" : "does not vibrate much more")};
+  return {
+      decide(peg || task, vibrates_more(m.at(0), m.at(1)) && vibrates_more(m.at(2), m.at(3))),
+      fmt::format(
+          "the averaged direction turns quickly where gradients cancel: the tool {} in the planar peg-in-hole and {} "
+          "in task 2",
+          peg ? "vibrates" : "does not vibrate much more", task ? "vibrates" : "does not vibrate much more")};
 }
 
 // The earlier rules of S1 and B4 ignored that the run with stiffness shaping may diverge.
@@ -344,7 +345,7 @@ MeasuredValues measure_depth_cost(const Evidence& e) {
   // The difference of the times of 17 evaluations and of one does not contain the time of copying the contact sets,
   // which is longer than one evaluation.
   constexpr int kFurther = 16;
-  ContactBuffer copy(largest_size(sets));
+  ContactBuffer copy(largest_of(sets).size());
   const auto seconds_further = [&](const char* model) {
     const auto depth = find_depth_model(model)->make();
     const auto seconds_of_evaluations = [&](int count) {

@@ -51,7 +51,7 @@ inline constexpr VerdictText kVerdicts[] = {
     {"not consistent in simulation", "simulated subjects do not show the published differences"},
     {"not judged",
      "an input is calibrated to a published number, but the calibration misses this number, so the run predicts "
-     "nothing; or the run has nothing to measure, such as no contact"},
+     "nothing; or the run has nothing to measure: for example, it has no contact, or it diverges"},
     {"holds", "a finding of this project that the measurement shows"},
     {"does not hold", "a finding of this project that the measurement does not show"}};
 inline constexpr std::string_view verdict_name(Verdict verdict) {

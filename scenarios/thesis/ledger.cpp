@@ -369,15 +369,15 @@ std::string claim_pages(const Json& ledger) {
       "- **Published** and **Number**: the number of the thesis and the number of hapbench.\n"
       "- **Cases**: what was measured. `signed_distance` and `binary` are the two density fields from which the "
       "surface points of the block are computed.\n"
-      "- **Rule**: the conditions of the verdict. After *qualitatively* follows the weaker condition, of the verdict "
+      "- **Rule**: the conditions of the verdict. After *qualitatively* follows the condition of the verdict "
       "*qualitatively replicated*. **Rule before** has the conditions of an earlier rule.\n"
       "- **Robustness**: the assumptions of which another value changes the verdict; *robust* if there is none, "
       "*exact* if no assumption enters the claim, *not sampled* if no other value was tried.\n"
-      "- **Sensitivity**: values of assumptions that change the verdict, each with its verdict and number. If a value "
-      "gives *not judged*, the calibrated hand misses the published number that it is fitted to, or the run has "
-      "nothing to measure; such a value does not count for the robustness.\n"
-      "- A section that begins with *Finding of this project* is about no claim of the thesis; its verdict is *holds* "
-      "or *does not hold*.\n";
+      "- **Sensitivity**: values of assumptions that give another verdict, each with this verdict and the number. Two "
+      "verdicts do not count for the robustness. *Not judged*: the calibrated hand misses the published number that it "
+      "is fitted to, or the run has nothing to measure. *Not measured*: a scenario cannot run with the value.\n"
+      "- A section that begins with *Finding of this project* is about no claim of the thesis. The verdicts on "
+      "findings are *holds* and *does not hold*.\n";
   for (const Json& claim : ledger.at("claims")) {
     text += fmt::format("\n## {}\n\n{}{} ({}).\n\n", text_at(claim, "id"),
                         is(claim, "ours") ? "*Finding of this project*: " : "", text_at(claim, "claim"),

@@ -95,10 +95,10 @@ double seconds_of_pass(const std::vector<ContactBuffer>& sets, ContactBuffer& co
 
 /// Returns the median processor time [s], over the repetitions, of calling `work` with a copy of each set. Does not
 /// include the time of copying and of reading the clock, which is longer than some laws need: each repetition subtracts
-/// the time of a pass that only copies. Throws NothingToMeasure if the median is not above 0.
+/// the time of a pass that only copies. Throws NothingToMeasure if there is no set, or if the median is not above 0.
 template <class Work>
 double seconds_with(const std::vector<ContactBuffer>& sets, int repetitions, Work work) {
-  ContactBuffer copy(largest_size(sets));
+  ContactBuffer copy(largest_of(sets).size());
   std::vector<double> seconds;
   for (int i = 0; i < repetitions; ++i) {
     const double only_copies = seconds_of_pass(sets, copy, [](ContactBuffer&) {});

@@ -17,7 +17,7 @@ Box bounds_of(const std::vector<SurfacePoint>& points) {
   return box;
 }
 
-struct PointShell::ForSearches {
+struct PointShell::SearchData {
   std::mutex mutex;
   std::unique_ptr<const GridIndex> grid;
   std::map<double, std::size_t> max_points_in_ball;  ///< by the radius [m]
@@ -29,7 +29,7 @@ PointShell::PointShell(const std::vector<SurfacePoint>& points, double cell_size
       bounds_(bounds_of(points)),
       columns_(points.size()),
       cells_(std::move(cells)),
-      for_searches_(std::make_shared<ForSearches>()) {
+      search_data_(std::make_shared<SearchData>()) {
   for (std::size_t i = 0; i < size_; ++i) columns_.set(i, points[i].position, points[i].normal);
 }
 
@@ -53,14 +53,14 @@ std::vector<std::uint32_t> PointShell::cell_of_points() const {
 }
 
 const GridIndex& PointShell::grid() const {
-  const std::lock_guard lock(for_searches_->mutex);
-  if (!for_searches_->grid) for_searches_->grid = std::make_unique<const GridIndex>(*this);
-  return *for_searches_->grid;
+  const std::lock_guard lock(search_data_->mutex);
+  if (!search_data_->grid) search_data_->grid = std::make_unique<const GridIndex>(*this);
+  return *search_data_->grid;
 }
 
 std::size_t PointShell::max_points_in_ball(double radius) const {
-  const std::lock_guard lock(for_searches_->mutex);
-  std::map<double, std::size_t>& known = for_searches_->max_points_in_ball;
+  const std::lock_guard lock(search_data_->mutex);
+  std::map<double, std::size_t>& known = search_data_->max_points_in_ball;
   if (const auto found = known.find(radius); found != known.end()) return found->second;
   return known.emplace(radius, max_points_in_cube(*this, radius)).first->second;
 }

@@ -58,6 +58,9 @@ class PointShell {
   /// `cell_size`: edge length [m] of the grid cells in which the local average merges points; 0 if there is no
   /// grid. `cells`: see ShellPoints::cells.
   PointShell(const std::vector<SurfacePoint>& points, double cell_size, std::vector<std::uint32_t> cells = {});
+  /// A copy has the same points and shares the grid. There is no assignment, because searches refer to the grid.
+  PointShell(const PointShell&) = default;
+  PointShell& operator=(const PointShell&) = delete;
 
   std::size_t size() const { return size_; }
   std::size_t padded_size() const { return columns_.x.size(); }
@@ -81,22 +84,23 @@ class PointShell {
   /// run, not in a step.
   std::vector<std::uint32_t> cell_of_points() const;
 
-  /// Returns the points sorted by the cells of a grid (grid_index.hpp). The first call builds it, O(size). Later calls,
-  /// also those of copies of this shell, return it again: the runs of a search share it. Thread-safe.
+  /// Returns the points sorted by the cells of a grid (grid_index.hpp), for contact searches. The first call builds it,
+  /// O(size). Later calls, also those of copies of this shell, return the same grid. It exists as long as this shell or
+  /// a copy of it. Thread-safe.
   const GridIndex& grid() const;
-  /// Returns an upper bound of the number of points in a ball with this radius [m], wherever the ball is. The first
-  /// call with a radius is O(size); later calls return the same number. Thread-safe.
+  /// Returns an upper bound of the number of points in a ball, wherever the ball is. `radius` > 0 [m], finite. The
+  /// first call with a radius is O(size); later calls return the same number. Thread-safe.
   std::size_t max_points_in_ball(double radius) const;
 
  private:
-  struct ForSearches;
+  struct SearchData;
 
   std::size_t size_;
   double cell_size_;
   Box bounds_;
   ShellColumns columns_;
   std::vector<std::uint32_t> cells_;
-  std::shared_ptr<ForSearches> for_searches_;  ///< computed when first asked for, and shared by copies
+  std::shared_ptr<SearchData> search_data_;  ///< filled by the first calls that need it, and shared by copies
 };
 
 }  // namespace hapbench

@@ -195,7 +195,12 @@ TEST(Claims, AreJudgedByTheirThresholds) {
       {"G3", "depth=2.4e-4 |", {{"", replicated}, {"1.depth=2.5e-4", not_replicated}}},
       {"F4",
        "0.5 N: tandpasta=1e-4 summation=2e-4 | 1 N:",
-       {{"", replicated}, {"0.tandpasta=3e-4", qualitatively}, {"tandpasta=3e-4", not_replicated}}},
+       {{"", replicated},
+        {"0.tandpasta=3e-4", qualitatively},
+        {"tandpasta=3e-4", not_replicated},
+        {"0.tandpasta=nan", replicated},
+        {"0.summation=nan 1.tandpasta=3e-4", not_replicated},
+        {"0.tandpasta=nan 1.summation=nan", not_judged}}},
       {"R1b", "last_max=1.005 limit_max=1.009", {{"", replicated}, {"last_max=1.3 limit_max=1.3", contradicted}}},
       {"R2",
        "1: lambda_max=1.366 sets=100 | limit: lambda_max=1.36",
@@ -362,6 +367,7 @@ TEST(Claims, AreJudgedByTheirThresholds) {
        {{"", consistent},
         {"2.original=0.2", not_consistent},
         {"1.original=0.2", not_consistent},
+        {"1.original=nan", not_consistent},
         {"0.shaped=0.2", consistent}}},
       // The success rate at 0.6 mm is too high for the claim. A position farther out with the rate 0 does not change
       // this.
@@ -444,6 +450,14 @@ TEST(Claims, OfThePilotExperimentsNameTheRateAtEachJudgedPosition) {
   EXPECT_NE(finding.why.find("lower with stiffness shaping: offset 0.40 mm (0.25, with the original algorithm 0.90)"),
             std::string::npos)
       << finding.why;
+}
+
+TEST(Claims, OfTheExperimentsNameMeasuresWithoutValues) {
+  Measured measured = cases_in("success rate: original=0.5,0.6,0.4 shaped=0.6,0.4,0.5 | speed:");
+  measured.back().values = {{"original", {}}, {"shaped", {}}};
+  const Finding finding = claim("D2").judge(measured, published());
+  EXPECT_NE(finding.why.find("speed: not compared, because no subject"), std::string::npos) << finding.why;
+  EXPECT_EQ(finding.why.find("near the published means"), std::string::npos) << finding.why;
 }
 
 /// The force is not judged in the experiments, but the reason names a force that is far from the published one.
