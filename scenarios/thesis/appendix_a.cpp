@@ -282,8 +282,10 @@ Finding judge_damping_at_limit(const MeasuredCase& m, const PublishedNumbers& p)
   const double alone = std::abs(m["alone"] / p["A4.damping"].mean - 1.0);
   const bool before = m["there"] > m["alone"];
   return {decide(before && std::max(there, alone) <= threshold(p, "same_limit"), before),
-          before ? "the damping that belongs to the largest stiffness without damping is unstable even without a spring"
-                 : "the damping that belongs to the largest stiffness without damping is stable without a spring"};
+          before ? "at the largest stiffness that is stable without damping, the damping ratio gives a damping that is "
+                   "unstable even without a spring"
+                 : "at the largest stiffness that is stable without damping, the damping ratio gives a damping that is "
+                   "stable without a spring"};
 }
 
 // ---- A6: energies of an undamped mass on a spring, whose motion is computed by Eq. A.1.

@@ -88,8 +88,8 @@ Finding judge_groove(const Measured& measured, const PublishedNumbers& p) {
   return {
       decide(with > majority, without > majority),
       fmt::format(
-          "true of the damping along the contact normals, which acts only along the merged direction; the friction of "
-          "Table B.1 {} the missing damping across this direction",
+          "the claim is true of the damping of the contacts, which acts only along the merged direction; the friction "
+          "of Table B.1 {} the missing damping across this direction",
           with > majority ? "does not hide" : "hides"),
       "",
       fmt::format(
@@ -428,10 +428,12 @@ Finding judge_quick_penetration(const Measured& measured, const PublishedNumbers
   const std::string of_hands = fmt::format("{} of {} hands", judged, measured.size());
   return {judged == 0 ? Verdict::not_judged : decide(less == judged, less > 0),
           judged == 0 ? "with every hand, a run diverges, because n contacts have a stiffness of up to n K"
-                      : fmt::format("for {} hands, neither run diverges; for {} of them, the drill sinks in less deep "
+                      : fmt::format("with {}, neither run diverges; with {} of these, the drill sinks in less deep "
                                     "with tandpasta than with the plain sum",
-                                    judged, less),
-          "", fmt::format("neither law diverges: {}; less deep with tandpasta: {}", of_hands, less)};
+                                    of_hands, less),
+          "",
+          fmt::format("with {}, neither run diverges; with {} of these, the drill sinks in less deep with tandpasta",
+                      of_hands, less)};
 }
 
 /// The earlier rule of F4 judged the depths of diverging runs.

@@ -85,9 +85,10 @@ std::pair<bool, bool> nearness(const MeasuredCase& c, const std::string& counts,
 
 /// Agreement of the counts of one density with a published recording, from section 3.3 or from appendix C.3.
 struct CountsAgree {
-  std::string raw = {};  ///< recordings whose mean and spread of the raw counts agree, such as "3.3"
-  bool mean = false;     ///< true if, in addition, the mean after the reduction agrees
-  bool whole = false;    ///< true if, in addition, the spread after the reduction agrees and no step reaches the bound
+  std::string raw = {};   ///< recordings whose mean and spread of the raw counts agree, such as "3.3"
+  std::string mean = {};  ///< the recordings of `raw` whose mean after the reduction agrees, too
+  std::string whole =
+      {};  ///< the recordings of `mean` whose spread after the reduction agrees, if no step reaches the bound
 };
 
 /// Compares the counts of one density with both published recordings of a task, in thesis 3.3 and in appendix C.3. The
@@ -100,20 +101,22 @@ CountsAgree agreement(const MeasuredCase& c, const PublishedNumbers& published, 
     const auto [mean_left, spread_left] =
         nearness(c, "reduced", published[task + ".reduced" + one], published[task + ".reduced" + other]);
     if (!raw_mean || !raw_spread) continue;
-    append_item(agree.raw, *one == '\0' ? "3.3" : "C.3", " and ");
-    agree.mean = agree.mean || mean_left;
-    agree.whole = agree.whole || (mean_left && spread_left && bounded);
+    const char* section = *one == '\0' ? "3.3" : "C.3";
+    append_item(agree.raw, section, " and ");
+    if (mean_left) append_item(agree.mean, section, " and ");
+    if (mean_left && spread_left && bounded) append_item(agree.whole, section, " and ");
   }
   return agree;
 }
 
 std::string agreement_text(const CountsAgree& agree, bool bounded, double bound) {
-  if (agree.whole) return "as published";
+  if (!agree.whole.empty()) return "as published in " + agree.whole;
   if (agree.raw.empty()) return "the raw counts are near neither those of 3.3 nor those of C.3";
-  if (!agree.mean) return "the raw counts are near those of " + agree.raw + ", but the number of points left is not";
-  return "the number of points left is as published, " + (bounded
-                                                              ? std::string("but its standard deviation is not")
-                                                              : fmt::format("but some steps keep {} or more", bound));
+  if (agree.mean.empty())
+    return "the raw counts are near those of " + agree.raw + ", but the number of points left is not";
+  return "the number of points left is as published in " + agree.mean + ", " +
+         (bounded ? std::string("but its standard deviation is not")
+                  : fmt::format("but some steps keep {} or more", bound));
 }
 
 /// Numbers of densities whose counts agree with a publication, as far as the members of CountsAgree with these names.
@@ -130,8 +133,8 @@ AgreeingDensities agreeing_densities(const Measured& counts, const PublishedNumb
     const bool bounded = c["outside_taps"] < bound;
     const CountsAgree agree = agreement(c, published, task, bounded);
     densities.raw += agree.raw.empty() ? 0U : 1U;
-    densities.mean += agree.mean ? 1U : 0U;
-    densities.whole += agree.whole ? 1U : 0U;
+    densities.mean += agree.mean.empty() ? 0U : 1U;
+    densities.whole += agree.whole.empty() ? 0U : 1U;
     append_item(densities.text, fmt::format("density field {}: {}", c.name, agreement_text(agree, bounded, bound)));
   }
   return densities;

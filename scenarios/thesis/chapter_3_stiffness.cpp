@@ -150,8 +150,8 @@ Finding judge_range(const Measured& measured, const PublishedNumbers& p, double 
       fmt::format(
           "after one update, if k contacts are parallel to each other, a contact of another direction can have a ratio "
           "as small as {:.2f}, {:.2f} and {:.2f} for k = 3, 4 and 5; the reduction of the thesis keeps about 6 "
-          "contacts, several of which can be nearly parallel (6° apart); in the mean over the steps of a density "
-          "field, the smallest ratio of a step is at least {:.2f} and the largest ratio at most {:.2f}{}",
+          "contacts, several of which can be nearly parallel (6° apart); averaged over all steps, the smallest "
+          "ratio of a step is {:.2f} and the largest {:.2f} or nearer to 1, with either density field{}",
           smallest_after_one_update(3), smallest_after_one_update(4), smallest_after_one_update(5), low, high,
           inside < 1.0 ? ", but in a part of the steps, a ratio is outside the range" : ""),
       "",

@@ -189,11 +189,11 @@ std::string changed_rules(const Json& claims) {
   return text;
 }
 
-/// Returns a sentence with the claims whose rules were committed before the measurement (Claim::added).
+/// Returns a sentence with the claims whose present rules were committed before the measurement (Claim::added).
 std::string rules_before_measurement(const Json& claims) {
   std::string added;
   for (const Json& claim : claims)
-    if (is(claim, "added")) append_item(added, link_to(claim), ", ");
+    if (is(claim, "added") && !claim.contains("revised")) append_item(added, link_to(claim), ", ");
   return added.empty() ? ""
                        : fmt::format("\nThe rules of {} were committed before these claims were measured.\n", added);
 }
