@@ -65,9 +65,7 @@ MeasuredValues measure_deadline(const Evidence& e) {
   DenseShaping dense(sets.front().size());
   const auto reduction = make_gradient_reduction({});
   reduction->prepare({});
-  const auto seconds = [&](auto work) -> std::vector<double> {
-    return {seconds_with(sets, kRepetitions, work) / static_cast<double>(sets.size())};
-  };
+  const auto seconds = [&](auto work) -> std::vector<double> { return {seconds_with(sets, work)}; };
   return {{"points", {static_cast<double>(sets.front().size())}},
           {"matrix", seconds([&](ContactBuffer& contacts) { dense.shape(contacts, kIterations); })},
           {"tensor", seconds([&](ContactBuffer& contacts) { shape_weights(contacts, kIterations); })},
@@ -105,11 +103,11 @@ MeasuredValues measure_loop_load(const Evidence& e) {
   const auto reduction = make_gradient_reduction({});
   reduction->prepare({});
   const auto load = [&](auto shape, bool reduce) -> std::vector<double> {
-    const double seconds = seconds_with(sets, kRepetitions, [&](ContactBuffer& contacts) {
+    const double seconds = seconds_with(sets, [&](ContactBuffer& contacts) {
       if (reduce) reduction->process(contacts);
       shape(contacts);
     });
-    return {seconds / static_cast<double>(sets.size()) / task.scenario.time.step};
+    return {seconds / task.scenario.time.step};
   };
   const auto by_matrix = [&dense](int n) { return [&dense, n](ContactBuffer& contacts) { dense.shape(contacts, n); }; };
   const auto by_tensor = [](ContactBuffer& contacts) { shape_weights(contacts, kIterations); };
@@ -157,8 +155,8 @@ MeasuredValues measure_tandpasta_cost(const Evidence& e) {
   for (const auto& [name, value] : {std::pair("tandpasta", "other"), std::pair(kProposedLaw, "shaped")}) {
     const auto law = make_law(name, scenario.rendering);
     law->prepare(sets.front().size());
-    const double seconds = seconds_with(sets, kRepetitions, [&](ContactBuffer& contacts) { law->evaluate(contacts); });
-    values[value] = {seconds / static_cast<double>(sets.size()) / scenario.time.step};
+    values[value] = {seconds_with(sets, [&](ContactBuffer& contacts) { law->evaluate(contacts); }) /
+                     scenario.time.step};
   }
   return values;
 }

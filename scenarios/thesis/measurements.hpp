@@ -93,11 +93,12 @@ double seconds_of_pass(const std::vector<ContactBuffer>& sets, ContactBuffer& co
   });
 }
 
-/// Returns the median processor time [s], over the repetitions, of calling `work` with a copy of each set. Does not
-/// include the time of copying and of reading the clock, which is longer than some laws need: each repetition subtracts
-/// the time of a pass that only copies. Throws NothingToMeasure if there is no set, or if the median is not above 0.
+/// Returns the median processor time [s], over the repetitions, of calling `work` with a copy of a set, as the mean
+/// over the sets. Does not include the time of copying and of reading the clock, which is longer than some laws need:
+/// each repetition subtracts the time of a pass that only copies. Throws NothingToMeasure if there is no set, or if the
+/// median is not above 0.
 template <class Work>
-double seconds_with(const std::vector<ContactBuffer>& sets, int repetitions, Work work) {
+double seconds_with(const std::vector<ContactBuffer>& sets, Work work, int repetitions = kRepetitions) {
   ContactBuffer copy(largest_of(sets).size());
   std::vector<double> seconds;
   for (int i = 0; i < repetitions; ++i) {
@@ -106,7 +107,7 @@ double seconds_with(const std::vector<ContactBuffer>& sets, int repetitions, Wor
   }
   const double middle = median(std::move(seconds));
   if (!(middle > 0.0)) throw NothingToMeasure("the computing time is below the noise of the clock");
-  return middle;
+  return middle / static_cast<double>(sets.size());
 }
 
 /// Returns the vibration measures of a run: total variation of the velocity [m/s], power of the velocity above 30 Hz
