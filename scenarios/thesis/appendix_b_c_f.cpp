@@ -425,15 +425,15 @@ Finding judge_quick_penetration(const Measured& measured, const PublishedNumbers
       measured, [](const MeasuredCase& m) { return !std::isnan(m["tandpasta"]) && !std::isnan(m["summation"]); });
   const auto less =
       std::ranges::count_if(measured, [](const MeasuredCase& m) { return m["tandpasta"] < m["summation"]; });
-  const std::string of_hands = fmt::format("{} of {} hands", judged, measured.size());
+  const std::string compared =
+      judged == 0 ? fmt::format("with each of the {} hands, a run diverges", measured.size())
+                  : fmt::format(
+                        "with {} of {} hands, neither run diverges; with {} of these, the drill sinks in less "
+                        "deep with tandpasta",
+                        judged, measured.size(), less);
   return {judged == 0 ? Verdict::not_judged : decide(less == judged, less > 0),
-          judged == 0 ? "with every hand, a run diverges, because n contacts have a stiffness of up to n K"
-                      : fmt::format("with {}, neither run diverges; with {} of these, the drill sinks in less deep "
-                                    "with tandpasta than with the plain sum",
-                                    of_hands, less),
-          "",
-          fmt::format("with {}, neither run diverges; with {} of these, the drill sinks in less deep with tandpasta",
-                      of_hands, less)};
+          compared + (judged == 0 ? ", because n contacts have a stiffness of up to n K" : " than with the plain sum"),
+          "", compared};
 }
 
 /// The earlier rule of F4 judged the depths of diverging runs.

@@ -187,17 +187,16 @@ Finding judge_experiment(const Measured& measured, const PublishedNumbers& publi
   const char* result = !consistent            ? "at least one judged measure is not as published"
                        : published_difference ? "the algorithms differ as published in every judged measure"
                                               : "no judged measure differs significantly between the algorithms";
-  return {
-      in_simulation(consistent),
-      fmt::format(
-          "{}{}. The {} has the largest deviation from a published mean: {:.2g} standard errors of the deviation, "
-          "after half a printed digit is subtracted for rounding (near: at most {:g}). The model force is not judged; "
-          "it is nearly an input, because subjects regulate the force that the gauge shows",
-          result,
-          deviating.empty() ? ", and all means are near the published means"
-                            : (consistent ? ", with deviations from the published means: " : ": ") + deviating,
-          farthest, largest, kStandardErrors),
-      text, number};
+  return {in_simulation(consistent),
+          fmt::format(
+              "{}{}. The largest deviation from a published mean is {:.2g} standard errors ({}; up to {:g} count as "
+              "near; half a printed digit is subtracted for rounding). The model force is not judged; it is nearly an "
+              "input, because subjects regulate the force that the gauge shows",
+              result,
+              deviating.empty() ? ", and all means are near the published means"
+                                : (consistent ? ", with deviations from the published means: " : ": ") + deviating,
+              largest, farthest, kStandardErrors),
+          text, number};
 }
 
 /// The earlier rule of D1 to D4 also compared the numbers with the published numbers, and two means that would be

@@ -110,10 +110,10 @@ CountsAgree agreement(const MeasuredCase& c, const PublishedNumbers& published, 
 }
 
 std::string agreement_text(const CountsAgree& agree, bool bounded, double bound) {
-  if (!agree.whole.empty()) return "as published in " + agree.whole;
-  if (agree.raw.empty()) return "the raw counts are near neither those of 3.3 nor those of C.3";
+  if (!agree.whole.empty()) return "all counts are near those of " + agree.whole;
+  if (agree.raw.empty()) return "the raw counts are near the counts of neither 3.3 nor C.3";
   if (agree.mean.empty())
-    return "the raw counts are near those of " + agree.raw + ", but the number of points left is not";
+    return "the raw counts are near those of " + agree.raw + ", but the number of points left is not near";
   return "the number of points left is as published in " + agree.mean + ", " +
          (bounded ? std::string("but its standard deviation is not")
                   : fmt::format("but some steps keep {} or more", bound));
@@ -135,7 +135,8 @@ AgreeingDensities agreeing_densities(const Measured& counts, const PublishedNumb
     densities.raw += agree.raw.empty() ? 0U : 1U;
     densities.mean += agree.mean.empty() ? 0U : 1U;
     densities.whole += agree.whole.empty() ? 0U : 1U;
-    append_item(densities.text, fmt::format("density field {}: {}", c.name, agreement_text(agree, bounded, bound)));
+    append_item(densities.text,
+                fmt::format("with the density field {}, {}", c.name, agreement_text(agree, bounded, bound)));
   }
   return densities;
 }

@@ -148,12 +148,12 @@ Finding judge_range(const Measured& measured, const PublishedNumbers& p, double 
   return {
       verdict,
       fmt::format(
-          "after one update, if k contacts are parallel to each other, a contact of another direction can have a ratio "
-          "as small as {:.2f}, {:.2f} and {:.2f} for k = 3, 4 and 5; the reduction of the thesis keeps about 6 "
-          "contacts, several of which can be nearly parallel (6° apart); averaged over all steps, the smallest "
-          "ratio of a step is {:.2f} and the largest {:.2f} or nearer to 1, with either density field{}",
+          "after one update, a contact beside k parallel contacts of another direction can have a ratio as small as "
+          "{:.2f}, {:.2f} and {:.2f} for k = 3, 4 and 5. The reduction of the thesis keeps about 6 contacts, and "
+          "several of them can be nearly parallel (6° apart). The mean over all steps is at least {:.2f} for the "
+          "smallest ratio of a step, and at most {:.2f} for the largest, with each density field{}",
           smallest_after_one_update(3), smallest_after_one_update(4), smallest_after_one_update(5), low, high,
-          inside < 1.0 ? ", but in a part of the steps, a ratio is outside the range" : ""),
+          inside < 1.0 ? ". In a part of the steps, a ratio is outside the range" : ""),
       "",
       averaged ? fmt::format("mean over the steps: smallest ratio {:.2f}, largest ratio {:.2f}", low, high)
                : fmt::format("in {:.0f} % of the steps of the worst run, all ratios are within {} to {}",
