@@ -156,11 +156,12 @@ Finding judge_springs_unlimited(const Measured& measured, const PublishedNumbers
     if (const auto found = smooth_with.find({true, algorithm});
         found != smooth_with.end() && (", " + found->second).ends_with(", " + plain(kPairs)))
       ++smooth;
-  return {published ? Verdict::replicated : Verdict::contradicted,
-          "100 pairs have 200 dampers of 88.5 N s/m, in sum 17 700 N s/m; this is 22 times the stability limit of A.3, "
-          "2 M / Δt = 800 N s/m for M = 0.2 kg, so the plain sum must diverge",
-          "numbers of pairs with which the path is smooth: " + text,
-          fmt::format("{} of {} algorithms are smooth with 100 pairs of springs", smooth, std::size(kAlgorithms))};
+  return {
+      published ? Verdict::replicated : Verdict::contradicted,
+      "100 pairs have 200 dampers of 88.5 N s/m, in sum 17 700 N s/m; this is 22 times the stability limit of A.3, "
+      "2 M / Δt = 800 N s/m for M = 0.2 kg, so the plain sum must diverge",
+      "numbers of pairs with which the path is smooth, for each algorithm and for depths ≥ 0 or signed depths: " + text,
+      fmt::format("{} of {} algorithms are smooth with 100 pairs of springs", smooth, std::size(kAlgorithms))};
 }
 
 // Number of pairs of springs with which the motion by the plain sum of forces (algorithm `summation`) is smooth without

@@ -382,13 +382,11 @@ Finding judge_tandpasta(const MeasuredCase& m, const PublishedNumbers& p) {
   const double smallest = boosts.empty() ? 0.0 : *std::min_element(boosts.begin(), boosts.end());
   const bool unchanged = std::abs(m["energy_ratio"] - 1.0) <= kEnergyKept;
   return {decide(unchanged && smallest >= threshold(p, "boosted"), unchanged && smallest > 1.0),
-          fmt::format(
-              "the weights {} the elastic energy and {} the outward force; with the time step of the thesis, the peg "
-              "leaves after 5 steps because the explicit friction diverges, not because of the law",
-              unchanged ? "keep" : "change", smallest > 1.0 ? "raise" : "do not raise"),
+          fmt::format("the weights {} the elastic energy and {} the outward force", unchanged ? "keep" : "change",
+                      smallest > 1.0 ? "raise" : "do not raise"),
           fmt::format(
               "energy ratio {:.12g}; outward force at tilts of {} rad {:.1f} times that of the plain springs; with a "
-              "time step that is short enough, the peg leaves the hole after {:.3f} s with tandpasta, {:.3f} s "
+              "time step of 5 µs and without friction, the peg leaves the hole after {:.3f} s with tandpasta, {:.3f} s "
               "with summation, {:.3f} s with stiffness shaping",
               m["energy_ratio"], fmt::join(kBoostTilts, ", "), fmt::join(boosts, ", "), m["tandpasta"], m["summation"],
               m["shaped_stiffness"])};
@@ -425,14 +423,22 @@ Finding judge_quick_penetration(const Measured& measured, const PublishedNumbers
       measured, [](const MeasuredCase& m) { return !std::isnan(m["tandpasta"]) && !std::isnan(m["summation"]); });
   const auto less =
       std::ranges::count_if(measured, [](const MeasuredCase& m) { return m["tandpasta"] < m["summation"]; });
+  const auto diverging = [&](const char* law) {
+    return std::ranges::count_if(measured, [&](const MeasuredCase& m) { return std::isnan(m[law]); });
+  };
   const std::string compared =
-      judged == 0 ? fmt::format("with each of the {} hands, a run diverges", measured.size())
+      judged == 0 ? fmt::format("with each of the {} hands, the run with tandpasta or with the plain sum diverges",
+                                measured.size())
                   : fmt::format(
                         "with {} of {} hands, neither run diverges; with {} of these, the drill sinks in less "
                         "deep with tandpasta",
                         judged, measured.size(), less);
   return {judged == 0 ? Verdict::not_judged : decide(less == judged, less > 0),
-          compared + (judged == 0 ? ", because n contacts have a stiffness of up to n K" : " than with the plain sum"),
+          judged == 0
+              ? fmt::format("the run with tandpasta diverges with {} of {} hands, the run with the plain sum with "
+                            "{}, so no hand is left for a comparison",
+                            diverging("tandpasta"), measured.size(), diverging("summation"))
+              : compared + " than with the plain sum",
           "", compared};
 }
 

@@ -117,40 +117,48 @@ Compared compare(const MeasuredCase& m, const PublishedNumbers& published, const
   return c;
 }
 
-/// Returns true if a measure is as the rule of D1 to D4 requires.
+/// Returns true if a judged measure is as the rule of D1 to D4 requires.
 bool is_consistent(const MeasuredCase& m, const Compared& c, bool published_difference) {
-  if (m.name == kModelForce) return true;  // subjects regulate the force, so it is an input
+  if (m.all("original").empty()) return false;  // no subject has values for both algorithms
   // If the thesis reports no difference, the success rates must also be near the published rates: two rates of 0 do not
   // differ either.
   const bool near = published_difference || m.name != kSuccessRate || c.near();
   return c.agrees && near;
 }
 
-/// Returns how the difference between the algorithms is not as published; empty if it is as published.
-std::string wrong_difference(const Compared& c, bool published_difference) {
-  return c.agrees                ? ""
-         : !published_difference ? "a significant difference, unlike in the thesis"
-         : c.significant         ? "a difference in the opposite direction"
-                                 : "a difference that is not significant";
+/// Returns the means of a measure with both algorithms.
+std::string both_means(const MeasuredCase& m) {
+  return fmt::format("{} {:.2g} (original) against {:.2g}{} (shaping)", m.name, mean_of(m.all("original")),
+                     mean_of(m.all("shaped")), column_of(m).unit);
 }
 
-/// Returns which means are far from the published means; empty if both are near.
-std::string far_means(const Compared& c) {
-  // A missing mean (NaN) is not near.
-  const bool original = !(c.of_original <= kStandardErrors), shaped = !(c.of_shaped <= kStandardErrors);
-  return original && shaped ? "far from the published means"
-         : original         ? "far from the published mean with the original algorithm"
-         : shaped           ? "far from the published mean with stiffness shaping"
-                            : "";
-}
-
-/// Returns the means of a measure with both algorithms, followed by `deviation`; empty if `deviation` is empty.
-std::string with_means(const MeasuredCase& m, const std::string& deviation) {
-  if (deviation.empty()) return "";
+/// Returns the means of a measure with both algorithms, and how they are not as published.
+std::string wrong_means(const MeasuredCase& m, const Compared& c, bool published_difference) {
   if (m.all("original").empty())
     return fmt::format("{}: not compared, because no subject has values for both algorithms", m.name);
-  return fmt::format("{} {:.2g} (original) against {:.2g}{} (shaping), {}", m.name, mean_of(m.all("original")),
-                     mean_of(m.all("shaped")), column_of(m).unit, deviation);
+  return both_means(m) + (c.agrees                ? ", not near the published means"
+                          : !published_difference ? ", a significant difference, unlike in the thesis"
+                          : c.significant         ? ", a difference in the opposite direction"
+                                                  : ", a difference that is not significant");
+}
+
+/// Returns the means of a measure that are far from the published means, with the published means; empty if both are
+/// near. `id`: see judge_experiment().
+std::string far_means(const MeasuredCase& m, const Compared& c, const PublishedNumbers& published,
+                      const std::string& id) {
+  const MeasuredColumn& column = column_of(m);
+  std::string means;
+  const auto add = [&](double deviation, const char* values, const char* law, const char* algorithm) {
+    if (deviation <= kStandardErrors) return;
+    const double mean = published[fmt::format("{}.{}.{}", id, column.published, law)].mean;
+    append_item(
+        means,
+        fmt::format("{:.2g}{} with {} (published: {})", mean_of(m.all(values)), column.unit, algorithm, plain(mean)),
+        " and ");
+  };
+  add(c.of_original, "original", "original_averaging", "the original algorithm");
+  add(c.of_shaped, "shaped", kProposedLaw, "stiffness shaping");
+  return means.empty() ? "" : m.name + " " + means;
 }
 
 /// Returns the paired t statistic as text.
@@ -158,45 +166,43 @@ std::string t_text(double t) {
   return std::isfinite(t) ? fmt::format("t = {:.3g}", t) : "the same difference for every subject";
 }
 
+/// Returns the reason of the verdict. `wrong`: the judged measures that are not as published; `far`: the means that are
+/// far from the published means. `published_difference`: see judge_experiment().
+std::string experiment_reason(const std::string& wrong, const std::string& far, bool published_difference) {
+  std::string reason = !wrong.empty()         ? "at least one judged measure is not as published: " + wrong
+                       : published_difference ? "the algorithms differ as published in every judged measure"
+                                              : "no judged measure differs significantly between the algorithms";
+  if (!far.empty())
+    reason += fmt::format(
+        ". Means whose difference from the published mean is more than rounding and {:g} standard "
+        "errors: {}",
+        kStandardErrors, far);
+  return reason + ". The force is not judged, because subjects regulate it";
+}
+
 /// Judges an experiment by all its measures except the force. `id`: D1 to D4. `published_difference`: true if the
 /// thesis reports a significant difference between the algorithms. The number of the finding has the success rates, and
-/// each other measure that is not consistent.
+/// each other measure that is not as published.
 Finding judge_experiment(const Measured& measured, const PublishedNumbers& published, const std::string& id,
                          bool published_difference) {
   bool consistent = true;
-  std::string text, number, deviating, farthest;
-  double largest = -1.0;
+  std::string text, number, unlike_published, far;
   for (const MeasuredCase& m : measured) {
-    const Compared c = compare(m, published, id, published_difference);
-    if (c.farthest() > largest) farthest = m.name;
-    largest = std::max(largest, c.farthest());
-    const bool as_published = is_consistent(m, c, published_difference);
-    consistent = consistent && as_published;
-    std::string deviation = wrong_difference(c, published_difference);
     const std::vector<double>&a = m.all("original"), &b = m.all("shaped");
-    if (m.name == kSuccessRate)
-      append_item(number,
-                  fmt::format("success rate {:.2f} (original) against {:.2f} (shaping)", mean_of(a), mean_of(b)));
-    else if (!as_published)
-      append_item(number, with_means(m, deviation));
-    if (const std::string means = far_means(c); !means.empty()) append_item(deviation, means, " and ");
-    if (!deviation.empty()) append_item(deviating, with_means(m, deviation));
+    const Compared c = compare(m, published, id, published_difference);
     append_item(text, fmt::format("{} {:.2g} ± {:.1g} vs {:.2g} ± {:.1g} ({})", m.name, mean_of(a), standard_error(a),
                                   mean_of(b), standard_error(b), t_text(c.t)));
+    if (m.name == kModelForce) continue;
+    const bool as_published = is_consistent(m, c, published_difference);
+    consistent = consistent && as_published;
+    if (!as_published) append_item(unlike_published, wrong_means(m, c, published_difference));
+    if (m.name == kSuccessRate)
+      append_item(number, fmt::format("{} {:.2f} (original) against {:.2f} (shaping)", m.name, mean_of(a), mean_of(b)));
+    else if (!as_published)
+      append_item(number, wrong_means(m, c, published_difference));
+    if (const std::string means = far_means(m, c, published, id); !means.empty()) append_item(far, means);
   }
-  const char* result = !consistent            ? "at least one judged measure is not as published"
-                       : published_difference ? "the algorithms differ as published in every judged measure"
-                                              : "no judged measure differs significantly between the algorithms";
-  return {in_simulation(consistent),
-          fmt::format(
-              "{}{}. The largest deviation from a published mean is {:.2g} standard errors ({}; up to {:g} count as "
-              "near; half a printed digit is subtracted for rounding). The model force is not judged; it is nearly an "
-              "input, because subjects regulate the force that the gauge shows",
-              result,
-              deviating.empty() ? ", and all means are near the published means"
-                                : (consistent ? ", with deviations from the published means: " : ": ") + deviating,
-              largest, farthest, kStandardErrors),
-          text, number};
+  return {in_simulation(consistent), experiment_reason(unlike_published, far, published_difference), text, number};
 }
 
 /// The earlier rule of D1 to D4 also compared the numbers with the published numbers, and two means that would be
@@ -239,7 +245,8 @@ struct EffectOfWall {
 
 EffectOfWall effect_of_wall(const Measured& measured, const PublishedNumbers& published) {
   EffectOfWall effect;
-  for (const auto& [name, law] : {std::pair("original", "original_averaging"), std::pair("shaped", kProposedLaw)}) {
+  for (const auto& [name, law, label] :
+       {std::tuple("original", "original_averaging", "original"), std::tuple("shaped", kProposedLaw, "shaping")}) {
     const std::vector<double>&centre = measured.at(0).all(name), &side = measured.at(1).all(name);
     const PublishedNumber at_side = published[std::string("D1.success.") + law],
                           at_centre = published[std::string("D2.success.") + law];
@@ -248,7 +255,7 @@ EffectOfWall effect_of_wall(const Measured& measured, const PublishedNumbers& pu
                                      math::hypot(standard_error(side), standard_error(centre)));
     effect.direction = effect.direction && change * expected > 0.0;
     effect.near = effect.near && std::abs(change - expected) <= kStandardErrors * error;
-    append_item(effect.text, fmt::format("{} {:.2f} → {:.2f}", law, mean_of(centre), mean_of(side)));
+    append_item(effect.text, fmt::format("{} {:.2f} → {:.2f}", label, mean_of(centre), mean_of(side)));
   }
   return effect;
 }

@@ -318,7 +318,8 @@ std::string ledger_markdown(const Json& ledger) {
       "\n\nIn the tables, *published* are numbers of the thesis, and *ours* are numbers of hapbench. "
       "Numbers such as 2.8 and A.3 are sections of the thesis. An id such as R1b links to the section of "
       "the claim in [claim_pages.md](claim_pages.md), which has the rule of the verdict. *Original* is the "
-      "original algorithm, *shaping* is stiffness shaping, the algorithm that the thesis proposes. A *stiffness ratio* "
+      "algorithm of the trainer before the thesis (appendix B; the law `original_averaging`). *Shaping* is stiffness "
+      "shaping, the algorithm that the thesis proposes (the law `shaped_stiffness`). A *stiffness ratio* "
       "is the combined stiffness of all contacts in the direction of one contact, divided by the stiffness K of one "
       "contact. *Raw points* are the colliding points before local average and reduction. The surface points of the "
       "block with the hole are computed from a *density* field: `signed_distance` or `binary`. *Tandpasta* is a law of "
@@ -374,7 +375,7 @@ std::string claim_pages(const Json& ledger) {
       "- **Robustness**: each assumption that changes the verdict if it has another value. The ledger explains the "
       "words *robust*, *exact* and *not sampled*.\n"
       "- **Sensitivity**: values of assumptions that give another verdict, each with this verdict and the number. Two "
-      "verdicts do not count for the robustness. *Not judged*: the calibrated hand misses the published number that it "
+      "of the verdicts do not count for the robustness. *Not judged*: the calibrated hand misses the published number that it "
       "is fitted to, or the run has nothing to measure. *Not measured*: a scenario cannot run with the value.\n"
       "- A section that begins with *Finding of this project* is about no claim of the thesis. The verdicts on "
       "findings are *holds* and *does not hold*.\n";
