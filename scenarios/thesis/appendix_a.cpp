@@ -180,9 +180,10 @@ Measured measure_springs_limited(const Evidence& e) {
   return measured;
 }
 
-/// Returns the number of swings of a case as an item of a list.
-std::string swings_text(const MeasuredCase& m, bool is_first) {
-  return fmt::format("{} times {}with {} pairs", m["swings"], is_first ? "about the origin " : "", m["pairs"]);
+/// Returns the number of swings with and without the limits as an item of a list.
+std::string swings_text(const MeasuredCase& with, const MeasuredCase& without, bool is_first) {
+  return fmt::format("{} times {}with {} pairs (without the limits: {})", with["swings"],
+                     is_first ? "about the origin " : "", with["pairs"], without["swings"]);
 }
 
 Finding judge_springs_limited(const Measured& runs, const PublishedNumbers& p) {
@@ -193,7 +194,7 @@ Finding judge_springs_limited(const Measured& runs, const PublishedNumbers& p) {
   for (std::size_t i = 0; i + 1 < runs.size(); i += 2) {
     const MeasuredCase &without = runs[i], &with = runs[i + 1];
     if (with.name == kProposedLaw) {
-      append_item(swings, swings_text(with, swings.empty()), ", ");
+      append_item(swings, swings_text(with, without, swings.empty()), ", ");
       keeps = keeps && with["arrives"] == 1.0 && with["swings"] <= without["swings"] &&
               with["overshoot"] <= (1.0 + threshold(p, "same_overshoot")) * without["overshoot"];
     } else {

@@ -31,8 +31,9 @@ MeasuredValues measure_flipped_gradient(const Evidence&) {
 Finding judge_flipped_gradient(const MeasuredCase& m, const PublishedNumbers&) {
   const bool pulled = m["with_shortest_distance"] < 0.0;
   const bool pushed = m["with_surface_normal"] > 0.0;
-  return {decide(pulled && pushed, pulled), pulled ? "beyond the median line the original algorithm pulls the tool in"
-                                                   : "the original algorithm pushes the tool out here"};
+  return {decide(pulled && pushed, pulled),
+          pulled ? "beyond the median line of the drill, the original algorithm pulls the tool in"
+                 : "the original algorithm pushes the tool out here"};
 }
 
 /// Returns damping_ratio_of_swings() of the tool's x coordinate in a run; NaN if damping_ratio_of_swings() returns

@@ -174,8 +174,8 @@ std::string experiment_reason(const std::string& wrong, const std::string& far, 
                                               : "no judged measure differs significantly between the algorithms";
   if (!far.empty())
     reason += fmt::format(
-        ". Means whose difference from the published mean is more than rounding and {:g} standard "
-        "errors: {}",
+        ". Some means differ from the published means by more than rounding plus {:g} standard errors: "
+        "{}",
         kStandardErrors, far);
   return reason + ". The force is not judged, because subjects regulate it";
 }

@@ -375,8 +375,8 @@ std::string claim_pages(const Json& ledger) {
       "- **Robustness**: each assumption that changes the verdict if it has another value. The ledger explains the "
       "words *robust*, *exact* and *not sampled*.\n"
       "- **Sensitivity**: values of assumptions that give another verdict, each with this verdict and the number. Two "
-      "of the verdicts do not count for the robustness. *Not judged*: the calibrated hand misses the published number that it "
-      "is fitted to, or the run has nothing to measure. *Not measured*: a scenario cannot run with the value.\n"
+      "of the verdicts do not count for the robustness. *Not judged*: the calibrated hand misses the published number "
+      "that it is fitted to, or the run has nothing to measure. *Not measured*: a scenario cannot run with the value.\n"
       "- A section that begins with *Finding of this project* is about no claim of the thesis. The verdicts on "
       "findings are *holds* and *does not hold*.\n";
   for (const Json& claim : ledger.at("claims")) {
