@@ -172,12 +172,10 @@ MeasuredValues measure_pop_through(const Evidence& e) {
 
 Finding judge_pop_through(const MeasuredCase& m, const PublishedNumbers&) {
   const double original = m[kOriginalLaw], proposed = m[kProposedLaw];
-  return {
-      decide(original > 0.0 && proposed == 0.0, original > proposed),
-      original > 0.0
-          ? "a part of the drill that is deeper in the block than half the width of the drill is pulled farther in, because "
-            "the gradient there is reversed"
-          : "the drill stays in the hole"};
+  return {decide(original > 0.0 && proposed == 0.0, original > proposed),
+          original > 0.0 ? "where the drill is deeper in the block than half its width, the gradients are reversed and "
+                           "pull it farther in"
+                         : "the drill stays in the hole"};
 }
 
 /// The earlier rule of B5 ignored that a run with the proposed algorithm may diverge.
