@@ -94,7 +94,8 @@ Finding judge_groove(const Measured& measured, const PublishedNumbers& p) {
           with > majority ? "does not hide" : "hides"),
       "",
       fmt::format(
-          "under-damped at {} of {} angles without friction, at {} of {} with the scene's viscous friction of {} N s/m",
+          "under-damped at {} of {} angles between the contacts without friction, at {} of {} with the scene's viscous "
+          "friction of {} N s/m",
           without, measured.size(), with, measured.size(), plain(measured.front()["groove_friction_mu_s"]))};
 }
 
@@ -428,19 +429,21 @@ Finding judge_quick_penetration(const Measured& measured, const PublishedNumbers
     return std::ranges::count_if(measured, [&](const MeasuredCase& m) { return std::isnan(m[law]); });
   };
   const std::string compared =
-      judged == 0 ? fmt::format("with each of the {} hands, the run with tandpasta or with the plain sum diverges",
-                                measured.size())
-                  : fmt::format(
-                        "with {} of {} hands, neither run diverges; with {} of these, the drill sinks in less "
-                        "deep with tandpasta",
-                        judged, measured.size(), less);
-  return {judged == 0 ? Verdict::not_judged : decide(less == judged, less > 0),
-          judged == 0
-              ? fmt::format("the run with tandpasta diverges with {} of {} hands, the run with the plain sum with "
-                            "{}, so no hand is left for a comparison",
-                            diverging("tandpasta"), measured.size(), diverging("summation"))
-              : compared + " than with the plain sum",
-          "", compared};
+      judged == 0
+          ? fmt::format("with each of the {} hands, at least one of the two runs (tandpasta, plain sum) diverges",
+                        measured.size())
+          : fmt::format(
+                "with {} of {} hands, neither run diverges; with {} of these, the drill sinks in less "
+                "deep with tandpasta",
+                judged, measured.size(), less);
+  return {
+      judged == 0 ? Verdict::not_judged : decide(less == judged, less > 0),
+      judged == 0
+          ? fmt::format("the run with tandpasta diverges with {0} of {1} hands, and the run with the plain sum with "
+                        "{2} of {1}, so no hand is left for a comparison",
+                        diverging("tandpasta"), measured.size(), diverging("summation"))
+          : compared + " than with the plain sum",
+      "", compared};
 }
 
 /// The earlier rule of F4 judged the depths of diverging runs.

@@ -151,7 +151,8 @@ Finding judge_range(const Measured& measured, const PublishedNumbers& p, double 
           "after one update, a contact beside k parallel contacts of another direction can have a ratio as small as "
           "{:.2f}, {:.2f} and {:.2f} for k = 3, 4 and 5. The reduction of the thesis keeps about 6 contacts, and "
           "several of them can be nearly parallel (6° apart). In the mean over all steps, the smallest ratio of a step "
-          "is {:.2f} and the largest ratio {:.2f}, each with the density field that is worse{}",
+          "is {:.2f} with the density field for which it is smaller, and the largest ratio is {:.2f} with the density "
+          "field for which it is larger{}",
           smallest_after_one_update(3), smallest_after_one_update(4), smallest_after_one_update(5), low, high,
           inside < 1.0 ? ". In a part of the steps, a ratio is outside the range" : ""),
       "",
