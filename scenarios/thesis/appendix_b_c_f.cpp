@@ -425,25 +425,22 @@ Finding judge_quick_penetration(const Measured& measured, const PublishedNumbers
       measured, [](const MeasuredCase& m) { return !std::isnan(m["tandpasta"]) && !std::isnan(m["summation"]); });
   const auto less =
       std::ranges::count_if(measured, [](const MeasuredCase& m) { return m["tandpasta"] < m["summation"]; });
-  const auto diverging = [&](const char* law) {
-    return std::ranges::count_if(measured, [&](const MeasuredCase& m) { return std::isnan(m[law]); });
-  };
-  const std::string compared =
-      judged == 0
-          ? fmt::format("with each of the {} hands, at least one of the two runs (tandpasta, plain sum) diverges",
-                        measured.size())
-          : fmt::format(
-                "with {} of {} hands, neither run diverges; with {} of these, the drill sinks in less "
-                "deep with tandpasta",
-                judged, measured.size(), less);
-  return {
-      judged == 0 ? Verdict::not_judged : decide(less == judged, less > 0),
-      judged == 0
-          ? fmt::format("the run with tandpasta diverges with {0} of {1} hands, and the run with the plain sum with "
+  if (judged == 0) {
+    const auto diverging = [&](const char* law) {
+      return std::ranges::count_if(measured, [&](const MeasuredCase& m) { return std::isnan(m[law]); });
+    };
+    return {Verdict::not_judged,
+            fmt::format("the run with tandpasta diverges with {0} of {1} hands, and the run with the plain sum with "
                         "{2} of {1}, so no hand is left for a comparison",
-                        diverging("tandpasta"), measured.size(), diverging("summation"))
-          : compared + " than with the plain sum",
-      "", compared};
+                        diverging("tandpasta"), measured.size(), diverging("summation")),
+            "",
+            fmt::format("with each of the {} hands, at least one of the two runs (tandpasta, plain sum) diverges",
+                        measured.size())};
+  }
+  const std::string compared = fmt::format(
+      "with {} of {} hands, neither run diverges; with {} of these, the drill sinks in less deep with tandpasta",
+      judged, measured.size(), less);
+  return {decide(less == judged, less > 0), compared + " than with the plain sum", "", compared};
 }
 
 /// The earlier rule of F4 judged the depths of diverging runs.

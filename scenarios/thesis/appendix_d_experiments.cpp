@@ -97,13 +97,18 @@ struct Compared {
   bool near() const { return farthest() <= kStandardErrors; }
 };
 
+/// Returns the published number of a measure with a law. `id`: see judge_experiment().
+const PublishedNumber& published_of(const MeasuredCase& m, const PublishedNumbers& published, const std::string& id,
+                                    const char* law) {
+  return published[fmt::format("{}.{}.{}", id, column_of(m).published, law)];
+}
+
 /// Compares a measure with the published values. `id`, `published_difference`: see judge_experiment().
 Compared compare(const MeasuredCase& m, const PublishedNumbers& published, const std::string& id,
                  bool published_difference) {
-  const MeasuredColumn& column = column_of(m);
   const std::vector<double>&original = m.all("original"), &shaped = m.all("shaped");
-  const PublishedNumber& of_original = published[id + "." + column.published + ".original_averaging"];
-  const PublishedNumber& of_shaped = published[id + "." + column.published + ".shaped_stiffness"];
+  const PublishedNumber& of_original = published_of(m, published, id, "original_averaging");
+  const PublishedNumber& of_shaped = published_of(m, published, id, kProposedLaw);
   const auto difference = [](const std::vector<double>& ours, const PublishedNumber& p) {
     const double beyond = std::max(std::abs(mean_of(ours) - p.mean) - half_a_digit(p.mean), 0.0);
     return beyond == 0.0 ? 0.0 : beyond / math::hypot(p.spread, standard_error(ours));
@@ -146,15 +151,13 @@ std::string wrong_means(const MeasuredCase& m, const Compared& c, bool published
 /// near. `id`: see judge_experiment().
 std::string far_means(const MeasuredCase& m, const Compared& c, const PublishedNumbers& published,
                       const std::string& id) {
-  const MeasuredColumn& column = column_of(m);
   std::string means;
   const auto add = [&](double deviation, const char* values, const char* law, const char* algorithm) {
     if (deviation <= kStandardErrors) return;
-    const double mean = published[fmt::format("{}.{}.{}", id, column.published, law)].mean;
-    append_item(
-        means,
-        fmt::format("{:.2g}{} with {} (published: {})", mean_of(m.all(values)), column.unit, algorithm, plain(mean)),
-        " and ");
+    append_item(means,
+                fmt::format("{:.2g}{} with {} (published: {})", mean_of(m.all(values)), column_of(m).unit, algorithm,
+                            plain(published_of(m, published, id, law).mean)),
+                " and ");
   };
   add(c.of_original, "original", "original_averaging", "the original algorithm");
   add(c.of_shaped, "shaped", kProposedLaw, "stiffness shaping");
@@ -173,10 +176,10 @@ std::string experiment_reason(const std::string& wrong, const std::string& far, 
                        : published_difference ? "the algorithms differ as published in every judged measure"
                                               : "no judged measure differs significantly between the algorithms";
   if (!far.empty())
-    reason += fmt::format(
-        ". Some means differ from the published means by more than rounding plus {:g} standard errors: "
-        "{}",
-        kStandardErrors, far);
+    reason +=
+        fmt::format(". Some means differ from the published means by more than rounding plus {:g} standard errors: ",
+                    kStandardErrors) +
+        far;
   return reason + ". The force is not judged, because subjects regulate it";
 }
 
@@ -195,11 +198,12 @@ Finding judge_experiment(const Measured& measured, const PublishedNumbers& publi
     if (m.name == kModelForce) continue;
     const bool as_published = is_consistent(m, c, published_difference);
     consistent = consistent && as_published;
-    if (!as_published) append_item(unlike_published, wrong_means(m, c, published_difference));
+    const std::string wrong = as_published ? "" : wrong_means(m, c, published_difference);
+    if (!as_published) append_item(unlike_published, wrong);
     if (m.name == kSuccessRate)
       append_item(number, fmt::format("{} {:.2f} (original) against {:.2f} (shaping)", m.name, mean_of(a), mean_of(b)));
     else if (!as_published)
-      append_item(number, wrong_means(m, c, published_difference));
+      append_item(number, wrong);
     if (const std::string means = far_means(m, c, published, id); !means.empty()) append_item(far, means);
   }
   return {in_simulation(consistent), experiment_reason(unlike_published, far, published_difference), text, number};
@@ -212,10 +216,7 @@ Verdict judge_experiment_before(const Measured& measured, const PublishedNumbers
   bool all = true, success = false;
   for (const MeasuredCase& m : measured) {
     const Compared c = compare(m, published, id, published_difference);
-    const MeasuredColumn& column = column_of(m);
-    const auto half = [&](const char* law) {
-      return half_a_digit(published[fmt::format("{}.{}.{}", id, column.published, law)].mean);
-    };
+    const auto half = [&](const char* law) { return half_a_digit(published_of(m, published, id, law).mean); };
     const double difference = std::abs(mean_of(m.all("original")) - mean_of(m.all("shaped")));
     const bool equal = difference <= half("original_averaging") + half(kProposedLaw);
     const bool agrees = c.agrees || (!published_difference && equal);
