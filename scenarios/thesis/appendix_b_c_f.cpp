@@ -94,9 +94,9 @@ Finding judge_groove(const Measured& measured, const PublishedNumbers& p) {
           with > majority ? "does not hide" : "hides"),
       "",
       fmt::format(
-          "under-damped at {} of {} angles between the contacts without friction, at {} of {} with the scene's viscous "
-          "friction of {} N s/m",
-          without, measured.size(), with, measured.size(), plain(measured.front()["groove_friction_mu_s"]))};
+          "without friction, under-damped at {} of {} angles between the contacts; with the scene's viscous friction of "
+          "{} N s/m, at {} of {}",
+          without, measured.size(), plain(measured.front()["groove_friction_mu_s"]), with, measured.size())};
 }
 
 // ---- B3: the merged depth before and after adding two points, in units of the depth of each point. With n = kPoints,
@@ -433,9 +433,7 @@ Finding judge_quick_penetration(const Measured& measured, const PublishedNumbers
             fmt::format("the run with tandpasta diverges with {0} of {1} hands, and the run with the plain sum with "
                         "{2} of {1}, so no hand is left for a comparison",
                         diverging("tandpasta"), measured.size(), diverging("summation")),
-            "",
-            fmt::format("with each of the {} hands, at least one of the two runs (tandpasta, plain sum) diverges",
-                        measured.size())};
+            "", fmt::format("0 of {} hands are left for a comparison, because runs diverge", measured.size())};
   }
   const std::string compared = fmt::format(
       "with {} of {} hands, neither run diverges; with {} of these, the drill sinks in less deep with tandpasta",

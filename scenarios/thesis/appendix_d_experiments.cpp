@@ -367,11 +367,11 @@ Finding judge_pilots(const Measured& measured, const PublishedNumbers& published
           fmt::format("offset: {}; height: {}; positions at which the success rate is lower with stiffness shaping: {}",
                       offset.text(), height.text(), worse.empty() ? "none" : worse),
           "",
-          fmt::format("largest success rate with the original algorithm: {:.2f} for targets more than {} mm from the "
-                      "axis, {:.2f} for targets lower than {} mm; at the easiest offset {:.2f}, at the easiest height "
+          fmt::format("largest success rate with the original algorithm: among targets more than {} mm from the axis "
+                      "{:.2f}, among all distances {:.2f}; among targets lower than {} mm {:.2f}, among all heights "
                       "{:.2f}",
-                      offset.beyond, plain(published["D6.offset"].at_most * 1e3), height.beyond,
-                      plain(published["D6.height"].at_least * 1e3), offset.easiest, height.easiest)};
+                      plain(published["D6.offset"].at_most * 1e3), offset.beyond, offset.easiest,
+                      plain(published["D6.height"].at_least * 1e3), height.beyond, height.easiest)};
 }
 
 /// An experiment of appendix D.

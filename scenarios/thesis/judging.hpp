@@ -50,8 +50,8 @@ inline constexpr VerdictText kVerdicts[] = {
      "people"},
     {"not consistent in simulation", "simulated subjects do not show the published differences"},
     {"not judged",
-     "an input is calibrated to a published number, but the calibration misses this number, so the run predicts "
-     "nothing; or the run has nothing to measure: for example, it has no contact, or it diverges"},
+     "the run has nothing to measure (it has no contact, or it diverges), or it cannot predict anything, because an input "
+     "that is calibrated to a published number misses this number"},
     {"holds", "a finding of this project that the measurement shows"},
     {"does not hold", "a finding of this project that the measurement does not show"}};
 inline constexpr std::string_view verdict_name(Verdict verdict) {

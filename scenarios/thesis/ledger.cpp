@@ -162,40 +162,38 @@ std::string table_of(const Json& claims, const std::string& title, bool (*belong
   return rows.empty() ? "" : fmt::format("\n### {}\n\n{}{}", title, kHeading, rows);
 }
 
-/// Returns the verdict of a claim with its earlier rule and with its present rule.
-std::string both_verdicts(const Json& claim) {
-  const std::string before = text_at(claim.at("revised"), "verdict"), now = text_at(claim, "verdict");
-  return fmt::format("{}: {}{}", link_to(claim), before, before == now ? " (unchanged)" : ", now " + now);
-}
+/// Cell of the verdict by the present rule if it is the verdict by the earlier rule.
+constexpr std::string_view kUnchanged = "the same";
 
-/// Returns a table with a row for each reason that changed rules: the changed claims with both verdicts.
-/// claim_pages() prints the earlier rules. Empty if no rule was changed.
+/// Returns a table of the claims whose rules were changed, with a row for each pair of verdicts: first the rows whose
+/// verdicts differ. claim_pages() prints the earlier rules and the reasons. Empty if no rule was changed.
 std::string changed_rules(const Json& claims) {
-  std::vector<std::pair<std::string, std::string>> rows;  // reason, claims
+  using Row = std::pair<std::string, std::string>;  // cells of both verdicts, cell of the claims
+  std::vector<Row> rows;
   for (const Json& claim : claims) {
     if (!claim.contains("revised")) continue;
-    const std::string reason = text_at(claim.at("revised"), "reason");
-    auto row = std::ranges::find(rows, reason, &std::pair<std::string, std::string>::first);
-    if (row == rows.end()) row = rows.insert(row, {reason, ""});
-    append_item(row->second, both_verdicts(claim), "<br>");
+    const std::string before = text_at(claim.at("revised"), "verdict"), now = text_at(claim, "verdict");
+    const std::string verdicts = fmt::format("{} | {}", before, before == now ? kUnchanged : now);
+    auto row = std::ranges::find(rows, verdicts, &Row::first);
+    if (row == rows.end()) row = rows.insert(row, {verdicts, ""});
+    append_item(row->second, link_to(claim), ", ");
   }
   if (rows.empty()) return "";
+  std::ranges::stable_partition(rows, [](const Row& row) { return !row.first.ends_with(kUnchanged); });
   std::string text =
-      "\n### Rules that were changed after their verdicts were known\n\nThe present program applied the earlier and "
-      "the present rule to its runs. The link of a claim leads to both rules and, for each rule, to the assumptions "
-      "that change its verdict. The earlier rule of J1 needs other hands; for this rule, the present program made "
-      "further runs.\n\n| reason of the change | verdict with the earlier rule, and now |\n|---|---|\n";
-  for (const auto& [reason, cell] : rows) text += fmt::format("| {} | {} |\n", reason, cell);
+      "\n### Rules that were changed after their verdicts were known\n\nThe link of a claim leads to both rules and the "
+      "reason of the change. Both rules were applied to the same runs, except in J1, whose earlier rule needs runs with "
+      "other hands.\n\n| verdict by the earlier rule | verdict by the present rule | claims |\n|---|---|---|\n";
+  for (const auto& [verdicts, links] : rows) text += fmt::format("| {} | {} |\n", verdicts, links);
   return text;
 }
 
-/// Returns a sentence with the claims whose present rules were committed before the measurement (Claim::added).
+/// Returns the claims whose present rules were committed before the measurement (Claim::added), with a heading.
 std::string rules_before_measurement(const Json& claims) {
   std::string added;
   for (const Json& claim : claims)
     if (is(claim, "added") && !claim.contains("revised")) append_item(added, link_to(claim), ", ");
-  return added.empty() ? ""
-                       : fmt::format("\nThe rules of {} were committed before these claims were measured.\n", added);
+  return added.empty() ? "" : fmt::format("\n### Rules that were committed before the measurement\n\n{}.\n", added);
 }
 
 /// Returns the numbers of each case; a list if a name has several numbers.
@@ -333,7 +331,7 @@ std::string ledger_markdown(const Json& ledger) {
   for (const VerdictText& verdict : kVerdicts) text += fmt::format("- *{}*: {}.\n", verdict.name, verdict.meaning);
   text +=
       "\nRobustness: the thesis leaves some values open, so hapbench assumes them. Each assumption was set to each of "
-      "its plausible values, one at a time, and calibrated hands were calibrated again. `hapbench describe NAME` "
+      "its plausible values, one at a time. `hapbench describe NAME` "
       "explains an assumption or a claim; the claim pages have each value that changes a verdict, with the new verdict "
       "and number.\n\n"
       "- *exact*: no assumption enters the claim.\n"
@@ -343,7 +341,7 @@ std::string ledger_markdown(const Json& ledger) {
       "- *not sampled*: no other values were tried.\n";
   const std::string failing = failures(claims);
   text += "\n## 2. Claims that failed\n\n" +
-          (failing.empty() ? "" : "Part 4 has the claims about computing time.\n\n" + failing);
+          (failing.empty() ? "" : "Claims about computing time are in part 4, also those that failed.\n\n" + failing);
   text += "\n## 3. All claims, by chapter\n" + chapters(claims);
   text += "\n## 4. Computing times, claims that are not testable, changed rules and findings of this project\n";
   text += table_of(claims, "Computing time, on one machine (medians)",

@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -5,6 +6,7 @@
 #include <map>
 #include <optional>
 
+#include "scenarios/input/text_lines.hpp"
 #include "scenarios/thesis/assumption_sets.hpp"
 #include "scenarios/thesis/assumptions.hpp"
 #include "scenarios/thesis/claims.hpp"
@@ -258,16 +260,17 @@ TEST(Ledger, HasBothVerdictsOfEveryChangedRuleAndBothRules) {
     ++revised;
     const auto text = [](const Json& of, const char* key) { return of[key].get<std::string>(); };
     const std::string id = text(claim, "id"), before = text(claim["revised"], "verdict"), now = text(claim, "verdict");
-    const auto entry = table.find("[" + id + "](");
-    ASSERT_NE(entry, std::string::npos) << id;
-    const std::string verdicts = before + (before == now ? " (unchanged)" : ", now " + now);
-    EXPECT_EQ(table.substr(table.find(": ", entry) + 2, verdicts.size()), verdicts) << id;
-    EXPECT_NE(table.find("| " + text(claim["revised"], "reason") + " |"), std::string::npos) << id;
+    const std::string link = fmt::format("[{}](claim_pages.md#{})", id, lower_case(id));
+    const std::string verdicts = fmt::format("\n| {} | {} | ", before, before == now ? "the same" : now);
+    const auto row = table.find(verdicts);
+    ASSERT_NE(row, std::string::npos) << id;
+    EXPECT_LT(table.find(link, row), table.find('\n', row + 1)) << id;
     const auto section = sections.find("\n## " + id + "\n");
     ASSERT_NE(section, std::string::npos) << id;
     const std::string of_claim = sections.substr(section, sections.find("\n## ", section + 1) - section);
     EXPECT_NE(of_claim.find(text(claim, "rule")), std::string::npos) << id;
     EXPECT_NE(of_claim.find(text(claim["revised"], "rule")), std::string::npos) << id;
+    EXPECT_NE(of_claim.find("Changed because " + text(claim["revised"], "reason")), std::string::npos) << id;
   }
   EXPECT_EQ(revised,
             std::ranges::count_if(all_claims(), [](const Claim& claim) { return !claim.earlier.rule.empty(); }));

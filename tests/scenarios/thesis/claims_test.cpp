@@ -445,8 +445,8 @@ TEST(Claims, OfThePilotExperimentsNameTheRateAtEachJudgedPosition) {
       published());
   EXPECT_EQ(finding.verdict, not_consistent);
   EXPECT_EQ(finding.number,
-            "largest success rate with the original algorithm: 0.05 for targets more than 0.52 mm from the axis, 0.02 "
-            "for targets lower than 3 mm; at the easiest offset 0.90, at the easiest height 0.30");
+            "largest success rate with the original algorithm: among targets more than 0.52 mm from the axis 0.05, "
+            "among all distances 0.90; among targets lower than 3 mm 0.02, among all heights 0.30");
   EXPECT_NE(finding.why.find("lower with stiffness shaping: offset 0.40 mm (0.25, with the original algorithm 0.90)"),
             std::string::npos)
       << finding.why;
