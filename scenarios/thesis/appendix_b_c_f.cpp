@@ -94,8 +94,8 @@ Finding judge_groove(const Measured& measured, const PublishedNumbers& p) {
           with > majority ? "does not hide" : "hides"),
       "",
       fmt::format(
-          "without friction, under-damped at {} of {} angles between the contacts; with the scene's viscous friction of "
-          "{} N s/m, at {} of {}",
+          "without friction, under-damped at {} of {} angles between the contacts; with the scene's viscous friction "
+          "of {} N s/m, at {} of {}",
           without, measured.size(), plain(measured.front()["groove_friction_mu_s"]), with, measured.size())};
 }
 
@@ -228,12 +228,13 @@ Finding judge_density(const Measured& measured, const PublishedNumbers& p) {
                small = threshold(p, "negligible");
   return {
       decide(reduced <= small, std::min(all, limit) <= small),
-      fmt::format("without the reduction, {} updates of stiffness shaping {}, and {} updates {}; the reduction, which "
-                  "removes points with similar gradients, {} it",
-                  measured.front()["updates"],
-                  all <= small ? "decouple the force from the density" : "do not decouple the force from the density",
-                  kUpdates[std::size(kUpdates) - 1], limit <= small ? "decouple it" : "do not",
-                  reduced <= small ? "decouples" : "does not decouple")};
+      fmt::format(
+          "without the reduction, {} iterations of stiffness shaping {}, and {} iterations {}; the reduction, which "
+          "removes points with similar gradients, {} it",
+          measured.front()["updates"],
+          all <= small ? "decouple the force from the density" : "do not decouple the force from the density",
+          kUpdates[std::size(kUpdates) - 1], limit <= small ? "decouple it" : "do not",
+          reduced <= small ? "decouples" : "does not decouple")};
 }
 
 /// The earlier rule of P1 asked first for the force without the reduction.
@@ -261,7 +262,7 @@ MeasuredValues measure_information(const Evidence& e) {
 Finding judge_information(const MeasuredCase& m, const PublishedNumbers& p) {
   const bool majority = m["change"] <= threshold(p, "over_reduced"), half = m["change"] <= threshold(p, "most");
   return {decide(majority, half),
-          "three updates give different weights with all points and with the points that the reduction keeps"};
+          "three iterations give different weights with all points and with the points that the reduction keeps"};
 }
 
 // ---- C6: the damping ratio of 1, 2, 4 and 8 springs in parallel. The stiffness divided by the stiffness of one spring
@@ -429,14 +430,16 @@ Finding judge_quick_penetration(const Measured& measured, const PublishedNumbers
     const auto diverging = [&](const char* law) {
       return std::ranges::count_if(measured, [&](const MeasuredCase& m) { return std::isnan(m[law]); });
     };
-    return {Verdict::not_judged,
-            fmt::format("the run with tandpasta diverges with {0} of {1} hands, and the run with the plain sum with "
-                        "{2} of {1}, so no hand is left for a comparison",
-                        diverging("tandpasta"), measured.size(), diverging("summation")),
-            "", fmt::format("0 of {} hands are left for a comparison, because runs diverge", measured.size())};
+    return {
+        Verdict::not_judged,
+        fmt::format("tandpasta diverges with {0} of {1} hands, and the plain sum, with which it is compared, "
+                    "diverges with {2} of {1} hands; so no hand is left for a comparison",
+                    diverging("tandpasta"), measured.size(), diverging("summation")),
+        "",
+        fmt::format("runs diverge with each of the {} simulated hands, so nothing can be compared", measured.size())};
   }
   const std::string compared = fmt::format(
-      "with {} of {} hands, neither run diverges; with {} of these, the drill sinks in less deep with tandpasta",
+      "with {} of {} simulated hands, neither run diverges; with {} of these, the drill sinks in less deep with tandpasta",
       judged, measured.size(), less);
   return {decide(less == judged, less > 0), compared + " than with the plain sum", "", compared};
 }

@@ -39,19 +39,20 @@ struct VerdictText {
 /// The texts of all verdicts, in the order of Verdict.
 inline constexpr VerdictText kVerdicts[] = {
     {"replicated",
-     "our implementation, written from the text of the thesis alone and not by its author, meets the claim's rule with "
-     "the published numbers (as in the ACM badge \"Results Replicated\", version 1.1)"},
-    {"qualitatively replicated", "the direction or the mechanism is as published; the numbers are not"},
+     "hapbench, which was written from the text of the thesis alone and not by the author of the thesis, meets the "
+     "claim's rule with the published numbers (as in the ACM badge \"Results Replicated\", version 1.1)"},
+    {"qualitatively replicated",
+     "the direction or the mechanism is as published, but a number is missed, the effect is weaker, or it shows only "
+     "under other conditions; the claim page has the details"},
     {"not replicated", "neither the numbers nor the direction are as published, in this model of device and hand"},
     {"contradicted", "a closed form or a counterexample contradicts the claim"},
     {"not testable", "no simulation can test the claim, because it is about people or about the trainer's hardware"},
     {"consistent in simulation",
-     "simulated subjects show the published differences between the algorithms; they replicate no experiment with "
-     "people"},
-    {"not consistent in simulation", "simulated subjects do not show the published differences"},
+     "with simulated subjects, the experiment gives the published result; this replicates no experiment with people"},
+    {"not consistent in simulation", "with simulated subjects, the experiment does not give the published result"},
     {"not judged",
-     "the run has nothing to measure (it has no contact, or it diverges), or it cannot predict anything, because an input "
-     "that is calibrated to a published number misses this number"},
+     "the run has nothing to measure (it has no contact, or it diverges), or the simulated hand does not reach the "
+     "published number that it is fitted to"},
     {"holds", "a finding of this project that the measurement shows"},
     {"does not hold", "a finding of this project that the measurement does not show"}};
 inline constexpr std::string_view verdict_name(Verdict verdict) {

@@ -181,9 +181,9 @@ std::string changed_rules(const Json& claims) {
   if (rows.empty()) return "";
   std::ranges::stable_partition(rows, [](const Row& row) { return !row.first.ends_with(kUnchanged); });
   std::string text =
-      "\n### Rules that were changed after their verdicts were known\n\nThe link of a claim leads to both rules and the "
-      "reason of the change. Both rules were applied to the same runs, except in J1, whose earlier rule needs runs with "
-      "other hands.\n\n| verdict by the earlier rule | verdict by the present rule | claims |\n|---|---|---|\n";
+      "\n### Rules that were changed after their verdicts were known\n\nThe link of a claim leads to both rules and "
+      "the reason of the change. Both rules were applied to the same runs, except in J1, whose earlier rule needs runs "
+      "with other hands.\n\n| verdict by the earlier rule | verdict by the present rule | claims |\n|---|---|---|\n";
   for (const auto& [verdicts, links] : rows) text += fmt::format("| {} | {} |\n", verdicts, links);
   return text;
 }
@@ -271,8 +271,8 @@ std::string headline_of(const Json& claims) {
   if (others > 0) text += fmt::format(", {} were not sampled (no other values were tried)", others);
   text += ".";
   if (timing > 0)
-    text += fmt::format(" {} claims about computing time are counted separately, because times depend on the machine.",
-                        timing);
+    text += fmt::format(
+        " {} more claims, about computing time, are counted separately, because times depend on the machine.", timing);
   return text;
 }
 
@@ -315,17 +315,22 @@ std::string ledger_markdown(const Json& ledger) {
       "# The thesis, claim by claim\n\n*Reference.* " + text_at(ledger, "headline") +
       "\n\nIn the tables, *published* are numbers of the thesis, and *ours* are numbers of hapbench. "
       "Numbers such as 2.8 and A.3 are sections of the thesis. An id such as R1b links to the section of "
-      "the claim in [claim_pages.md](claim_pages.md), which has the rule of the verdict. *Original* is the "
-      "algorithm of the trainer before the thesis (appendix B; the law `original_averaging`). *Shaping* is stiffness "
-      "shaping, the algorithm that the thesis proposes (the law `shaped_stiffness`). A *stiffness ratio* "
-      "is the combined stiffness of all contacts in the direction of one contact, divided by the stiffness K of one "
-      "contact. *Raw points* are the colliding points before local average and reduction. The surface points of the "
-      "block with the hole are computed from a *density* field: `signed_distance` or `binary`. *Tandpasta* is a law of "
-      "appendix F, which weakens springs that oppose each other. In task 1, the drill is pressed "
-      "on a flat surface and dragged. In task 2, it tilts to and fro in a hole. In task 3, it moves along the wall "
-      "of a hole, around the axis. The vertical and the rotational task of claims D1 to D7 are the two experiments of "
-      "appendix D, in which people reach targets with a drill in a hole. The "
-      "[glossary](../../scenarios/GLOSSARY.md) has the other terms.\n\n"
+      "the claim in [claim_pages.md](claim_pages.md), which has the rule of the verdict. Terms of the tables (the "
+      "[glossary](../../scenarios/GLOSSARY.md) has more):\n\n"
+      "- *original*: the algorithm that the thesis examines in order to replace it (appendix B; the law "
+      "`original_averaging`)\n"
+      "- *shaping*: stiffness shaping, the algorithm that the thesis proposes (the law `shaped_stiffness`). In a few "
+      "iterations, it gives each contact a weight, by which it multiplies the contact's stiffness\n"
+      "- *stiffness ratio* of a contact: the combined stiffness of all contacts, measured along the direction of this "
+      "contact, divided by the stiffness K of one contact\n"
+      "- *raw points*: the colliding points before local average and reduction\n"
+      "- *tandpasta*: a law of appendix F, which weakens springs that oppose each other\n"
+      "- *task 1*, *task 2*, *task 3*: the drill is pressed on a flat surface and dragged; it tilts to and fro in a "
+      "hole; it moves along the wall of a hole, around the axis. In tasks 2 and 3, the simulated hand presses gently, "
+      "because it is fitted to the published numbers of raw points; in other scenes, the hand presses harder, so that "
+      "the drill penetrates deeper\n"
+      "- *vertical task*, *rotational task*: the two experiments of appendix D, in which people reach targets with a "
+      "drill in a hole. In simulation, their force is not judged, because subjects regulate it\n\n"
       "## 1. What the abstract claims\n\n" +
       abstract_table(ledger) + "\nVerdicts:\n\n";
   for (const VerdictText& verdict : kVerdicts) text += fmt::format("- *{}*: {}.\n", verdict.name, verdict.meaning);
@@ -335,14 +340,17 @@ std::string ledger_markdown(const Json& ledger) {
       "explains an assumption or a claim; the claim pages have each value that changes a verdict, with the new verdict "
       "and number.\n\n"
       "- *exact*: no assumption enters the claim.\n"
-      "- *robust*: no other value of a single assumption changes the verdict.\n"
+      "- *robust*: no other value of any assumption changes the verdict.\n"
       "- *sensitive to* an assumption: only this assumption changes the verdict.\n"
-      "- *depends on several*: each of the named assumptions changes the verdict alone.\n"
+      "- *depends on several*: each of the named assumptions alone changes the verdict.\n"
       "- *not sampled*: no other values were tried.\n";
   const std::string failing = failures(claims);
-  text += "\n## 2. Claims that failed\n\n" +
+  text += "\n## 2. Claims that failed or were not judged\n\n" +
           (failing.empty() ? "" : "Claims about computing time are in part 4, also those that failed.\n\n" + failing);
-  text += "\n## 3. All claims, by chapter\n" + chapters(claims);
+  text +=
+      "\n## 3. All claims, by chapter\n\nFor D1 to D4, the column *ours* shows the success rates. It shows "
+      "another measure only if this measure is not as published; the claim pages show all.\n" +
+      chapters(claims);
   text += "\n## 4. Computing times, claims that are not testable, changed rules and findings of this project\n";
   text += table_of(claims, "Computing time, on one machine (medians)",
                    [](const Json& claim) { return is(claim, "timing") && !is(claim, "ours"); });

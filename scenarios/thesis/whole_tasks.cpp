@@ -49,12 +49,14 @@ Finding judge_stability(const Measured& measured, const PublishedNumbers&) {
     buzz = std::max(buzz, m["buzz"]);
     pop = std::max(pop, m["pop"]);
   }
-  return {decide(undisturbed == measured.size(), completed == measured.size()),
-          fmt::format("{} of {} runs complete; in {} of them, the diagnosis finds no vibration and no jumps", completed,
-                      measured.size(), undisturbed),
-          "",
-          fmt::format("{} of {} runs complete; rms force above 30 Hz: at most {:.2f} times the mean force", completed,
-                      measured.size(), buzz)};
+  return {
+      decide(undisturbed == measured.size(), completed == measured.size()),
+      fmt::format("{} of {} runs complete; in {} of them, the diagnosis finds no vibration and no jumps", completed,
+                  measured.size(), undisturbed),
+      "",
+      fmt::format(
+          "{} of {} runs complete; the part of the force above 30 Hz has an rms of at most {:.2f} times the mean force",
+          completed, measured.size(), buzz)};
 }
 
 // ---- G3: largest depth of a contact in each task and density [m].

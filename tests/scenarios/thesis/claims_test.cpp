@@ -267,7 +267,9 @@ TEST(Claims, AreJudgedByTheirThresholds) {
       {"A4",
        "K_max (B = 0): limit=1.616e6 | B_max (K = 0): limit=399",
        {{"", replicated}, {"0.limit=1.76e6", not_replicated}, {"1.limit=520", not_replicated}}},
-      {"A5", "there=560 alone=400", {{"", replicated}, {"there=600", qualitatively}, {"there=390", not_replicated}}},
+      {"A5",
+       "stiffness=1.6e6 there=560 alone=400",
+       {{"", replicated}, {"there=600", qualitatively}, {"there=390", not_replicated}}},
       {"A6",
        "mass=0 kept=0 naive=1 bound=1.1",
        {{"", replicated},
@@ -445,8 +447,9 @@ TEST(Claims, OfThePilotExperimentsNameTheRateAtEachJudgedPosition) {
       published());
   EXPECT_EQ(finding.verdict, not_consistent);
   EXPECT_EQ(finding.number,
-            "largest success rate with the original algorithm: among targets more than 0.52 mm from the axis 0.05, "
-            "among all distances 0.90; among targets lower than 3 mm 0.02, among all heights 0.30");
+            "largest success rate with the original algorithm, in the vertical task: 0.05 at targets beyond 0.52 mm, "
+            "0.90 at nearer targets; in the rotational task: 0.02 at targets less than 3 mm above the bottom, 0.30 at "
+            "higher targets");
   EXPECT_NE(finding.why.find("lower with stiffness shaping: offset 0.40 mm (0.25, with the original algorithm 0.90)"),
             std::string::npos)
       << finding.why;
