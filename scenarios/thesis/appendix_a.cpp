@@ -196,17 +196,14 @@ Finding judge_springs_limited(const Measured& runs, const PublishedNumbers& p) {
       const bool fluctuates = with["swings"] >= without["swings"] + threshold(p, "fluctuates");
       somewhere = somewhere || fluctuates;
       published_pairs = published_pairs || (fluctuates && with["pairs"] == static_cast<double>(kPairs));
-      append_item(others,
-                  fmt::format("{} {} ({} pairs of springs)", with.name, fluctuates ? "fluctuates" : "stays smooth",
-                              with["pairs"]),
-                  ", ");
+      append_item(others, fmt::format("with {} pairs of springs, {} is smooth {}", with["pairs"], with.name,
+                                      fluctuates ? "only without the limits" : "with and without the limits"));
     }
     append_item(text, fmt::format("{}, {} pairs: {}{}, then {}{}", with.name, with["pairs"], without["swings"],
                                   without["arrives"] == 1.0 ? "" : " (does not arrive)", with["swings"],
                                   with["arrives"] == 1.0 ? "" : " (does not arrive)"));
   }
-  others = others.empty() ? "no other algorithm is smooth without the limits"
-                          : "of the other algorithms that are smooth without the limits, " + others;
+  if (others.empty()) others = "no other algorithm is smooth without the limits";
   return {decide(keeps && published_pairs, keeps && somewhere),
           fmt::format("with the limits, the proposed algorithm {} its performance; {}",
                       keeps ? "keeps" : "does not keep", others),
