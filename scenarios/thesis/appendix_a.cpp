@@ -276,8 +276,8 @@ Finding judge_damping_at_limit(const MeasuredCase& m, const PublishedNumbers& p)
   const double alone = std::abs(m["alone"] / p["A4.damping"].mean - 1.0);
   const bool before = m["there"] > m["alone"];
   const std::string found = fmt::format(
-      "at {:.3g}e6 N/m, the largest stable stiffness of an undamped mass, the prescribed damping ratio needs {:.0f} N s/m, "
-      "{} {:.0f} N s/m are stable",
+      "at {:.3g}e6 N/m, the largest stable stiffness of an undamped mass, the prescribed damping ratio needs {:.0f} N "
+      "s/m, {} {:.0f} N s/m are stable",
       1e-6 * m["stiffness"], m["there"], before ? "but only" : "and", m["alone"]);
   return {decide(before && std::max(there, alone) <= threshold(p, "same_limit"), before), found, "", found};
 }

@@ -439,7 +439,8 @@ Finding judge_quick_penetration(const Measured& measured, const PublishedNumbers
         fmt::format("runs diverge with each of the {} simulated hands, so nothing can be compared", measured.size())};
   }
   const std::string compared = fmt::format(
-      "with {} of {} simulated hands, neither run diverges; with {} of these, the drill sinks in less deep with tandpasta",
+      "with {} of {} simulated hands, neither run diverges; with {} of these, the drill sinks in less deep with "
+      "tandpasta",
       judged, measured.size(), less);
   return {decide(less == judged, less > 0), compared + " than with the plain sum", "", compared};
 }

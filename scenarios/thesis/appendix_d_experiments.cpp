@@ -143,14 +143,13 @@ std::string both_means(const MeasuredCase& m) {
                      two_digits(mean_of(m.all("shaped"))), column_of(m).unit);
 }
 
-/// Returns the means of a measure with both algorithms, and how they are not as published.
-std::string wrong_means(const MeasuredCase& m, const Compared& c, bool published_difference) {
-  if (m.all("original").empty())
-    return fmt::format("{}: not compared, because no subject has values for both algorithms", m.name);
-  return both_means(m) + (c.agrees                ? ", not near the published means"
-                          : !published_difference ? ", a significant difference, unlike in the thesis"
-                          : c.significant         ? ", a difference in the opposite direction"
-                                                  : ", a difference that is not significant");
+/// Returns how a measure that is_consistent() rejects is not as published.
+const char* deviation(const MeasuredCase& m, const Compared& c, bool published_difference) {
+  if (m.all("original").empty()) return "not compared, because no subject has values for both algorithms";
+  return c.agrees                ? "not near the published means"
+         : !published_difference ? "a significant difference, unlike in the thesis"
+         : c.significant         ? "a difference in the opposite direction"
+                                 : "a difference that is not significant";
 }
 
 /// Returns the means of a measure that are far from the published means, with the published means; empty if both are
@@ -204,12 +203,13 @@ Finding judge_experiment(const Measured& measured, const PublishedNumbers& publi
     if (m.name == kModelForce) continue;
     const bool as_published = is_consistent(m, c, published_difference);
     consistent = consistent && as_published;
-    const std::string wrong = as_published ? "" : wrong_means(m, c, published_difference);
-    if (!as_published) append_item(unlike_published, wrong);
+    const char* wrong = as_published ? "" : deviation(m, c, published_difference);
+    if (!as_published) append_item(unlike_published, fmt::format("{} ({})", m.name, wrong));
     if (m.name == kSuccessRate)
       append_item(number, fmt::format("{} {:.2f} (original) against {:.2f} (shaping)", m.name, mean_of(a), mean_of(b)));
     else if (!as_published)
-      append_item(number, wrong);
+      append_item(number,
+                  a.empty() ? fmt::format("{}: {}", m.name, wrong) : fmt::format("{}, {}", both_means(m), wrong));
     if (const std::string means = far_means(m, c, published, id); !means.empty()) append_item(far, means);
   }
   return {in_simulation(consistent), experiment_reason(unlike_published, far, published_difference), text, number};
@@ -369,16 +369,17 @@ Finding judge_pilots(const Measured& measured, const PublishedNumbers& published
                   fmt::format("{} {:.2f} mm ({:.2f}, with the original algorithm {:.2f})", m.name, 1e3 * m["value"],
                               m["shaped"], m["original"]),
                   ", ");
-  return {in_simulation(offset.as_published() && height.as_published()),
-          fmt::format("offset: {}; height: {}; positions at which the success rate is lower with stiffness shaping: {}",
-                      offset.text(), height.text(), worse.empty() ? "none" : worse),
-          "",
-          fmt::format(
-              "largest success rate with the original algorithm, in the vertical task: {:.2f} at targets beyond {} mm, "
-              "{:.2f} at nearer targets; in the rotational task: {:.2f} at targets less than {} mm above the bottom, "
-              "{:.2f} at higher targets",
-              offset.beyond, plain(published["D6.offset"].at_most * 1e3), offset.within, height.beyond,
-              plain(published["D6.height"].at_least * 1e3), height.within)};
+  return {
+      in_simulation(offset.as_published() && height.as_published()),
+      fmt::format("offset: {}; height: {}; positions at which the success rate is lower with stiffness shaping: {}",
+                  offset.text(), height.text(), worse.empty() ? "none" : worse),
+      "",
+      fmt::format(
+          "with the original algorithm, vertical task: the best target beyond {} mm has a success rate of {:.2f}, the "
+          "best nearer target {:.2f}; rotational task: the best target less than {} mm above the bottom has {:.2f}, "
+          "the best higher target {:.2f}",
+          plain(published["D6.offset"].at_most * 1e3), offset.beyond, offset.within,
+          plain(published["D6.height"].at_least * 1e3), height.beyond, height.within)};
 }
 
 /// An experiment of appendix D.

@@ -39,8 +39,8 @@ struct VerdictText {
 /// The texts of all verdicts, in the order of Verdict.
 inline constexpr VerdictText kVerdicts[] = {
     {"replicated",
-     "hapbench, which was written from the text of the thesis alone and not by the author of the thesis, meets the "
-     "claim's rule with the published numbers (as in the ACM badge \"Results Replicated\", version 1.1)"},
+     "the claim's rule holds with the published numbers, in a program that was written from the text of the thesis "
+     "alone and not by the author of the thesis (as in the ACM badge \"Results Replicated\", version 1.1)"},
     {"qualitatively replicated",
      "the direction or the mechanism is as published, but a number is missed, the effect is weaker, or it shows only "
      "under other conditions; the claim page has the details"},
