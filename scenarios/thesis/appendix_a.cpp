@@ -196,8 +196,9 @@ Finding judge_springs_limited(const Measured& runs, const PublishedNumbers& p) {
       const bool fluctuates = with["swings"] >= without["swings"] + threshold(p, "fluctuates");
       somewhere = somewhere || fluctuates;
       published_pairs = published_pairs || (fluctuates && with["pairs"] == static_cast<double>(kPairs));
-      append_item(others, fmt::format("with {} pairs of springs, {} is smooth {}", with["pairs"], with.name,
-                                      fluctuates ? "only without the limits" : "with and without the limits"));
+      const std::string effect = fluctuates ? fmt::format("make {} fluctuate (as claimed)", with.name)
+                                            : fmt::format("leave {} smooth (unlike the claim)", with.name);
+      append_item(others, fmt::format("with {} pairs of springs, they {}", with["pairs"], effect));
     }
     append_item(text, fmt::format("{}, {} pairs: {}{}, then {}{}", with.name, with["pairs"], without["swings"],
                                   without["arrives"] == 1.0 ? "" : " (does not arrive)", with["swings"],
@@ -205,7 +206,8 @@ Finding judge_springs_limited(const Measured& runs, const PublishedNumbers& p) {
   }
   if (others.empty()) others = "no other algorithm is smooth without the limits";
   return {decide(keeps && published_pairs, keeps && somewhere),
-          fmt::format("with the limits, the proposed algorithm {} its performance; {}",
+          fmt::format("with the limits, the proposed algorithm {} its performance; the effect of the limits on other "
+                      "algorithms that are smooth without them: {}",
                       keeps ? "keeps" : "does not keep", others),
           "number of swings, with signed depths, first without the limits, then with them: " + text,
           fmt::format("with the proposed algorithm, the limits add {} swings; {}",

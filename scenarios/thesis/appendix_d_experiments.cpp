@@ -177,7 +177,7 @@ std::string t_text(double t) {
 /// Returns the reason of the verdict. `wrong`: the judged measures that are not as published; `far`: the means that are
 /// far from the published means. `published_difference`: see judge_experiment().
 std::string experiment_reason(const std::string& wrong, const std::string& far, bool published_difference) {
-  std::string reason = !wrong.empty()         ? "not as published: " + wrong
+  std::string reason = !wrong.empty()         ? wrong
                        : published_difference ? "the algorithms differ as published in every judged measure"
                                               : "no judged measure differs significantly between the algorithms";
   if (!far.empty())
@@ -204,7 +204,7 @@ Finding judge_experiment(const Measured& measured, const PublishedNumbers& publi
     const bool as_published = is_consistent(m, c, published_difference);
     consistent = consistent && as_published;
     const char* wrong = as_published ? "" : deviation(m, c, published_difference);
-    if (!as_published) append_item(unlike_published, fmt::format("{} ({})", m.name, wrong));
+    if (!as_published) append_item(unlike_published, fmt::format("{} is not as published ({})", m.name, wrong));
     if (m.name == kSuccessRate)
       append_item(number, fmt::format("{} {:.2f} (original) against {:.2f} (shaping)", m.name, mean_of(a), mean_of(b)));
     else if (!as_published)
@@ -375,11 +375,11 @@ Finding judge_pilots(const Measured& measured, const PublishedNumbers& published
                   offset.text(), height.text(), worse.empty() ? "none" : worse),
       "",
       fmt::format(
-          "with the original algorithm, vertical task: the best target beyond {} mm has a success rate of {:.2f}, the "
-          "best nearer target {:.2f}; rotational task: the best target less than {} mm above the bottom has {:.2f}, "
-          "the best higher target {:.2f}",
-          plain(published["D6.offset"].at_most * 1e3), offset.beyond, offset.within,
-          plain(published["D6.height"].at_least * 1e3), height.beyond, height.within)};
+          "highest success rate with the original algorithm: {:.2f} among targets beyond {} mm, {:.2f} among nearer "
+          "targets (vertical task); {:.2f} among targets less than {} mm above the bottom, {:.2f} among higher "
+          "targets (rotational task)",
+          offset.beyond, plain(published["D6.offset"].at_most * 1e3), offset.within, height.beyond,
+          plain(published["D6.height"].at_least * 1e3), height.within)};
 }
 
 /// An experiment of appendix D.

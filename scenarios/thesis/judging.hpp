@@ -53,8 +53,8 @@ inline constexpr VerdictText kVerdicts[] = {
     {"not judged",
      "the run has nothing to measure (it has no contact, or it diverges), or the simulated hand does not reach the "
      "published number that it is fitted to"},
-    {"holds", "a finding of this project that the measurement shows"},
-    {"does not hold", "a finding of this project that the measurement does not show"}};
+    {"holds", "a statement of this project that the measurement supports"},
+    {"does not hold", "a statement of this project that the measurement does not support"}};
 inline constexpr std::string_view verdict_name(Verdict verdict) {
   return kVerdicts[static_cast<std::size_t>(verdict)].name;
 }

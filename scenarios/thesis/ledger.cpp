@@ -330,8 +330,8 @@ std::string ledger_markdown(const Json& ledger) {
       "because it is fitted to the published numbers of raw points; in other scenes, the hand presses harder, so that "
       "the drill penetrates deeper\n"
       "- *vertical task*, *rotational task*: the two experiments of appendix D, in which people reach targets with a "
-      "drill in a hole. In the simulated experiments, the measure *force* is not judged, because subjects regulate "
-      "their force\n\n"
+      "drill in a hole. In hapbench, simulated subjects do "
+      "this. The force in D1 to D4 is not judged, because these subjects regulate it\n\n"
       "## 1. What the abstract claims\n\n" +
       abstract_table(ledger) + "\nVerdicts:\n\n";
   for (const VerdictText& verdict : kVerdicts) text += fmt::format("- *{}*: {}.\n", verdict.name, verdict.meaning);
