@@ -179,7 +179,8 @@ std::string changed_rules(const Json& claims) {
     append_item(row->second, link_to(claim), ", ");
   }
   if (rows.empty()) return "";
-  std::ranges::stable_partition(rows, [](const Row& row) { return !row.first.ends_with(kUnchanged); });
+  // clang 14 cannot compile std::ranges::stable_partition() with the standard library of GCC 12.
+  std::stable_partition(rows.begin(), rows.end(), [](const Row& row) { return !row.first.ends_with(kUnchanged); });
   std::string text =
       "\n### Rules that were changed after their verdicts were known\n\nThe link of a claim leads to both rules and "
       "the reason of the change. Both rules were applied to the same runs, except in J1, whose earlier rule needs runs "
