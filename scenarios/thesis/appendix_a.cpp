@@ -4,7 +4,6 @@
 #include <cmath>
 #include <map>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "scenarios/analysis/stability/field_limit.hpp"
@@ -277,11 +276,15 @@ Finding judge_damping_at_limit(const MeasuredCase& m, const PublishedNumbers& p)
   const double there = std::abs(m["there"] / p["A4.damping.undamped"].mean - 1.0);
   const double alone = std::abs(m["alone"] / p["A4.damping"].mean - 1.0);
   const bool before = m["there"] > m["alone"];
-  const std::string found = fmt::format(
-      "at {:.3g}e6 N/m, the largest stable stiffness of an undamped mass, the prescribed damping ratio needs {:.0f} N "
-      "s/m, {} {:.0f} N s/m are stable",
-      1e-6 * m["stiffness"], m["there"], before ? "but only" : "and", m["alone"]);
-  return {decide(before && std::max(there, alone) <= threshold(p, "same_limit"), before), found, "", found};
+  return {decide(before && std::max(there, alone) <= threshold(p, "same_limit"), before),
+          before ? "at the largest stiffness that is stable without damping, the damping ratio gives a damping that is "
+                   "unstable even without a spring"
+                 : "at the largest stiffness that is stable without damping, the damping ratio gives a damping that is "
+                   "stable without a spring",
+          "",
+          fmt::format("at {:.3g}e6 N/m, the largest stable stiffness of an undamped mass, the prescribed damping ratio "
+                      "needs {:.0f} N s/m, {} {:.0f} N s/m are stable",
+                      1e-6 * m["stiffness"], m["there"], before ? "but only" : "and", m["alone"])};
 }
 
 // ---- A6: energies of an undamped mass on a spring, whose motion is computed by Eq. A.1.
@@ -319,8 +322,6 @@ MeasuredValues measure_energy(const Evidence& e) {
       {"mass", {excess / start}}, {"kept", {kept}}, {"naive", {largest / start}}, {"bound", {1.0 / (1.0 - half_turn)}}};
 }
 
-constexpr std::string_view kPassive = "passive", kNotPassive = "not passive";
-
 Finding judge_energy(const MeasuredCase& m, const PublishedNumbers&) {
   const bool mass = m["mass"] <= kSameEnergy, kept = m["kept"] <= kSameEnergy, naive = m["naive"] <= 1.0 + kSameEnergy;
   return {decide(mass && kept && naive, mass || kept),
@@ -331,8 +332,8 @@ Finding judge_energy(const MeasuredCase& m, const PublishedNumbers&) {
               mass ? "is" : "is not", kept ? "is" : "is not", m["bound"]),
           "",
           fmt::format("energy that the integrator adds, divided by the initial energy: {:.1g} without a spring "
-                      "({}), at most {:.3f} with a spring ({})",
-                      m["mass"], mass ? kPassive : kNotPassive, m["naive"] - 1.0, naive ? kPassive : kNotPassive)};
+                      "({}passive), at most {:.3f} with a spring ({}passive)",
+                      m["mass"], mass ? "" : "not ", m["naive"] - 1.0, naive ? "" : "not ")};
 }
 
 /// The earlier rule of A6 judged one of the three energies.
