@@ -131,12 +131,14 @@ double smallest_after_one_update(int parallel) {
   return smallest_ratio;
 }
 
-/// Returns a fraction of the steps, measured in each case with a single task, as text: "45 % (worst run) to 97 % (best
-/// run) of the steps", or "100 % of the steps" if all are equal.
-std::string percent_of_steps(const Measured& measured, const std::string& value) {
+/// Returns, as text, in how many steps `condition` holds: the smallest and the largest fraction `value` of the steps in
+/// the cases with a single task.
+std::string in_percent_of_steps(const Measured& measured, const std::string& value, const std::string& condition) {
   const std::string low = fmt::format("{:.0f} %", 100.0 * smallest(measured, value));
   const std::string high = fmt::format("{:.0f} %", 100.0 * largest(measured, value));
-  return (low == high ? low : fmt::format("{} (worst run) to {} (best run)", low, high)) + " of the steps";
+  return low == high
+             ? fmt::format("in {} of the steps, {}", low, condition)
+             : fmt::format("in the worst run, {} in {} of the steps; in the best run, in {}", condition, low, high);
 }
 
 /// Judges the range of the stiffness ratios after `updates` updates of the weights. If `averaged`, judges the averages
@@ -161,10 +163,12 @@ Finding judge_range(const Measured& measured, const PublishedNumbers& p, double 
           "thesis keeps about 6 contacts, and several of them can be nearly parallel (6° apart)",
           smallest_after_one_update(3), smallest_after_one_update(4), smallest_after_one_update(5)),
       "",
-      averaged
-          ? fmt::format("mean over the steps: smallest ratio {:.2f}, largest ratio {:.2f}", low, high)
-          : fmt::format("in {}, all ratios are within {} to {}", percent_of_steps(measured, after("inside", updates)),
-                        plain(once.at_least), plain(once.at_most))};
+      averaged ? fmt::format("mean over the steps: smallest ratio {:.2f}, largest ratio {:.2f}", low, high)
+               : in_percent_of_steps(
+                     measured, after("inside", updates),
+                     fmt::format("all ratios after {} are within {} to {}",
+                                 updates == 1.0 ? "one iteration" : fmt::format("{} iterations", plain(updates)),
+                                 plain(once.at_least), plain(once.at_most)))};
 }
 
 Finding judge_first_update(const Measured& measured, const PublishedNumbers& p) {
@@ -211,9 +215,11 @@ Finding judge_relative_damping_of_tasks(const Measured& measured, const Publishe
           "the relative damping of combined contacts is √ρ times the damping ratio of one contact",
           fmt::format("steps in which √ρ is within a factor {} of 1 for all contacts: {}", plain(around),
                       of_tasks(measured, "damped_3", "{:.0f} %", 100.0)),
-          fmt::format("in {}, the damping ratio of combined contacts is within a factor {} of the damping ratio of one "
-                      "contact",
-                      percent_of_steps(measured, "damped_3"), plain(around))};
+          in_percent_of_steps(
+              measured, "damped_3",
+              fmt::format("the damping ratio of combined contacts is within a factor {} of the damping ratio of one "
+                          "contact",
+                          plain(around)))};
 }
 
 // ---- R1b: the largest stiffness ratio in the recorded steps of tasks 2 and 3: after 160 iterations, and in the exact

@@ -446,11 +446,13 @@ Finding judge_turn_into_wall(const Measured& measured, const PublishedNumbers& p
   const MeasuredCase &blind = measured.at(0), &seeing = measured.at(1);
   const double more = blind["velocity_variation"] / seeing["velocity_variation"];
   const bool reverses = blind["force_reversals"] > seeing["force_reversals"];
-  return {
-      decide(more >= threshold(p, "turn") && reverses, more > 1.0),
-      fmt::format("the total variation of the velocity is {:.2g} times the value with damping that uses the rotation "
-                  "of the tool",
-                  more)};
+  return {decide(more >= threshold(p, "turn") && reverses, more > 1.0),
+          fmt::format("the force reverses {} times, with damping that also uses the rotation of the tool {} times",
+                      blind["force_reversals"], seeing["force_reversals"]),
+          "",
+          fmt::format("the total variation of velocity ({:.2f} m/s) is {:.2g} times the value with damping that also "
+                      "uses the rotation of the tool ({:.2f} m/s)",
+                      blind["velocity_variation"], more, seeing["velocity_variation"])};
 }
 
 Finding judge_slow_turn(const Measured& measured, const PublishedNumbers& p) {

@@ -140,6 +140,12 @@ std::string failures(const Json& claims) {
   return text;
 }
 
+/// Stands above the table of appendix D.
+constexpr const char* kAboveExperiments =
+    "For D1 to D4, the column *ours* shows the success rates. It shows another measure only if this measure is not as "
+    "published; the claim pages show all. The measured force is not judged, because the simulated subjects regulate "
+    "it.\n\n";
+
 /// Returns a table of claims for each chapter.
 std::string chapters(const Json& claims) {
   std::map<std::string, std::string> tables;
@@ -148,9 +154,9 @@ std::string chapters(const Json& claims) {
       tables[chapter_of(claim)] += row_of(claim);
   std::string text;
   for (const auto& [chapter, rows] : tables)
-    text += fmt::format("\n### {} {}\n\n{}{}",
+    text += fmt::format("\n### {} {}\n\n{}{}{}",
                         std::isdigit(static_cast<unsigned char>(chapter[0])) ? "Chapter" : "Appendix", chapter,
-                        kHeading, rows);
+                        chapter == "D" ? kAboveExperiments : "", kHeading, rows);
   return text;
 }
 
@@ -182,19 +188,24 @@ std::string changed_rules(const Json& claims) {
   // clang 14 cannot compile std::ranges::stable_partition() with the standard library of GCC 12.
   std::stable_partition(rows.begin(), rows.end(), [](const Row& row) { return !row.first.ends_with(kUnchanged); });
   std::string text =
-      "\n### Rules that were changed after their verdicts were known\n\nThe link of a claim leads to both rules and "
-      "the reason of the change. Both rules were applied to the same runs, except in J1, whose earlier rule needs runs "
-      "with other hands.\n\n| verdict by the earlier rule | verdict by the present rule | claims |\n|---|---|---|\n";
+      "\n### Rules that were changed after their verdicts were known\n\nThe claim pages have the earlier rule, the "
+      "present rule and the reason of the change. Both rules were applied to the same runs, except in J1, whose earlier rule "
+      "needs runs with other hands.\n\n| verdict by the earlier rule | verdict by the present rule | claims |\n|---|---|---|\n";
   for (const auto& [verdicts, links] : rows) text += fmt::format("| {} | {} |\n", verdicts, links);
   return text;
 }
 
-/// Returns the claims whose present rules were committed before the measurement (Claim::added), with a heading.
+/// Returns the claims whose present rules were fixed before the measurement (Claim::added), with a heading.
 std::string rules_before_measurement(const Json& claims) {
   std::string added;
   for (const Json& claim : claims)
     if (is(claim, "added") && !claim.contains("revised")) append_item(added, link_to(claim), ", ");
-  return added.empty() ? "" : fmt::format("\n### Rules that were committed before the measurement\n\n{}.\n", added);
+  if (added.empty()) return "";
+  return fmt::format(
+      "\n### Rules that were fixed before the measurement\n\nThe rules of these claims were fixed before hapbench "
+      "measured the claims ([details](../../scenarios/thesis/README.md#rules-of-new-claims)): {}. For the rules "
+      "of other claims, the order is not recorded.\n",
+      added);
 }
 
 /// Returns the numbers of each case; a list if a name has several numbers.
@@ -263,17 +274,24 @@ std::string headline_of(const Json& claims) {
   std::string counts;
   for (const auto& [verdict, count] : verdicts)
     append_item(counts, fmt::format("{} {}", count, verdict_name(verdict)), ", ");
-  std::string text = fmt::format(
-      "{} claims of the thesis: {}. Of the verdicts on testable claims, {} are exact (no assumption enters), {} are "
-      "robust (no single assumption changes them), {} are sensitive to one assumption, {} depend on several "
-      "assumptions",
-      all, counts, sure[kExactVerdict], sure[kRobustVerdict], sure[kSensitiveVerdict], sure[kSeveralVerdict]);
+  std::size_t testable = 0;
+  for (const auto& [name, count] : sure) testable += count;
+  std::string text = timing == 0 ? fmt::format("Verdicts on the {} claims of the thesis", all)
+                                 : fmt::format(
+                                       "The thesis has {} claims. Verdicts on the {} claims that are not about "
+                                       "computing time",
+                                       all + timing, all);
+  text += fmt::format(
+      ": {}. Of the verdicts on the {} testable claims among them, {} are exact (no assumption enters), {} are robust "
+      "(no single assumption changes them), {} are sensitive to one assumption, {} depend on several assumptions",
+      counts, testable, sure[kExactVerdict], sure[kRobustVerdict], sure[kSensitiveVerdict], sure[kSeveralVerdict]);
   const std::size_t others = sure[kNotSampledVerdict];
   if (others > 0) text += fmt::format(", {} were not sampled (no other values were tried)", others);
   text += ".";
   if (timing > 0)
     text += fmt::format(
-        " {} more claims, about computing time, are counted separately, because times depend on the machine.", timing);
+        " Verdicts on the {} claims about computing time are not counted, because times depend on the machine.",
+        timing);
   return text;
 }
 
@@ -326,13 +344,13 @@ std::string ledger_markdown(const Json& ledger) {
       "contact, divided by the stiffness K of one contact\n"
       "- *raw points*: the colliding points before local average and reduction\n"
       "- *tandpasta*: a law of appendix F, which weakens springs that oppose each other\n"
-      "- *task 1*, *task 2*, *task 3*: the drill is pressed on a flat surface and dragged; it tilts to and fro in a "
-      "hole; it moves along the wall of a hole, around the axis. In tasks 2 and 3, the simulated hand presses gently, "
-      "because it is fitted to the published numbers of raw points; in other scenes, the hand presses harder, so that "
-      "the drill penetrates deeper\n"
+      "- *task 1*: the drill is pressed on a flat surface and dragged\n"
+      "- *task 2*: the drill tilts to and fro in a hole\n"
+      "- *task 3*: the drill moves along the wall of a hole, around the axis\n"
+      "- *simulated hand*: in tasks 2 and 3, it presses gently, because only a gentle hand gives as few raw points as "
+      "published; in other scenes, it presses harder, so that the drill penetrates deeper\n"
       "- *vertical task*, *rotational task*: the two experiments of appendix D, in which people reach targets with a "
-      "drill in a hole. In hapbench, simulated subjects do "
-      "this. The force in D1 to D4 is not judged, because these subjects regulate it\n\n"
+      "drill in a hole. In hapbench, simulated subjects do this\n\n"
       "## 1. What the abstract claims\n\n" +
       abstract_table(ledger) + "\nVerdicts:\n\n";
   for (const VerdictText& verdict : kVerdicts) text += fmt::format("- *{}*: {}.\n", verdict.name, verdict.meaning);
@@ -349,10 +367,7 @@ std::string ledger_markdown(const Json& ledger) {
   const std::string failing = failures(claims);
   text += "\n## 2. Claims that failed or were not judged\n\n" +
           (failing.empty() ? "" : "Claims about computing time are in part 4, also those that failed.\n\n" + failing);
-  text +=
-      "\n## 3. All claims, by chapter\n\nFor D1 to D4, the column *ours* shows the success rates. It shows "
-      "another measure only if this measure is not as published; the claim pages show all.\n" +
-      chapters(claims);
+  text += "\n## 3. All claims, by chapter\n" + chapters(claims);
   text += "\n## 4. Computing times, claims that are not testable, changed rules and findings of this project\n";
   text += table_of(claims, "Computing time, on one machine (medians)",
                    [](const Json& claim) { return is(claim, "timing") && !is(claim, "ours"); });

@@ -76,7 +76,7 @@ Finding judge_depths(const Measured& measured, const PublishedNumbers& published
   const bool small = deepest < published["G1.negligible"].at_most;
   return {decide(small, false),
           small ? "the limit of the input force keeps the depths small" : "some contact is deeper", "",
-          fmt::format("largest depth of a contact {:.3f} mm", 1e3 * deepest)};
+          fmt::format("largest depth of a contact in tasks 1 to 3: {:.3f} mm", 1e3 * deepest)};
 }
 
 }  // namespace
