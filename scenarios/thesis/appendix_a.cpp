@@ -200,16 +200,15 @@ Finding judge_springs_limited(const Measured& runs, const PublishedNumbers& p) {
     } else if (fluctuates) {
       somewhere = true;
       published_pairs = published_pairs || published;
-      append_item(why_few,
-                  fmt::format("{} {}", with.name,
-                              smooth.contains(with.name)
-                                  ? "does not fluctuate"
-                                  : "is not smooth even without the limits, so that their effect cannot be judged"),
-                  ", ");
+      append_item(
+          why_few,
+          fmt::format("{} {}", with.name,
+                      smooth.contains(with.name) ? "does not fluctuate" : "is not smooth even without the limits"),
+          ", ");
     }
     if (proposed || fluctuates)
       append_item(published ? with_published_pairs : with_few_pairs,
-                  fmt::format("{}: {} without the limits, {} with them", proposed ? "proposed algorithm" : with.name,
+                  fmt::format("{} {} without the limits, {} with them", proposed ? "proposed algorithm" : with.name,
                               swings(without), swings(with)),
                   "; ");
     append_item(all, fmt::format("{}, {} pairs: {}, then {}", with.name, with["pairs"], swings(without), swings(with)));
@@ -222,7 +221,7 @@ Finding judge_springs_limited(const Measured& runs, const PublishedNumbers& p) {
                       : few           ? "another algorithm fluctuates, but only with fewer pairs than published"
                             : "of the other algorithms that are smooth without the limits, none fluctuates with them"),
           "number of swings, with signed depths, first without the limits, then with them: " + all,
-          few ? fmt::format("with {} pairs of springs, {}; number of swings with {} pairs: {}", kPairs, why_few,
+          few ? fmt::format("with {} pairs of springs, {}; number of swings with {} pairs instead: {}", kPairs, why_few,
                             kStablePairs, with_few_pairs)
               : fmt::format("number of swings with {} pairs of springs: {}", kPairs, with_published_pairs)};
 }

@@ -189,8 +189,9 @@ std::string changed_rules(const Json& claims) {
   std::stable_partition(rows.begin(), rows.end(), [](const Row& row) { return !row.first.ends_with(kUnchanged); });
   std::string text =
       "\n### Rules that were changed after their verdicts were known\n\nThe claim pages have the earlier rule, the "
-      "present rule and the reason of the change. Both rules were applied to the same runs, except in J1, whose earlier rule "
-      "needs runs with other hands.\n\n| verdict by the earlier rule | verdict by the present rule | claims |\n|---|---|---|\n";
+      "present rule and the reason of the change. Both rules were applied to the same runs, except in J1, whose "
+      "earlier rule needs runs with other hands.\n\n| verdict by the earlier rule | verdict by the present rule | "
+      "claims |\n|---|---|---|\n";
   for (const auto& [verdicts, links] : rows) text += fmt::format("| {} | {} |\n", verdicts, links);
   return text;
 }
@@ -203,8 +204,8 @@ std::string rules_before_measurement(const Json& claims) {
   if (added.empty()) return "";
   return fmt::format(
       "\n### Rules that were fixed before the measurement\n\nThe rules of these claims were fixed before hapbench "
-      "measured the claims ([details](../../scenarios/thesis/README.md#rules-of-new-claims)): {}. For the rules "
-      "of other claims, the order is not recorded.\n",
+      "measured the claims ([details](../../scenarios/thesis/README.md#rules-of-new-claims)): {}. For other "
+      "claims, it is not recorded whether the rule or the measurement came first.\n",
       added);
 }
 
