@@ -208,8 +208,8 @@ Finding judge_springs_limited(const Measured& runs, const PublishedNumbers& p) {
     }
     if (proposed || fluctuates)
       append_item(published ? with_published_pairs : with_few_pairs,
-                  fmt::format("{} {} without the limits, {} with them", proposed ? "proposed algorithm" : with.name,
-                              swings(without), swings(with)),
+                  fmt::format("with {}, {} without the limits and {} with them",
+                              proposed ? "the proposed algorithm" : with.name, swings(without), swings(with)),
                   "; ");
     append_item(all, fmt::format("{}, {} pairs: {}, then {}", with.name, with["pairs"], swings(without), swings(with)));
   }
@@ -221,8 +221,8 @@ Finding judge_springs_limited(const Measured& runs, const PublishedNumbers& p) {
                       : few           ? "another algorithm fluctuates, but only with fewer pairs than published"
                             : "of the other algorithms that are smooth without the limits, none fluctuates with them"),
           "number of swings, with signed depths, first without the limits, then with them: " + all,
-          few ? fmt::format("with {} pairs of springs, {}; number of swings with {} pairs instead: {}", kPairs, why_few,
-                            kStablePairs, with_few_pairs)
+          few ? fmt::format("number of swings with {} pairs of springs, because with {} pairs, {}: {}", kStablePairs,
+                            kPairs, why_few, with_few_pairs)
               : fmt::format("number of swings with {} pairs of springs: {}", kPairs, with_published_pairs)};
 }
 
@@ -295,8 +295,8 @@ Finding judge_damping_at_limit(const MeasuredCase& m, const PublishedNumbers& p)
                  : "at the largest stiffness that is stable without damping, the damping ratio gives a damping that is "
                    "stable without a spring",
           "",
-          fmt::format("at {:.3f}e6 N/m, it needs {:.1f} N s/m, {} {:.1f} N s/m are stable", 1e-6 * m["stiffness"],
-                      m["there"], before ? "but only" : "and", m["alone"])};
+          fmt::format("at {:.3f}e6 N/m, the prescribed damping ratio needs {:.1f} N s/m, {} {:.1f} N s/m are stable",
+                      1e-6 * m["stiffness"], m["there"], before ? "but only" : "and", m["alone"])};
 }
 
 // ---- A6: energies of an undamped mass on a spring, whose motion is computed by Eq. A.1.
