@@ -221,8 +221,8 @@ Finding judge_springs_limited(const Measured& runs, const PublishedNumbers& p) {
                       : few           ? "another algorithm fluctuates, but only with fewer pairs than published"
                             : "of the other algorithms that are smooth without the limits, none fluctuates with them"),
           "number of swings, with signed depths, first without the limits, then with them: " + all,
-          few ? fmt::format("number of swings with {} pairs of springs, because with {} pairs, {}: {}", kStablePairs,
-                            kPairs, why_few, with_few_pairs)
+          few ? fmt::format("number of swings with {0} pairs of springs: {1} ({0} pairs, because with {2} pairs, {3})",
+                            kStablePairs, with_few_pairs, kPairs, why_few)
               : fmt::format("number of swings with {} pairs of springs: {}", kPairs, with_published_pairs)};
 }
 
