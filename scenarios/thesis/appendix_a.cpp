@@ -185,6 +185,10 @@ Finding judge_springs_limited(const Measured& runs, const PublishedNumbers& p) {
   const auto swings = [](const MeasuredCase& m) {
     return fmt::format("{}{}", m["swings"], m["arrives"] == 1.0 ? "" : " (does not arrive)");
   };
+  const auto swings_of = [](const MeasuredCase& m) {
+    const std::string times = m["swings"] == 1.0 ? "once" : fmt::format("{} times", m["swings"]);
+    return times + (m["arrives"] == 1.0 ? "" : " (does not arrive)");
+  };
   std::string all, with_published_pairs, with_few_pairs;  // the proposed algorithm, and others that fluctuate
   std::string why_few;                                    // how the others move with the published number of pairs
   std::set<std::string> smooth;                           // algorithms that are smooth with this number, without limits
@@ -208,8 +212,8 @@ Finding judge_springs_limited(const Measured& runs, const PublishedNumbers& p) {
     }
     if (proposed || fluctuates)
       append_item(published ? with_published_pairs : with_few_pairs,
-                  fmt::format("with {}, {} without the limits and {} with them",
-                              proposed ? "the proposed algorithm" : with.name, swings(without), swings(with)),
+                  fmt::format("{} swings {} without the limits and {} with the limits",
+                              proposed ? "the proposed algorithm" : with.name, swings_of(without), swings_of(with)),
                   "; ");
     append_item(all, fmt::format("{}, {} pairs: {}, then {}", with.name, with["pairs"], swings(without), swings(with)));
   }
@@ -221,9 +225,9 @@ Finding judge_springs_limited(const Measured& runs, const PublishedNumbers& p) {
                       : few           ? "another algorithm fluctuates, but only with fewer pairs than published"
                             : "of the other algorithms that are smooth without the limits, none fluctuates with them"),
           "number of swings, with signed depths, first without the limits, then with them: " + all,
-          few ? fmt::format("number of swings with {0} pairs of springs: {1} ({0} pairs, because with {2} pairs, {3})",
-                            kStablePairs, with_few_pairs, kPairs, why_few)
-              : fmt::format("number of swings with {} pairs of springs: {}", kPairs, with_published_pairs)};
+          few ? fmt::format("with {0} pairs of springs: {1} ({0} pairs, because with {2} pairs, {3})", kStablePairs,
+                            with_few_pairs, kPairs, why_few)
+              : fmt::format("with {} pairs of springs: {}", kPairs, with_published_pairs)};
 }
 
 // ---- A4: the integrator's stability limits. One case for each published number, in the order of the thesis.

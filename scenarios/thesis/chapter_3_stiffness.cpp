@@ -133,12 +133,11 @@ double smallest_after_one_update(int parallel) {
 
 /// Returns, as text, in how many steps `condition` holds: the smallest and the largest fraction `value` of the steps in
 /// the cases with a single task.
-std::string in_percent_of_steps(const Measured& measured, const std::string& value, const std::string& condition) {
+std::string percent_of_steps(const Measured& measured, const std::string& value, const std::string& condition) {
   const std::string low = fmt::format("{:.0f} %", 100.0 * smallest(measured, value));
   const std::string high = fmt::format("{:.0f} %", 100.0 * largest(measured, value));
-  return low == high
-             ? fmt::format("in {} of the steps, {}", low, condition)
-             : fmt::format("in the worst run, {} in {} of the steps; in the best run, in {}", condition, low, high);
+  return low == high ? fmt::format("steps in which {}: {}", condition, low)
+                     : fmt::format("steps in which {}: {} in the worst run, {} in the best run", condition, low, high);
 }
 
 /// Judges the range of the stiffness ratios after `updates` updates of the weights. If `averaged`, judges the averages
@@ -164,7 +163,7 @@ Finding judge_range(const Measured& measured, const PublishedNumbers& p, double 
           smallest_after_one_update(3), smallest_after_one_update(4), smallest_after_one_update(5)),
       "",
       averaged ? fmt::format("mean over the steps: smallest ratio {:.2f}, largest ratio {:.2f}", low, high)
-               : in_percent_of_steps(
+               : percent_of_steps(
                      measured, after("inside", updates),
                      fmt::format("all ratios after {} are within {} to {}",
                                  updates == 1.0 ? "one iteration" : fmt::format("{} iterations", plain(updates)),
@@ -215,7 +214,7 @@ Finding judge_relative_damping_of_tasks(const Measured& measured, const Publishe
           "the relative damping of combined contacts is √ρ times the damping ratio of one contact",
           fmt::format("steps in which √ρ is within a factor {} of 1 for all contacts: {}", plain(around),
                       of_tasks(measured, "damped_3", "{:.0f} %", 100.0)),
-          in_percent_of_steps(
+          percent_of_steps(
               measured, "damped_3",
               fmt::format("the damping ratio of combined contacts is within a factor {} of the damping ratio of one "
                           "contact",

@@ -142,8 +142,8 @@ std::string failures(const Json& claims) {
 
 /// Stands above the table of appendix D.
 constexpr const char* kAboveExperiments =
-    "For D1 to D4, the column *ours* shows the success rates. It shows another measure only if this measure is not as "
-    "published; the claim pages show all. The measured force is not judged, because the simulated subjects regulate "
+    "For D1 to D4, the column *ours* shows the success rates. It shows another measure only if this measure does "
+    "not agree with the claim; the claim pages show all. The measured force is not judged, because the simulated subjects regulate "
     "it.\n\n";
 
 /// Returns a table of claims for each chapter.
@@ -283,9 +283,9 @@ std::string headline_of(const Json& claims) {
                                        "computing time",
                                        all + timing, all);
   text += fmt::format(
-      ": {}. Of the verdicts on the {} testable claims among them, {} are exact (no assumption enters), {} are robust "
+      ": {}. {} of these {} claims are testable. Of their verdicts, {} are exact (no assumption enters), {} are robust "
       "(no single assumption changes them), {} are sensitive to one assumption, {} depend on several assumptions",
-      counts, testable, sure[kExactVerdict], sure[kRobustVerdict], sure[kSensitiveVerdict], sure[kSeveralVerdict]);
+      counts, testable, all, sure[kExactVerdict], sure[kRobustVerdict], sure[kSensitiveVerdict], sure[kSeveralVerdict]);
   const std::size_t others = sure[kNotSampledVerdict];
   if (others > 0) text += fmt::format(", {} were not sampled (no other values were tried)", others);
   text += ".";
@@ -368,7 +368,9 @@ std::string ledger_markdown(const Json& ledger) {
   const std::string failing = failures(claims);
   text += "\n## 2. Claims that failed or were not judged\n\n" +
           (failing.empty() ? "" : "Claims about computing time are in part 4, also those that failed.\n\n" + failing);
-  text += "\n## 3. All claims, by chapter\n" + chapters(claims);
+  text +=
+      "\n## 3. Claims by chapter\n\nClaims about computing time, and claims that are not testable, are in part 4.\n" +
+      chapters(claims);
   text += "\n## 4. Computing times, claims that are not testable, changed rules and findings of this project\n";
   text += table_of(claims, "Computing time, on one machine (medians)",
                    [](const Json& claim) { return is(claim, "timing") && !is(claim, "ours"); });
