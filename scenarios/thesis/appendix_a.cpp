@@ -181,44 +181,72 @@ Measured measure_springs_limited(const Evidence& e) {
   return measured;
 }
 
-Finding judge_springs_limited(const Measured& runs, const PublishedNumbers& p) {
-  const auto swings = [](const MeasuredCase& m) {
-    return fmt::format("{}{}", m["swings"], m["arrives"] == 1.0 ? "" : " (does not arrive)");
-  };
-  const auto swings_of = [](const MeasuredCase& m) {
-    const std::string times = m["swings"] == 1.0 ? "once" : fmt::format("{} times", m["swings"]);
-    return times + (m["arrives"] == 1.0 ? "" : " (does not arrive)");
-  };
-  std::string all, with_published_pairs, with_few_pairs;  // the proposed algorithm, and others that fluctuate
-  std::string why_few;                                    // how the others move with the published number of pairs
-  std::set<std::string> smooth;                           // algorithms that are smooth with this number, without limits
-  bool keeps = true, published_pairs = false, somewhere = false;
+/// Returns whether the proposed algorithm is as good with the limits as without them.
+bool keeps_performance(const MeasuredCase& without, const MeasuredCase& with, const PublishedNumbers& p) {
+  return with["arrives"] == 1.0 && with["swings"] <= without["swings"] &&
+         with["overshoot"] <= (1.0 + threshold(p, "same_overshoot")) * without["overshoot"];
+}
+
+/// Returns whether the limits make a smooth motion fluctuate.
+bool fluctuates(const MeasuredCase& without, const MeasuredCase& with, const PublishedNumbers& p) {
+  return is_smooth(without, p) && with["swings"] >= without["swings"] + threshold(p, "fluctuates");
+}
+
+/// Returns the number of swings as text; with `words`, "once" or "18 times" in place of "1" or "18".
+std::string swings_of(const MeasuredCase& m, bool words) {
+  const std::string number = fmt::format("{}", m["swings"]), arrives = m["arrives"] == 1.0 ? "" : " (does not arrive)";
+  if (!words) return number + arrives;
+  return (number == "1" ? "once" : number + " times") + arrives;
+}
+
+/// Returns the swings of the proposed algorithm, and of the other algorithms that the limits make fluctuate, with this
+/// number of pairs.
+std::string swings_with(std::size_t pairs, const Measured& runs, const PublishedNumbers& p) {
+  std::string text;
   for (std::size_t i = 0; i + 1 < runs.size(); i += 2) {
     const MeasuredCase &without = runs[i], &with = runs[i + 1];
-    const bool proposed = with.name == kProposedLaw, published = with["pairs"] == static_cast<double>(kPairs);
-    const bool fluctuates = is_smooth(without, p) && with["swings"] >= without["swings"] + threshold(p, "fluctuates");
-    if (published && is_smooth(without, p)) smooth.insert(without.name);
-    if (proposed) {
-      keeps = keeps && with["arrives"] == 1.0 && with["swings"] <= without["swings"] &&
-              with["overshoot"] <= (1.0 + threshold(p, "same_overshoot")) * without["overshoot"];
-    } else if (fluctuates) {
-      somewhere = true;
-      published_pairs = published_pairs || published;
+    const bool proposed = with.name == kProposedLaw;
+    if (with["pairs"] != static_cast<double>(pairs) || !(proposed || fluctuates(without, with, p))) continue;
+    append_item(text, fmt::format("{} swings {} without the limits and {} with the limits",
+                                  proposed ? "the proposed algorithm" : with.name, swings_of(without, true),
+                                  swings_of(with, true)));
+  }
+  return text;
+}
+
+/// Returns how the algorithms that the limits make fluctuate with few pairs move with the published number of pairs.
+std::string instead_of_few(const Measured& runs, const PublishedNumbers& p) {
+  std::set<std::string> smooth;  // with the published number of pairs, without the limits
+  std::string text;
+  for (std::size_t i = 0; i + 1 < runs.size(); i += 2) {
+    const MeasuredCase &without = runs[i], &with = runs[i + 1];
+    if (with["pairs"] == static_cast<double>(kPairs)) {
+      if (is_smooth(without, p)) smooth.insert(with.name);
+    } else if (with.name != kProposedLaw && fluctuates(without, with, p)) {
+      const bool was_smooth = smooth.contains(with.name);
       append_item(
-          why_few,
-          fmt::format("{} {}", with.name,
-                      smooth.contains(with.name) ? "does not fluctuate" : "is not smooth even without the limits"),
+          text,
+          fmt::format("{} {}", with.name, was_smooth ? "does not fluctuate" : "is not smooth even without the limits"),
           ", ");
     }
-    if (proposed || fluctuates)
-      append_item(published ? with_published_pairs : with_few_pairs,
-                  fmt::format("{} swings {} without the limits and {} with the limits",
-                              proposed ? "the proposed algorithm" : with.name, swings_of(without), swings_of(with)),
-                  "; ");
-    append_item(all, fmt::format("{}, {} pairs: {}, then {}", with.name, with["pairs"], swings(without), swings(with)));
   }
-  const bool few = somewhere && !published_pairs;
-  return {decide(keeps && published_pairs, keeps && somewhere),
+  return text;
+}
+
+Finding judge_springs_limited(const Measured& runs, const PublishedNumbers& p) {
+  std::string all;
+  bool keeps = true, published_pairs = false, few_pairs = false;
+  for (std::size_t i = 0; i + 1 < runs.size(); i += 2) {
+    const MeasuredCase &without = runs[i], &with = runs[i + 1];
+    if (with.name == kProposedLaw)
+      keeps = keeps && keeps_performance(without, with, p);
+    else if (fluctuates(without, with, p))
+      (with["pairs"] == static_cast<double>(kPairs) ? published_pairs : few_pairs) = true;
+    append_item(all, fmt::format("{}, {} pairs: {}, then {}", with.name, with["pairs"], swings_of(without, false),
+                                 swings_of(with, false)));
+  }
+  const bool few = few_pairs && !published_pairs;
+  return {decide(keeps && published_pairs, keeps && few_pairs),
           fmt::format("with the limits, the proposed algorithm {} its performance, and {}",
                       keeps ? "keeps" : "does not keep",
                       published_pairs ? "another algorithm fluctuates with the published number of pairs"
@@ -226,8 +254,8 @@ Finding judge_springs_limited(const Measured& runs, const PublishedNumbers& p) {
                             : "of the other algorithms that are smooth without the limits, none fluctuates with them"),
           "number of swings, with signed depths, first without the limits, then with them: " + all,
           few ? fmt::format("with {0} pairs of springs: {1} ({0} pairs, because with {2} pairs, {3})", kStablePairs,
-                            with_few_pairs, kPairs, why_few)
-              : fmt::format("with {} pairs of springs: {}", kPairs, with_published_pairs)};
+                            swings_with(kStablePairs, runs, p), kPairs, instead_of_few(runs, p))
+              : fmt::format("with {} pairs of springs: {}", kPairs, swings_with(kPairs, runs, p))};
 }
 
 // ---- A4: the integrator's stability limits. One case for each published number, in the order of the thesis.

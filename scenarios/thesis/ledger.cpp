@@ -142,9 +142,9 @@ std::string failures(const Json& claims) {
 
 /// Stands above the table of appendix D.
 constexpr const char* kAboveExperiments =
-    "For D1 to D4, the column *ours* shows the success rates. It shows another measure only if this measure does "
-    "not agree with the claim; the claim pages show all. The measured force is not judged, because the simulated subjects regulate "
-    "it.\n\n";
+    "For D1 to D4, the column *ours* shows the success rates. It shows another measure only if that other measure does "
+    "not agree with the claim; the claim pages show all. The measured force is not judged, because the simulated "
+    "subjects regulate it.\n\n";
 
 /// Returns a table of claims for each chapter.
 std::string chapters(const Json& claims) {
