@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -181,6 +180,20 @@ Measured measure_springs_limited(const Evidence& e) {
   return measured;
 }
 
+/// The motion with one algorithm and one number of pairs.
+struct WithoutAndWith {
+  const MeasuredCase &without, &with;  // without and with the limits
+
+  bool proposed() const { return with.name == kProposedLaw; }
+  bool has(std::size_t pairs) const { return with["pairs"] == static_cast<double>(pairs); }
+};
+
+std::vector<WithoutAndWith> without_and_with(const Measured& runs) {
+  std::vector<WithoutAndWith> motions;
+  for (std::size_t i = 0; i + 1 < runs.size(); i += 2) motions.push_back({runs[i], runs[i + 1]});
+  return motions;
+}
+
 /// Returns whether the proposed algorithm is as good with the limits as without them.
 bool keeps_performance(const MeasuredCase& without, const MeasuredCase& with, const PublishedNumbers& p) {
   return with["arrives"] == 1.0 && with["swings"] <= without["swings"] &&
@@ -201,49 +214,42 @@ std::string swings_of(const MeasuredCase& m, bool words) {
 
 /// Returns the swings of the proposed algorithm, and of the other algorithms that the limits make fluctuate, with this
 /// number of pairs.
-std::string swings_with(std::size_t pairs, const Measured& runs, const PublishedNumbers& p) {
+std::string swings_with(std::size_t pairs, const std::vector<WithoutAndWith>& motions, const PublishedNumbers& p) {
   std::string text;
-  for (std::size_t i = 0; i + 1 < runs.size(); i += 2) {
-    const MeasuredCase &without = runs[i], &with = runs[i + 1];
-    const bool proposed = with.name == kProposedLaw;
-    if (with["pairs"] != static_cast<double>(pairs) || !(proposed || fluctuates(without, with, p))) continue;
-    append_item(text, fmt::format("{} swings {} without the limits and {} with the limits",
-                                  proposed ? "the proposed algorithm" : with.name, swings_of(without, true),
-                                  swings_of(with, true)));
-  }
+  for (const WithoutAndWith& m : motions)
+    if (m.has(pairs) && (m.proposed() || fluctuates(m.without, m.with, p)))
+      append_item(text, fmt::format("{} swings {} without the limits and {} with the limits",
+                                    m.proposed() ? "the proposed algorithm" : m.with.name, swings_of(m.without, true),
+                                    swings_of(m.with, true)));
   return text;
 }
 
-/// Returns how the algorithms that the limits make fluctuate with few pairs move with the published number of pairs.
-std::string instead_of_few(const Measured& runs, const PublishedNumbers& p) {
-  std::set<std::string> smooth;  // with the published number of pairs, without the limits
+/// Returns how the algorithms that the limits make fluctuate only with few pairs move with the published number of
+/// pairs.
+std::string instead_of_few(const std::vector<WithoutAndWith>& motions, const PublishedNumbers& p) {
   std::string text;
-  for (std::size_t i = 0; i + 1 < runs.size(); i += 2) {
-    const MeasuredCase &without = runs[i], &with = runs[i + 1];
-    if (with["pairs"] == static_cast<double>(kPairs)) {
-      if (is_smooth(without, p)) smooth.insert(with.name);
-    } else if (with.name != kProposedLaw && fluctuates(without, with, p)) {
-      const bool was_smooth = smooth.contains(with.name);
-      append_item(
-          text,
-          fmt::format("{} {}", with.name, was_smooth ? "does not fluctuate" : "is not smooth even without the limits"),
-          ", ");
-    }
+  for (const WithoutAndWith& few : motions) {
+    if (few.has(kPairs) || few.proposed() || !fluctuates(few.without, few.with, p)) continue;
+    const bool smooth = std::ranges::any_of(motions, [&](const WithoutAndWith& m) {
+      return m.has(kPairs) && m.with.name == few.with.name && is_smooth(m.without, p);
+    });
+    append_item(text, few.with.name + (smooth ? " does not fluctuate" : " is not smooth even without the limits"),
+                ", ");
   }
   return text;
 }
 
 Finding judge_springs_limited(const Measured& runs, const PublishedNumbers& p) {
+  const std::vector<WithoutAndWith> motions = without_and_with(runs);
   std::string all;
   bool keeps = true, published_pairs = false, few_pairs = false;
-  for (std::size_t i = 0; i + 1 < runs.size(); i += 2) {
-    const MeasuredCase &without = runs[i], &with = runs[i + 1];
-    if (with.name == kProposedLaw)
-      keeps = keeps && keeps_performance(without, with, p);
-    else if (fluctuates(without, with, p))
-      (with["pairs"] == static_cast<double>(kPairs) ? published_pairs : few_pairs) = true;
-    append_item(all, fmt::format("{}, {} pairs: {}, then {}", with.name, with["pairs"], swings_of(without, false),
-                                 swings_of(with, false)));
+  for (const WithoutAndWith& m : motions) {
+    if (m.proposed())
+      keeps = keeps && keeps_performance(m.without, m.with, p);
+    else if (fluctuates(m.without, m.with, p))
+      (m.has(kPairs) ? published_pairs : few_pairs) = true;
+    append_item(all, fmt::format("{}, {} pairs: {}, then {}", m.with.name, m.with["pairs"], swings_of(m.without, false),
+                                 swings_of(m.with, false)));
   }
   const bool few = few_pairs && !published_pairs;
   return {decide(keeps && published_pairs, keeps && few_pairs),
@@ -254,8 +260,8 @@ Finding judge_springs_limited(const Measured& runs, const PublishedNumbers& p) {
                             : "of the other algorithms that are smooth without the limits, none fluctuates with them"),
           "number of swings, with signed depths, first without the limits, then with them: " + all,
           few ? fmt::format("with {0} pairs of springs: {1} ({0} pairs, because with {2} pairs, {3})", kStablePairs,
-                            swings_with(kStablePairs, runs, p), kPairs, instead_of_few(runs, p))
-              : fmt::format("with {} pairs of springs: {}", kPairs, swings_with(kPairs, runs, p))};
+                            swings_with(kStablePairs, motions, p), kPairs, instead_of_few(motions, p))
+              : fmt::format("with {} pairs of springs: {}", kPairs, swings_with(kPairs, motions, p))};
 }
 
 // ---- A4: the integrator's stability limits. One case for each published number, in the order of the thesis.

@@ -275,8 +275,7 @@ std::string headline_of(const Json& claims) {
   std::string counts;
   for (const auto& [verdict, count] : verdicts)
     append_item(counts, fmt::format("{} {}", count, verdict_name(verdict)), ", ");
-  std::size_t testable = 0;
-  for (const auto& [name, count] : sure) testable += count;
+  const std::size_t testable = all - verdicts[Verdict::not_testable];
   std::string text = timing == 0 ? fmt::format("Verdicts on the {} claims of the thesis", all)
                                  : fmt::format(
                                        "The thesis has {} claims. Verdicts on the {} claims that are not about "
