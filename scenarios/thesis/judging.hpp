@@ -42,8 +42,8 @@ inline constexpr VerdictText kVerdicts[] = {
      "the claim's rule holds with the published numbers, in a program that was written from the text of the thesis "
      "alone and not by the author of the thesis (as in the ACM badge \"Results Replicated\", version 1.1)"},
     {"qualitatively replicated",
-     "the direction or the mechanism is as published, but a number is missed, the effect is weaker, or it shows only "
-     "under other conditions; the claim page has the details"},
+     "the direction or the mechanism is as published, but a published number is not reached, the effect is weaker, or "
+     "it shows only under other conditions; the claim page has the details"},
     {"not replicated", "neither the numbers nor the direction are as published, in this model of device and hand"},
     {"contradicted", "a closed form or a counterexample contradicts the claim"},
     {"not testable",
