@@ -113,7 +113,8 @@ Table run_table(std::span<const Result> reports, bool of_scenes, const Layout& l
 }
 
 std::string headings_legend(bool has_empty_mean, bool has_depth, const Layout& layout) {
-  std::string text = "mean force: mean of the rendered force in settled contact; vibration: its rms above 30 Hz";
+  std::string text =
+      "mean force: mean of the rendered force in settled contact; vibration: rms of this force above 30 Hz";
   if (has_empty_mean) text += " (-: settled contact lasts less than 33 ms)";
   if (has_depth) text += "; max depth inside: largest depth of the tool below the surface";
   return layout.wrapped(text, 0);

@@ -374,7 +374,7 @@ Number bounces(const DiagnosedRun& run) {
 
 std::string buzz_frequency(const DiagnosedRun& run) {
   const Number frequency = vibration_frequency(run);
-  return frequency ? fmt::format(", at about {:.0f} Hz", *frequency) : "";
+  return frequency ? fmt::format("; the frequency is about {:.0f} Hz", *frequency) : "";
 }
 
 }  // namespace hapbench

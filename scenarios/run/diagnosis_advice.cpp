@@ -435,7 +435,7 @@ std::string against_softness(const DiagnosedRun& run) {
 }
 
 std::string against_sums(const DiagnosedRun& run) {
-  return fmt::format("K / {:.3g}, or an algorithm whose contact stiffnesses do not add up, such as {}",
+  return fmt::format("K / {:.3g}, or an algorithm that does not add up the stiffnesses of the contacts, such as {}",
                      *run.metric("ratio_max"), other_laws(run, {"shaped_stiffness", "mean"}));
 }
 

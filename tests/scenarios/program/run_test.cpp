@@ -58,7 +58,8 @@ TEST_F(RunCommand, ShowsSevenColumnsAndARowForEachScenario) {
   EXPECT_EQ(words_of(lines[2]).size(), 7u) << lines[2];
   EXPECT_EQ(lines[3].find("single_spring  summation  completes"), 0u) << lines[3];
   EXPECT_EQ(lines[4].find("single_damper  summation  completes"), 0u) << lines[4];
-  EXPECT_EQ(lines[6], "mean force: mean of the rendered force in settled contact; vibration: its rms above 30 Hz");
+  EXPECT_EQ(lines[6],
+            "mean force: mean of the rendered force in settled contact; vibration: rms of this force above 30 Hz");
   EXPECT_EQ(lines[7].find("99 % of the time steps are computed within "), 0u) << lines[7];
   EXPECT_EQ(lines[9], "diagnosis of single_damper: damping (0.998, threshold 0.5)");
   EXPECT_EQ(lines.back(), "results in " + out());

@@ -36,7 +36,8 @@ using test::finding, test::run, test::run_of_text, test::Scene, test::Words;
 /// Expects that a finding names a frequency [Hz] near `expected`.
 void expect_frequency(const Diagnosed& found, double expected, double tolerance) {
   std::smatch frequency;
-  ASSERT_TRUE(std::regex_search(found.says, frequency, std::regex(", at about ([0-9]+) Hz"))) << found.says;
+  ASSERT_TRUE(std::regex_search(found.says, frequency, std::regex("; the frequency is about ([0-9]+) Hz")))
+      << found.says;
   EXPECT_NEAR(std::stod(frequency[1]), expected, tolerance);
 }
 
