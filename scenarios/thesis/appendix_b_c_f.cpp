@@ -226,15 +226,14 @@ Measured measure_density(const Evidence& e) {
 Finding judge_density(const Measured& measured, const PublishedNumbers& p) {
   const double all = measured.front()["x40"], reduced = measured.front()["x40_reduced"], limit = measured.back()["x40"],
                small = threshold(p, "negligible");
-  return {
-      decide(reduced <= small, std::min(all, limit) <= small),
-      fmt::format(
-          "without the reduction, {} iterations of stiffness shaping {}, and {} iterations {}; the reduction, which "
-          "removes points with similar gradients, {} it",
-          measured.front()["updates"],
-          all <= small ? "decouple the force from the density" : "do not decouple the force from the density",
-          kUpdates[std::size(kUpdates) - 1], limit <= small ? "decouple it" : "do not",
-          reduced <= small ? "decouples" : "does not decouple")};
+  return {decide(reduced <= small, std::min(all, limit) <= small),
+          fmt::format(
+              "without the reduction, {} iterations of stiffness shaping {}, {} {} iterations {}. The reduction, which "
+              "removes points with similar gradients, {} it",
+              measured.front()["updates"],
+              all <= small ? "decouple the force from the density" : "do not decouple the force from the density",
+              (all <= small) == (limit <= small) ? "and" : "but", kUpdates[std::size(kUpdates) - 1],
+              limit <= small ? "decouple it" : "do not", reduced <= small ? "decouples" : "does not decouple")};
 }
 
 /// The earlier rule of P1 asked first for the force without the reduction.
@@ -262,7 +261,8 @@ MeasuredValues measure_information(const Evidence& e) {
 Finding judge_information(const MeasuredCase& m, const PublishedNumbers& p) {
   const bool majority = m["change"] <= threshold(p, "over_reduced"), half = m["change"] <= threshold(p, "most");
   return {decide(majority, half),
-          "three iterations give different weights with all points and with the points that the reduction keeps"};
+          "after three iterations, shaping renders another force from all points than from the points that the "
+          "reduction keeps"};
 }
 
 // ---- C6: the damping ratio of 1, 2, 4 and 8 springs in parallel. The stiffness divided by the stiffness of one spring
@@ -388,9 +388,9 @@ Finding judge_tandpasta(const MeasuredCase& m, const PublishedNumbers& p) {
           fmt::format("the weights {} the elastic energy and {} the outward force", unchanged ? "keep" : "change",
                       smallest > 1.0 ? "raise" : "do not raise"),
           fmt::format(
-              "energy ratio {:.12g}; outward force at tilts of {} rad {:.1f} times that of the plain springs; with a "
-              "time step of 5 µs and without friction, the peg leaves the hole after {:.3f} s with tandpasta, {:.3f} s "
-              "with summation, {:.3f} s with stiffness shaping",
+              "energy ratio {:.12g}; outward force at tilts of {} rad: {:.1f} times that of the plain springs; not "
+              "part of the rule: with a time step of 5 µs and without friction, the peg leaves the hole after {:.3f} s "
+              "with tandpasta, {:.3f} s with summation, {:.3f} s with stiffness shaping",
               m["energy_ratio"], fmt::join(kBoostTilts, ", "), fmt::join(boosts, ", "), m["tandpasta"], m["summation"],
               m["shaped_stiffness"])};
 }

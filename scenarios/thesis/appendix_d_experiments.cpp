@@ -171,7 +171,7 @@ std::string far_means(const MeasuredCase& m, const Compared& c, const PublishedN
 
 /// Returns the paired t statistic as text.
 std::string t_text(double t) {
-  return std::isfinite(t) ? fmt::format("t = {:.3g}", t) : "the same difference for every subject";
+  return std::isfinite(t) ? fmt::format("t = {:.3g}", t) : "no t: the difference is the same for every subject";
 }
 
 /// Returns the reason of the verdict. `wrong`: the judged measures that are not as published; `far`: the means that are
@@ -365,8 +365,8 @@ Finding judge_pilots(const Measured& measured, const PublishedNumbers& published
   for (const MeasuredCase& m : measured)
     if (m["shaped"] < m["original"])
       append_item(worse,
-                  fmt::format("{} {:.2f} mm ({:.2f}, with the original algorithm {:.2f})", m.name, 1e3 * m["value"],
-                              m["shaped"], m["original"]),
+                  fmt::format("{} {:.2f} mm (shaping {:.2f}, original {:.2f})", m.name, 1e3 * m["value"], m["shaped"],
+                              m["original"]),
                   ", ");
   return {
       in_simulation(offset.as_published() && height.as_published()),

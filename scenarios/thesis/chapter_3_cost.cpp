@@ -163,7 +163,7 @@ MeasuredValues measure_tandpasta_cost(const Evidence& e) {
 
 Finding judge_other_cost(const MeasuredCase& m, const PublishedNumbers& p) {
   return {decide(m["other"] >= threshold(p, "considerable"), m["other"] >= threshold(p, "margin") * m["shaped"]),
-          fmt::format("it takes {:.2g} times as long as stiffness shaping", m["other"] / m["shaped"])};
+          fmt::format("the computing time is {:#.2g} times that of stiffness shaping", m["other"] / m["shaped"])};
 }
 
 }  // namespace

@@ -113,8 +113,7 @@ std::string agreement_text(const CountsAgree& agree, bool bounded, double bound)
   if (!agree.whole.empty()) return "all counts are near those of " + agree.whole;
   if (agree.raw.empty()) return "the raw counts are near the counts of neither 3.3 nor C.3";
   if (agree.mean.empty())
-    return "the raw counts are near those of " + agree.raw +
-           ", but the number of points left is far from the published number";
+    return "the raw counts are near those of " + agree.raw + ", but the number of points left is not";
   return "the number of points left is as published in " + agree.mean + ", " +
          (bounded ? std::string("but its standard deviation is not")
                   : fmt::format("but some steps keep {} or more", bound));

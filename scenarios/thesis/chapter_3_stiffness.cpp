@@ -136,8 +136,9 @@ double smallest_after_one_update(int parallel) {
 std::string percent_of_steps(const Measured& measured, const std::string& value, const std::string& condition) {
   const std::string low = fmt::format("{:.0f} %", 100.0 * smallest(measured, value));
   const std::string high = fmt::format("{:.0f} %", 100.0 * largest(measured, value));
-  return low == high ? fmt::format("steps in which {}: {}", condition, low)
-                     : fmt::format("steps in which {}: {} in the worst run, {} in the best run", condition, low, high);
+  return low == high ? fmt::format("{} in {} of the steps", condition, low)
+                     : fmt::format("{} in {} of the steps of the worst run and in {} of the steps of the best run",
+                                   condition, low, high);
 }
 
 /// Judges the range of the stiffness ratios after `updates` updates of the weights. If `averaged`, judges the averages
@@ -211,7 +212,7 @@ Finding judge_bound_in_tasks(const Measured& measured, const PublishedNumbers& p
 Finding judge_relative_damping_of_tasks(const Measured& measured, const PublishedNumbers& p) {
   const double share = smallest(measured, "damped_3"), around = threshold(p, "around");
   return {decide(share >= threshold(p, "nearly_all"), share >= threshold(p, "most")),
-          "the relative damping of combined contacts is √ρ times the damping ratio of one contact",
+          "the damping ratio of combined contacts is √ρ times that of one contact, where ρ is the stiffness ratio",
           fmt::format("steps in which √ρ is within a factor {} of 1 for all contacts: {}", plain(around),
                       of_tasks(measured, "damped_3", "{:.0f} %", 100.0)),
           percent_of_steps(

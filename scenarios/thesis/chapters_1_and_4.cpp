@@ -329,10 +329,11 @@ Finding judge_underestimation(const MeasuredCase& m, const PublishedNumbers& pub
   const bool force = m["force"] <= small, path = m["way"] <= small * shallow, depth = m["depth_95"] <= small * shallow;
   return {
       decide(force && path, force || path || depth),
-      fmt::format("the error of the depth is {} of {} mm for 95 % of the contacts; the error of the force is {}, the "
-                  "error of the path {}",
-                  depth ? "a negligible part" : "no negligible part", plain(1e3 * shallow),
-                  force ? "negligible" : "not negligible", path ? "negligible" : "not negligible")};
+      fmt::format(
+          "the error of the depth is {} of the limit of {} mm for 95 % of the contacts; the error of the force is {}, "
+          "the error of the path is {}",
+          depth ? "a negligible part" : "no negligible part", plain(1e3 * shallow),
+          force ? "negligible" : "not negligible", path ? "negligible" : "not negligible")};
 }
 
 // ---- G2: computing time of the depth of one contact [s], for contacts of task 2, with two depth models: along the
@@ -372,8 +373,10 @@ MeasuredValues measure_depth_cost(const Evidence& e) {
 Finding judge_depth_cost(const MeasuredCase& m, const PublishedNumbers& p) {
   const double times = m["normal_projection"] / m["surface_normal"];
   return {decide(times >= threshold(p, "huge"), times >= threshold(p, "margin")),
-          fmt::format("{:.2g} times as much, for a cylinder; a mesh, which the thesis also means, was not measured",
-                      times)};
+          fmt::format(
+              "the depth along the normal takes {:.2g} times as long as the shortest distance; this is for a cylinder, "
+              "and tools that are meshes were not measured",
+              times)};
 }
 
 // ---- C8: largest difference between two forces on the flat surface of task 1, divided by the largest force. The first
@@ -447,8 +450,9 @@ Finding judge_turn_into_wall(const Measured& measured, const PublishedNumbers& p
   const double more = blind["velocity_variation"] / seeing["velocity_variation"];
   const bool reverses = blind["force_reversals"] > seeing["force_reversals"];
   return {decide(more >= threshold(p, "turn") && reverses, more > 1.0),
-          fmt::format("the force reverses {} times, with damping that also uses the rotation of the tool {} times",
-                      blind["force_reversals"], seeing["force_reversals"]),
+          fmt::format(
+              "the force reverses {} times; if the damping also uses the rotation of the tool, it {}reverses {} times",
+              blind["force_reversals"], reverses ? "" : "also ", seeing["force_reversals"]),
           "",
           fmt::format("the total variation of velocity ({:.2f} m/s) is {:.2g} times the value with damping that also "
                       "uses the rotation of the tool ({:.2f} m/s)",

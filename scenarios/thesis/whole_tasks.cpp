@@ -51,8 +51,8 @@ Finding judge_stability(const Measured& measured, const PublishedNumbers&) {
   }
   return {
       decide(undisturbed == measured.size(), completed == measured.size()),
-      fmt::format("{} of {} runs complete; in {} of them, the diagnosis finds no vibration and no jumps", completed,
-                  measured.size(), undisturbed),
+      fmt::format("{} of {} runs complete; in {} of them, the diagnosis finds a fault that the rule names", completed,
+                  measured.size(), completed - undisturbed),
       "",
       fmt::format(
           "{} of {} runs complete; the part of the force above 30 Hz has an rms of at most {:.2f} times the mean force",

@@ -450,7 +450,7 @@ TEST(Claims, OfThePilotExperimentsNameTheRateAtEachJudgedPosition) {
             "highest success rate with the original algorithm: 0.05 among targets beyond 0.52 mm, 0.90 among nearer "
             "targets (vertical task); 0.02 among targets less than 3 mm above the bottom, 0.30 among higher targets "
             "(rotational task)");
-  EXPECT_NE(finding.why.find("lower with stiffness shaping: offset 0.40 mm (0.25, with the original algorithm 0.90)"),
+  EXPECT_NE(finding.why.find("lower with stiffness shaping: offset 0.40 mm (shaping 0.25, original 0.90)"),
             std::string::npos)
       << finding.why;
 }
