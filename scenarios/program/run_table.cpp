@@ -10,6 +10,7 @@
 #include "scenarios/batch/number_with_error.hpp"
 #include "scenarios/input/rounding.hpp"
 #include "scenarios/program/digits.hpp"
+#include "scenarios/program/text.hpp"
 #include "scenarios/scene/metric_sections.hpp"
 
 namespace hapbench {
@@ -208,8 +209,7 @@ std::string step_time_text(std::span<const Result> reports, const Layout& layout
 }
 
 std::string value_and_threshold_text(const Diagnosed& found) {
-  return fmt::format("{:.3g}, threshold {:g}{}", found.value, found.threshold,
-                     found.unit == "1" ? "" : " " + found.unit);
+  return fmt::format("{:.3g}, threshold {}", found.value, with_unit(found.threshold, found.unit));
 }
 
 std::string number_text(double value, const std::optional<double>& error) {

@@ -35,6 +35,12 @@ std::string bold(std::FILE* stream, std::string_view text) {
   return fmt::format("\033[1m{}\033[0m", text);
 }
 
+std::string with_unit(double number, std::string_view unit) {
+  if (unit == "1") return fmt::format("{:g}", number);
+  if (unit.substr(0, 2) == "1/") return fmt::format("{:g} per {}", number, unit.substr(2));
+  return fmt::format("{:g} {}", number, unit);
+}
+
 std::string wrapped(std::string_view text, std::size_t indent, std::size_t width) {
   std::string lines;
   std::size_t column = 0;

@@ -15,6 +15,9 @@ std::string fitted(std::string_view text, std::size_t width);
 /// Returns the text in bold if the stream is a terminal, NO_COLOR is not set and TERM is not "dumb".
 std::string bold(std::FILE* stream, std::string_view text);
 
+/// Returns a number and its unit as prose: "0.1", "2 N", or "10 per s" for the unit 1/s. The unit 1 is left out.
+std::string with_unit(double number, std::string_view unit);
+
 /// Returns prose with lines of at most `width` characters, indented by `indent` spaces. Keeps the line breaks
 /// of the text.
 std::string wrapped(std::string_view text, std::size_t indent, std::size_t width);

@@ -145,8 +145,8 @@ Description describe_diagnosis(const Layout& layout) {
           "\n",
       Json::array()};
   for (const Diagnosed& rule : diagnosis_rules()) {
-    const std::string unit = rule.unit == "1" ? "" : " " + rule.unit;
-    d.text += layout.entry(rule.rule, fmt::format("{}; threshold {:g}{}", rule.number, rule.threshold, unit), 2, 14);
+    d.text += layout.entry(rule.rule,
+                           fmt::format("{}; threshold {}", rule.number, with_unit(rule.threshold, rule.unit)), 2, 14);
     d.json.push_back({{"rule", rule.rule},
                       {"number", rule.number},
                       {"unit", rule.unit},
