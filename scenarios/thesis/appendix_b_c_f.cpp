@@ -261,7 +261,7 @@ MeasuredValues measure_information(const Evidence& e) {
 Finding judge_information(const MeasuredCase& m, const PublishedNumbers& p) {
   const bool majority = m["change"] <= threshold(p, "over_reduced"), half = m["change"] <= threshold(p, "most");
   return {decide(majority, half),
-          "after three iterations, shaping renders another force from all points than from the points that the "
+          "after three iterations, the force from all points differs from the force from the points that the "
           "reduction keeps"};
 }
 

@@ -155,10 +155,8 @@ MeasuredValues measure_saturated_motion(const Evidence& e) {
 Finding judge_saturated_motion(const MeasuredCase& m, const PublishedNumbers& p) {
   const double bound = threshold(p, "around") * m["limit"];
   const bool held = m["p99"] <= bound, median = m["median"] <= bound;
-  return {decide(held, median),
-          held ? "the reaction stays near the limit for every force of the hand; the direction of motion is not "
-                 "judged, because the tool hardly moves"
-               : "the reaction exceeds the limit while the input force is limited"};
+  return {decide(held, median), held ? "the reaction stays near the limit for every force of the hand"
+                                     : "the reaction exceeds the limit while the input force is limited"};
 }
 
 /// The earlier rule of L2: the tool does not move to a larger reaction.

@@ -399,10 +399,10 @@ std::string claim_pages(const Json& ledger) {
       "*qualitatively replicated*. **Rule before** has the conditions of an earlier rule.\n"
       "- **Robustness**: each assumption that changes the verdict if it has another value. The ledger explains the "
       "words *robust*, *exact* and *not sampled*.\n"
-      "- **Sensitivity**: values of assumptions that give another verdict, each with this verdict and the number. If "
-      "the verdict is *not judged* or *not measured*, the value does not count for the robustness. *Not judged*: with "
-      "this value, the simulated hand does not reach the published number that it is fitted to, or the run has nothing "
-      "to measure. *Not measured*: a scenario cannot run with this value.\n"
+      "- **Sensitivity**: values of assumptions that give another verdict, each with the verdict and the number that "
+      "it gives. If the verdict is *not judged* or *not measured*, the value does not count for the robustness. *Not "
+      "judged*: the simulated hand is fitted to a published number, which it does not reach with this value, or the "
+      "run has nothing to measure. *Not measured*: a scenario cannot run with this value.\n"
       "- A section that begins with *Finding of this project* is about no claim of the thesis. The verdicts on "
       "findings are *holds* and *does not hold*.\n";
   for (const Json& claim : ledger.at("claims")) {
