@@ -90,7 +90,7 @@ std::size_t triangles_of_tool(const LoadedScenario& loaded) {
 }
 
 std::string tool_text(const LoadedScenario& loaded, const SceneFacts& facts) {
-  std::string text = fmt::format("  tool         {}: half width {}, its farthest point is {} from the tip centre",
+  std::string text = fmt::format("  tool         {}: half width {}, reaches up to {} from the centre of its tip",
                                  tool_names()[loaded.scenario.tool.index()], length_text(facts.tool->half_width()),
                                  length_text(facts.tool->reach()));
   if (!facts.tool->convex()) text += ", not convex";

@@ -140,8 +140,8 @@ std::string vibration_text(const Ranking& ranking, const Layout& layout) {
   return "\n" +
          layout.wrapped(
              says + (has_order
-                         ? "; --errors also prints the error of each number, estimated by runs with smaller time steps "
-                           "and point spacings"
+                         ? ". The option --errors also prints the error of each number, estimated by runs with smaller "
+                           "time steps and point spacings"
                          : ""),
              0);
 }
