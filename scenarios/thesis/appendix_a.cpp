@@ -18,13 +18,13 @@ namespace hapbench {
 namespace {
 
 // ---- A1: vibration of the original algorithm and of stiffness shaping, without friction (Table A.1 lists no friction)
-// and with the trainer's friction. The initial tilt and speed are assumptions of this project (assumptions.json), which
-// `reproduce --sensitivity` varies.
+// and with the friction of the haptic device. The initial tilt and speed are assumptions of this project
+// (assumptions.json), which `reproduce --sensitivity` varies.
 
 Measured measure_peg_motion(const Evidence& e) {
   Measured measured;
   for (const auto& [scene, name] : {std::pair("peg_in_hole_2d_frictionless_", "no friction"),
-                                    std::pair("peg_in_hole_2d_", "the trainer's friction")}) {
+                                    std::pair("peg_in_hole_2d_", "the friction of the haptic device")}) {
     measured.push_back(
         vibration(fmt::format("original_averaging, {}", name), e.run(fmt::format("{}original_averaging", scene))));
     measured.push_back(reference_vibration(fmt::format("{}, {}", kProposedLaw, name),
@@ -38,7 +38,7 @@ Finding judge_peg_motion(const Measured& measured, const PublishedNumbers& p) {
   return {decide(vibrates_much_more(original, shaped, p), vibrates_more(original, shaped)),
           fmt::format(
               "the total variation of the velocity with the original algorithm, divided by its value with stiffness "
-              "shaping, is {:.3g} without friction and {:.3g} with the trainer's friction",
+              "shaping, is {:.3g} without friction and {:.3g} with the friction of the haptic device",
               original["velocity_variation"] / shaped["velocity_variation"],
               measured.at(2)["velocity_variation"] / measured.at(3)["velocity_variation"])};
 }

@@ -136,9 +136,9 @@ double smallest_after_one_update(int parallel) {
 std::string percent_of_steps(const Measured& measured, const std::string& value, const std::string& condition) {
   const std::string low = fmt::format("{:.0f} %", 100.0 * smallest(measured, value));
   const std::string high = fmt::format("{:.0f} %", 100.0 * largest(measured, value));
-  return low == high ? fmt::format("in {} of the steps, {}", low, condition)
-                     : fmt::format("in {} of the steps of the worst run and {} of the steps of the best run, {}", low,
-                                   high, condition);
+  return low == high ? fmt::format("share of the steps in which {}: {}", condition, low)
+                     : fmt::format("share of the steps in which {}: {} in the worst run, {} in the best run", condition,
+                                   low, high);
 }
 
 /// Judges the range of the stiffness ratios after `updates` updates of the weights. If `averaged`, judges the averages
