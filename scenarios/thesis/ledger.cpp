@@ -343,7 +343,7 @@ std::string ledger_markdown(const Json& ledger) {
       "- *stiffness ratio* of a contact: the combined stiffness of all contacts, measured along the direction of this "
       "contact, divided by the stiffness K of one contact\n"
       "- *raw points*: the colliding points before two stages. The *local average* merges the points of one cell of a "
-      "grid, and the *reduction* keeps only the deepest of all contacts with similar gradients\n"
+      "grid, and the *reduction* keeps only the deepest contact of each group with similar gradients\n"
       "- *input force*: the force of the hand that the haptic device takes as input. The thesis limits it to 2 N "
       "(section 2.7)\n"
       "- *proxy*: a copy of the tool that stays outside of the surface while a spring pulls it to the tool\n"
