@@ -10,6 +10,7 @@
 #include "results/summary/summary.hpp"
 #include "scenarios/analysis/stability/run_stability.hpp"
 #include "scenarios/program/result_tables.hpp"
+#include "scenarios/program/text.hpp"
 #include "scenarios/run/diagnosis.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/scene/metric_sections.hpp"
@@ -73,7 +74,7 @@ Json printed_names() {
     add(verdict.name, "class of motion, of limit and stability", verdict.meaning);
   for (const Diagnosed& rule : diagnosis_rules())
     add(rule.rule, "rule of the diagnosis",
-        fmt::format("applies above {:g}{}: {}", rule.threshold, rule.unit == "1" ? "" : " " + rule.unit, rule.number));
+        fmt::format("applies above {}: {}", with_unit(rule.threshold, rule.unit), rule.number));
   for (const auto& [name, meaning] : kVerdicts) add(name, "verdict on a claim", meaning);
   return all;
 }
